@@ -1,6 +1,7 @@
 //! Conversions between vectors and arrays; results are moved, not copied.
 
 use numpy::{IntoPyArray, PyArrayMethods, PyFixedUnicode};
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -20,12 +21,12 @@ impl<'py> Fields<'py> {
 
     /// Adds a plain value.
     pub fn value(&self, name: &str, value: impl IntoPyObject<'py>) -> PyResult<()> {
-        self.0.set_item(name, value)
+        self.put(name, value.into_bound_py_any(self.0.py())?)
     }
 
     /// Adds a vector of numbers.
     pub fn vector<T: numpy::Element>(&self, name: &str, values: Vec<T>) -> PyResult<()> {
-        self.0.set_item(name, values.into_pyarray(self.0.py()))
+        self.put(name, values.into_pyarray(self.0.py()).into_any())
     }
 
     /// Adds a matrix stored by rows.
@@ -36,22 +37,24 @@ impl<'py> Fields<'py> {
         rows: usize,
         columns: usize,
     ) -> PyResult<()> {
-        self.0.set_item(
-            name,
-            values.into_pyarray(self.0.py()).reshape([rows, columns])?,
-        )
+        let values = values.into_pyarray(self.0.py());
+        self.put(name, values.reshape([rows, columns])?.into_any())
     }
 
     /// Adds an array of three axes stored by rows.
     pub fn cube(&self, name: &str, values: Vec<f64>, shape: [usize; 3]) -> PyResult<()> {
-        self.0
-            .set_item(name, values.into_pyarray(self.0.py()).reshape(shape)?)
+        let values = values.into_pyarray(self.0.py());
+        self.put(name, values.reshape(shape)?.into_any())
     }
 
     /// Adds a vector of words of at most nine ASCII letters.
     pub fn words<'a>(&self, name: &str, words: impl Iterator<Item = &'a str>) -> PyResult<()> {
-        let letters: Vec<PyFixedUnicode<9>> = words.map(fixed).collect();
-        self.0.set_item(name, letters.into_pyarray(self.0.py()))
+        self.vector(name, words.map(fixed).collect())
+    }
+
+    /// Adds an object: compiled once, not for each type.
+    fn put(&self, name: &str, value: Bound<'py, PyAny>) -> PyResult<()> {
+        self.0.set_item(name, value)
     }
 }
 

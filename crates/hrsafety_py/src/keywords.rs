@@ -33,22 +33,18 @@ impl<'py> Keywords<'py> {
 
     /// Takes an argument.
     pub fn take<T: FromPyObjectOwned<'py>>(&self, name: &str) -> PyResult<T> {
+        let value = self.given(name)?;
+        let extracted = value.extract();
+        extracted.map_err(|error: T::Error| named(name, error.into(), value.py()))
+    }
+
+    /// Takes an argument as it is: compiled once, not for each type.
+    fn given(&self, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let missing = || PyTypeError::new_err(format!("missing argument '{name}'"));
         let items = self.0.as_ref().ok_or_else(missing)?;
         let value = items.get_item(name)?.ok_or_else(missing)?;
         items.del_item(name)?;
-        value.extract().map_err(|error: T::Error| {
-            let error: PyErr = error.into();
-            if error.is_instance_of::<PyTypeError>(items.py()) {
-                let words = error.value(items.py());
-                PyTypeError::new_err(format!("argument '{name}': {words}"))
-            } else if error.is_instance_of::<PyUnicodeEncodeError>(items.py()) {
-                let given = Given::Found("a lone surrogate in it".into());
-                CoreError::from(Failure::invalid(name, "be text that UTF-8 can hold", given)).into()
-            } else {
-                error
-            }
-        })
+        Ok(value)
     }
 
     /// Refuses arguments that nobody took.
@@ -60,6 +56,20 @@ impl<'py> Keywords<'py> {
             }
             _ => Ok(()),
         }
+    }
+}
+
+/// The error of a conversion with the name of its argument.
+#[cold]
+fn named(name: &str, error: PyErr, py: Python<'_>) -> PyErr {
+    if error.is_instance_of::<PyTypeError>(py) {
+        let words = error.value(py);
+        PyTypeError::new_err(format!("argument '{name}': {words}"))
+    } else if error.is_instance_of::<PyUnicodeEncodeError>(py) {
+        let given = Given::Found("a lone surrogate in it".into());
+        CoreError::from(Failure::invalid(name, "be text that UTF-8 can hold", given)).into()
+    } else {
+        error
     }
 }
 
