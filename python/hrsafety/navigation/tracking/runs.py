@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -242,10 +243,13 @@ def track_batch(
 def _trajectory(path: Reference, law: Tracking, history: dict[str, Any]) -> Trajectory:
     """Return the record of a run, in which there are no obstacles."""
     heading, rows = history["heading"], len(history["time"])
-    velocity = np.empty((rows, 2))
-    np.cos(heading, out=velocity[:, 0])
-    np.sin(heading, out=velocity[:, 1])
-    velocity *= history["speed"][:, None]
+    # Column by column, and in place: a product along rows of two takes three times as long.
+    speed, velocity = history["speed"], np.empty((rows, 2))
+    for function, column in ((np.cos, velocity[:, 0]), (np.sin, velocity[:, 1])):
+        function(heading, out=column)
+        column *= speed
+    steps = history["time"][1:] - history["time"][:-1]
+    steps *= speed[1:]
     nothing = np.zeros(0)
     return Trajectory(
         reference=path,
@@ -258,7 +262,7 @@ def _trajectory(path: Reference, law: Tracking, history: dict[str, Any]) -> Traj
         contact_time=nothing,
         contact_speed=nothing,
         contact_at_fault=np.zeros(0, dtype=bool),
-        path_length=float(np.abs(history["speed"][1:] * np.diff(history["time"])).sum()),
+        path_length=float(np.abs(steps, out=steps).sum()),
         **history,
     )
 
@@ -270,10 +274,16 @@ def _reference(name: str, value: object) -> Reference:
     return value
 
 
+@cache
+def _default_tracking() -> FullSpeedTracking:
+    """Return the default law, which is made once."""
+    return FullSpeedTracking()
+
+
 def _tracking(value: object) -> Tracking:
     """Return ``value`` if it is a tracking law, the default for ``None``."""
     if value is None:
-        return FullSpeedTracking()
+        return _default_tracking()
     if not isinstance(value, (FullSpeedTracking, NonlinearTracking, ExponentialTracking)):
         rule = "be a FullSpeedTracking, NonlinearTracking or ExponentialTracking"
         raise InvalidParameterError("tracking", rule, value)
