@@ -12,6 +12,7 @@ pub(crate) mod apart;
 mod arithmetic;
 mod factors;
 mod humps;
+mod known;
 mod maxima;
 mod modes;
 mod scan;
@@ -23,6 +24,7 @@ use crate::metrics::Searches;
 use crate::series::Plant;
 use apart::apart;
 use arithmetic::{Each, product, third_order};
+use known::{GroupPeaks, GroupRest, Known};
 use modes::{Basis, Motion, Wave};
 use numeric::lanes::{Mask, Real};
 use pulp::Simd;
@@ -71,63 +73,6 @@ pub struct Group<R> {
     pub humps: bool,
     /// What is wanted.
     pub searches: Searches,
-}
-
-/// A number of each lane.
-#[derive(Clone, Copy)]
-pub struct Known<R: Real> {
-    /// The number.
-    pub value: R,
-    /// Lanes in which it holds.
-    pub holds: R::Mask,
-}
-
-impl<R: Real> Known<R> {
-    /// What was not asked for.
-    #[inline(always)]
-    pub fn nothing() -> Self {
-        Self {
-            value: R::splat(f64::NAN),
-            holds: R::Mask::none(),
-        }
-    }
-
-    /// The number over another one.
-    #[inline(always)]
-    pub fn over(self, divisor: R) -> Self {
-        Self {
-            value: self.value / divisor,
-            ..self
-        }
-    }
-}
-
-/// Peaks, duration and mean, accelerations in m/s^2.
-pub struct GroupPeaks<R: Real> {
-    /// Acceleration of the head.
-    pub head_acceleration: Known<R>,
-    /// Contact force, in N.
-    pub contact_force: Known<R>,
-    /// Compression, in m.
-    pub compression: Known<R>,
-    /// Impact period, in s.
-    pub duration: Known<R>,
-    /// Mean acceleration.
-    pub mean: Known<R>,
-    /// Time of the peak acceleration and two derivatives after it.
-    top: [R; 3],
-}
-
-/// All other metrics, accelerations in m/s^2.
-pub struct GroupRest<R: Real> {
-    /// Injury criteria for both windows.
-    pub injury: [Known<R>; 2],
-    /// Largest 3 ms mean and largest level held for 3 ms.
-    pub held: [Known<R>; 2],
-    /// Power from the manipulator and power of compression, in W.
-    pub powers: [Known<R>; 2],
-    /// Deferred lanes.
-    pub put_off: R::Mask,
 }
 
 /// A group with its motion and what the walk along it noted.

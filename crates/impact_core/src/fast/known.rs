@@ -1,0 +1,60 @@
+//! What is known of impacts side by side, lane by lane.
+
+use numeric::lanes::{Mask, Real};
+
+/// A number of each lane.
+#[derive(Clone, Copy)]
+pub struct Known<R: Real> {
+    /// The number.
+    pub value: R,
+    /// Lanes in which it holds.
+    pub holds: R::Mask,
+}
+
+impl<R: Real> Known<R> {
+    /// What was not asked for.
+    #[inline(always)]
+    pub fn nothing() -> Self {
+        Self {
+            value: R::splat(f64::NAN),
+            holds: R::Mask::none(),
+        }
+    }
+
+    /// The number over another one.
+    #[inline(always)]
+    pub fn over(self, divisor: R) -> Self {
+        Self {
+            value: self.value / divisor,
+            ..self
+        }
+    }
+}
+
+/// Peaks, duration and mean, accelerations in m/s^2.
+pub struct GroupPeaks<R: Real> {
+    /// Acceleration of the head.
+    pub head_acceleration: Known<R>,
+    /// Contact force, in N.
+    pub contact_force: Known<R>,
+    /// Compression, in m.
+    pub compression: Known<R>,
+    /// Impact period, in s.
+    pub duration: Known<R>,
+    /// Mean acceleration.
+    pub mean: Known<R>,
+    /// Time of the peak acceleration and two derivatives after it.
+    pub(super) top: [R; 3],
+}
+
+/// All other metrics, accelerations in m/s^2.
+pub struct GroupRest<R: Real> {
+    /// Injury criteria for both windows.
+    pub injury: [Known<R>; 2],
+    /// Largest 3 ms mean and largest level held for 3 ms.
+    pub held: [Known<R>; 2],
+    /// Power from the manipulator and power of compression, in W.
+    pub powers: [Known<R>; 2],
+    /// Deferred lanes.
+    pub put_off: R::Mask,
+}
