@@ -176,8 +176,8 @@ def metrics_batch(
         the other fields are NaN then, and the call is faster.
     outputs : sequence of str or None
         Names of the criteria to compute; those of ``fields`` when ``None``, the status alone when empty.
-        The others are NaN and are neither searched for nor kept. What is computed agrees with a call for
-        all criteria to rounding.
+        The others are NaN and are neither searched for nor kept. What is computed has the same bits as in a
+        call for all criteria.
     threads : int or None
         Number of threads, up to 1024; all cores when ``None``. Never changes a bit.
     lanes : int or None
