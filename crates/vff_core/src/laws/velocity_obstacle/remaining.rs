@@ -14,9 +14,12 @@ const BESIDE: f64 = 1e-7;
 const OUTSIDE: f64 = 1e-4;
 
 /// Most parts that are looked at; where these are not enough, nothing is taken away.
-const MOST: usize = 40;
+const MOST: usize = 20;
 
-/// Most searches for which it is not tried again after there were too many parts.
+/// Share of the disc around all of them that is little.
+const NARROW: f64 = 0.3;
+
+/// Most searches for which it is not tried again after too much was left.
 const LONGEST_PAUSE: u32 = 31;
 
 /// Most lines for which it does not pay.
@@ -40,20 +43,20 @@ pub(super) struct Remaining {
     asked: Vec<usize>,
     /// Discs around what is left.
     pub caps: Vec<Cap>,
-    /// For how many searches nothing is tried, and how many it were last, since there were too many parts.
+    /// For how many searches nothing is tried, and how many it were last, since too much was left.
     paused: [u32; 2],
 }
 
 impl Remaining {
-    /// Whether there may be few parts: not soon after there were too many.
+    /// Whether little may be left: not soon after it was too much.
     fn is_worth_it(&self) -> bool {
         self.paused[0] == 0
     }
 
-    /// Notes whether there were few parts.
-    fn pause(&mut self, few: bool) {
+    /// Notes whether little was left.
+    fn pause(&mut self, little: bool) {
         let [left, last] = self.paused;
-        self.paused = match (left, few) {
+        self.paused = match (left, little) {
             (_, true) => [0; 2],
             (0, false) => [LONGEST_PAUSE.min(2 * last + 1); 2],
             (left, false) => [left - 1, last],
@@ -112,7 +115,7 @@ impl Remaining {
 
 impl<'a> Best<'a> {
     /// Sorts out cones and legs by discs that hold everything reachable that may be worth enough: a given one or,
-    /// where that leaves many lines, those around what single obstacles leave.
+    /// where that leaves many lines and a free velocity is known, those around what single obstacles leave.
     pub fn narrow_down(
         &mut self,
         wide: &'a [Cap; 1],
@@ -122,8 +125,13 @@ impl<'a> Best<'a> {
         if self.is_easy(wide) {
             return;
         }
+        // Where no free velocity is known, mostly too much is left.
+        if self.floor() == f64::NEG_INFINITY {
+            return self.narrow(wide);
+        }
         let taken = remaining.is_worth_it() && self.take_away(remaining, wanted);
-        remaining.pause(taken);
+        let narrow = |cap: &Cap| cap.radius < NARROW * wide[0].radius;
+        remaining.pause(taken && remaining.caps.iter().all(narrow));
         self.narrow(if taken { &remaining.caps } else { wide });
     }
 
