@@ -280,11 +280,7 @@ fn known<'n>(
             Some(_) if names.clone().take(index).any(|other| other == name) => "name a joint once",
             Some(_) => continue,
         };
-        return Err(Failure::invalid(
-            option.to_owned(),
-            rule,
-            Given::Word(name.clone()),
-        ));
+        return Err(Failure::invalid(option, rule, Given::Word(name.clone())));
     }
     Ok(())
 }
