@@ -109,7 +109,8 @@ def counts(table: nav.RunTable) -> list[int]:
 
 @pytest.mark.parametrize("recording", ["zara01", "zara03"])
 def test_rows_of_a_recording_are_what_is_computed(recording: str, shared: Path) -> None:
-    for (name, measurement), sensing in zip(SENSINGS.items(), ("exact", "25 mm noise", "25 mm noise, 0.1 s delay"), strict=True):
+    shown = ("exact", "25 mm noise", "25 mm noise, 0.1 s delay")
+    for (name, measurement), sensing in zip(SENSINGS.items(), shown, strict=True):
         table = crossed(shared / "data" / "pedestrians" / f"{recording}.csv", measurement)
         found = counts(table)
         cells = [*map(str, found), f"{table.min_clearance.min():.2f}"]

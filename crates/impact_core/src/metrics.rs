@@ -16,6 +16,7 @@ pub const CONSTRAINED_HORIZON: f64 = 0.05;
 
 /// What is searched on a response.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(clippy::struct_excessive_bools)] // each is asked for by itself
 pub struct Searches {
     /// Largest acceleration of the head.
     pub acceleration: bool,

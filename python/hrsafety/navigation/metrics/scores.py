@@ -228,16 +228,15 @@ def _outside(quantity: str, values: Array, slack: float = 0.0) -> npt.NDArray[np
 
 def _may_be_implausible(max_speed: Array, extremes: Mapping[str, Array]) -> npt.NDArray[np.bool_]:
     """Return for which episodes `_implausible` may have something to say."""
-    return np.logical_or.reduce(
-        [
-            _outside("control_period", extremes["step"]),
-            _outside("robot_radius", extremes["robot_radius"]),
-            _outside("person_radius", extremes["least_person_radius"]),
-            _outside("person_radius", extremes["greatest_person_radius"]),
-            _outside("person_speed", max_speed),
-            _outside("person_speed", extremes["person_speed"], _SLACK),
-        ]
-    )
+    found = [
+        _outside("control_period", extremes["step"]),
+        _outside("robot_radius", extremes["robot_radius"]),
+        _outside("person_radius", extremes["least_person_radius"]),
+        _outside("person_radius", extremes["greatest_person_radius"]),
+        _outside("person_speed", max_speed),
+        _outside("person_speed", extremes["person_speed"], _SLACK),
+    ]
+    return np.any(found, axis=0)
 
 
 _SLACK = 1e-9
