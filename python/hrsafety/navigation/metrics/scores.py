@@ -236,7 +236,8 @@ def _may_be_implausible(max_speed: Array, extremes: Mapping[str, Array]) -> npt.
         _outside("person_speed", max_speed),
         _outside("person_speed", extremes["person_speed"], _SLACK),
     ]
-    return np.any(found, axis=0)
+    doubtful: npt.NDArray[np.bool_] = np.any(found, axis=0)
+    return doubtful
 
 
 _SLACK = 1e-9
