@@ -94,6 +94,19 @@ impl Snapshot {
             walker.agent
         });
         self.robots.fill(robots, reach, period);
+        decisions.clear();
+        decisions.resize(count, Decision::default());
+        self.decide_placed(setting, models, decisions);
+    }
+
+    /// The same once everybody has a place; compiled once, whoever tells of the people.
+    #[inline(never)]
+    fn decide_placed(
+        &mut self,
+        setting: &Setting<'_>,
+        models: Models<'_, '_>,
+        decisions: &mut [Decision],
+    ) {
         let Self {
             people,
             robots,
@@ -106,8 +119,6 @@ impl Snapshot {
             company: setting.company,
             step: setting.step,
         };
-        decisions.clear();
-        decisions.resize(count, Decision::default());
         let job = Job {
             around: &around,
             placed,
