@@ -12,6 +12,7 @@ from hrsafety._bounds import MOST_CELLS
 from hrsafety.errors import InvalidParameterError, Shown
 
 if TYPE_CHECKING:
+    from io import BufferedReader
     from pathlib import Path
 
 __all__ = ["Picture", "read_pgm"]
@@ -48,8 +49,7 @@ def read_pgm(path: Path) -> Picture:
             if size > cells * (1 if kind == b"P5" else BYTES_OF_NUMBER) + HEAD_BYTES:
                 raise _wrong_size(path, rows, columns, f"{size} bytes")
             file.seek(head.end())
-            # In pieces, between which Ctrl-C is answered.
-            body = b"".join(iter(lambda: file.read(PIECE), b""))
+            body = _rest(file, size)
     except OSError as error:
         raise InvalidParameterError("image", "be readable", Shown(f"{path.name} ({error.strerror})")) from None
     values = _bytes(path, body, rows, columns) if kind == b"P5" else _words(path, body, rows, columns)
@@ -60,6 +60,15 @@ def read_pgm(path: Path) -> Picture:
     return Picture(
         values.astype(np.uint8, copy=False).reshape(rows, columns), gray if most == 255 else gray * (255.0 / most)
     )
+
+
+def _rest(file: BufferedReader, size: int) -> memoryview:
+    """Return what is left of a file, read in pieces, between which Ctrl-C is answered."""
+    room = np.empty(size, dtype=np.uint8).data
+    read = 0
+    while count := file.readinto(room[read : read + PIECE]):
+        read += count
+    return room[:read]
 
 
 def _check_head(path: Path, rows: int, columns: int, most: int) -> None:
@@ -77,13 +86,13 @@ def _wrong_size(path: Path, rows: int, columns: int, found: str) -> InvalidParam
     return InvalidParameterError("image", rule, Shown(f"{found} in {path.name}"))
 
 
-def _bytes(path: Path, body: bytes, rows: int, columns: int) -> npt.NDArray[np.uint8]:
+def _bytes(path: Path, body: memoryview, rows: int, columns: int) -> npt.NDArray[np.uint8]:
     if len(body) != rows * columns:
         raise _wrong_size(path, rows, columns, f"{len(body)} bytes")
     return np.frombuffer(body, dtype=np.uint8)
 
 
-def _words(path: Path, body: bytes, rows: int, columns: int) -> npt.NDArray[np.int64]:
+def _words(path: Path, body: memoryview, rows: int, columns: int) -> npt.NDArray[np.int64]:
     found = re.sub(rb"#[^\n\r]*", b"", body).split()
     if len(found) != rows * columns:
         raise _wrong_size(path, rows, columns, f"{len(found)}")
