@@ -6,6 +6,7 @@
 pub mod agent;
 mod agent_lanes;
 mod batch;
+mod divergence;
 pub mod environments;
 pub mod metrics;
 pub mod models;
@@ -24,7 +25,8 @@ pub mod world;
 mod world_lanes;
 
 pub use batch::simulate_worlds;
+pub use divergence::{Diverged, Divergence};
 pub use models::Model;
 pub use record::Trajectories;
-pub use simulation::{DecisionRoom, Diverged, Divergence, Simulation};
+pub use simulation::{DecisionRoom, Simulation};
 pub use world::CrowdWorld;

@@ -7,6 +7,7 @@
 use std::sync::Arc;
 
 use crate::crowd::agent::Agent;
+use crate::crowd::divergence::{Diverged, Divergence};
 use crate::crowd::pedestrian::Decision;
 use crate::crowd::people::{Companions, Groups, PersonState, Presence};
 use crate::crowd::record::{Trajectories, check_rows, whole_steps};
@@ -16,24 +17,6 @@ use crate::crowd::sources::Source;
 use crate::crowd::world::{CrowdWorld, count_of};
 use crate::error::Result;
 use crate::run::{Clock, Episode, Interrupted, Parts, Request};
-
-/// Whose state is no longer finite.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Diverged {
-    /// A person by number.
-    Person(usize),
-    /// A robot by number.
-    Robot(usize),
-}
-
-/// The end of a world whose state is no longer finite.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Divergence {
-    /// When, in s.
-    pub time: f64,
-    /// Who it is.
-    pub agent: Diverged,
-}
 
 /// Room for the decisions of everybody at an instant; nothing in it outlasts the instant, so that worlds that are
 /// stepped in turn can share it and find it in the cache.

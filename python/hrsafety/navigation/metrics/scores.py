@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,9 +14,10 @@ from hrsafety._statistics import Share, wilson
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.metrics.between import doubts_between
 from hrsafety.navigation.metrics.declared import METRICS, WORLD_METRICS, Measured, MeasuredWorld, Metric, with_metrics
+from hrsafety.navigation.metrics.doubts import ENDS, contacts_between, implausible_numbers, may_be_implausible
 from hrsafety.navigation.metrics.episode import Episode, Recorded
 from hrsafety.navigation.trajectory import Trajectory
-from hrsafety.plausibility import RANGES, ResultWarning, gathered, implausible
+from hrsafety.plausibility import ResultWarning, gathered
 from hrsafety.tables import Columns, Table, unit_suffix
 
 __all__ = ["EpisodeMetrics", "MetricTable", "WorldMetrics", "evaluate", "evaluate_many", "evaluate_world"]
@@ -193,55 +194,8 @@ def evaluate(
     episode = _episode(run, people, options)
     found, _ = _hrsafety.crowd_metrics([episode._native], 1, None)
     values = {name: column[0].item() for name, column in found.items()}
-    doubts = doubts_between(episode, *(values[name] for name in _ENDS))
-    return EpisodeMetrics(values, (*episode.warnings, *_implausible(episode, values["max_speed"]), *doubts))
-
-
-def _implausible(episode: Episode, max_speed: float) -> tuple[ResultWarning, ...]:
-    """Return doubts about units, unless what the episode comes from has some; ``max_speed`` is the metric."""
-    if any(doubt.code == "implausible" for doubt in episode.warnings):
-        return ()
-    people = np.asarray(episode.people, dtype=np.float64)
-    values: dict[str, object] = {"step": episode.step, "robot_radius": episode.robot_radius}
-    values |= {"person_radius": episode.person_radius, "speed of the robot": max_speed}
-    if people.size and len(people) > 1:
-        # From the first to the last instant, for who is there at both.
-        way = np.hypot(*(people[-1] - people[0]).T)
-        values["speed of the people"] = way / ((len(people) - 1) * episode.step)
-    return implausible(values, _QUANTITIES)
-
-
-_QUANTITIES = {
-    "step": "control_period",
-    "person_radius": "person_radius",
-    "speed of the robot": "person_speed",
-    "speed of the people": "person_speed",
-}
-
-
-def _outside(quantity: str, values: Array, slack: float = 0.0) -> npt.NDArray[np.bool_]:
-    """Return which numbers are outside the plausible range of their quantity; NaN is not."""
-    least, most, *_ = RANGES[quantity]
-    found: npt.NDArray[np.bool_] = (values < least) | (values > most * (1.0 - slack))
-    return found
-
-
-def _may_be_implausible(max_speed: Array, extremes: Mapping[str, Array]) -> npt.NDArray[np.bool_]:
-    """Return for which episodes `_implausible` may have something to say."""
-    found = [
-        _outside("control_period", extremes["step"]),
-        _outside("robot_radius", extremes["robot_radius"]),
-        _outside("person_radius", extremes["least_person_radius"]),
-        _outside("person_radius", extremes["greatest_person_radius"]),
-        _outside("person_speed", max_speed),
-        _outside("person_speed", extremes["person_speed"], _SLACK),
-    ]
-    doubtful: npt.NDArray[np.bool_] = np.any(found, axis=0)
-    return doubtful
-
-
-_SLACK = 1e-9
-"""What rounding may change of a number, relative to it: far more than it does."""
+    doubts = doubts_between(episode, *(values[name] for name in ENDS))
+    return EpisodeMetrics(values, (*episode.warnings, *implausible_numbers(episode, values["max_speed"]), *doubts))
 
 
 def _episode(run: Any, people: npt.ArrayLike | None, options: dict[str, Any]) -> Episode:
@@ -301,19 +255,15 @@ def evaluate_many(
     scored = [_scored(index, each) for index, each in enumerate(given)]
     found, extremes = _measured(scored, threads=threads, progress=progress)
     speeds = found["max_speed"]
-    doubtful = np.flatnonzero(_may_be_implausible(speeds, extremes)).tolist()
-    doubts = {index: _implausible(scored[index], float(speeds[index])) for index in doubtful}
+    doubtful = np.flatnonzero(may_be_implausible(speeds, extremes)).tolist()
+    doubts = {index: implausible_numbers(scored[index], float(speeds[index])) for index in doubtful}
     own = (
         (_name(index), (*each.warnings, *doubts.get(index, ())))
         for index, each in enumerate(scored)
         if each.warnings or index in doubts
     )
-    between = _between(scored, _name, found, extremes)
+    between = contacts_between(scored, _name, found, extremes)
     return MetricTable(found, (*gathered(own, "episodes"), *gathered(between, "episodes")))
-
-
-_ENDS = ("arrival_time", "min_time_to_collision", "wall_clearance")
-"""What is asked for contacts between instants."""
 
 
 def table_of(
@@ -329,7 +279,7 @@ def table_of(
     With names of the episodes there are warnings of contacts between their instants, too.
     """
     found, extremes = _measured(episodes, threads=threads, progress=progress)
-    between = _between(episodes, names.__getitem__, found, extremes) if names else ()
+    between = contacts_between(episodes, names.__getitem__, found, extremes) if names else ()
     return MetricTable(found, (*warnings, *gathered(between, "episodes")))
 
 
@@ -339,22 +289,6 @@ def _measured(
     """Return columns of the metrics, and of extremes of the episodes."""
     natives = [each._native for each in episodes]
     return _hrsafety.crowd_metrics(natives, thread_count(threads), callback("progress", progress))
-
-
-def _between(
-    episodes: Sequence[Episode],
-    name_of: Callable[[int], str],
-    found: Mapping[str, npt.NDArray[Any]],
-    extremes: Mapping[str, Array],
-) -> Iterator[tuple[str, tuple[ResultWarning, ...]]]:
-    """Yield names of episodes with the doubts about contacts between their instants; most episodes can have none."""
-    passed = extremes["may_be_passed"] != 0.0
-    # No wall is touched within a step that is shorter than twice the distance from it.
-    longest = found["max_speed"] * extremes["step"] * (1.0 + _SLACK)
-    walled = (found["wall_clearance"] < np.inf) & (longest > 2.0 * found["wall_clearance"])
-    for index in np.flatnonzero(passed | walled).tolist():
-        ends = (found[name][index].item() for name in _ENDS)
-        yield name_of(index), doubts_between(episodes[index], *ends)
 
 
 def _name(index: int) -> str:
