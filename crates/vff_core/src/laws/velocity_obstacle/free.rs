@@ -28,7 +28,7 @@ pub(super) fn is_far(
 impl Cone {
     /// Whether a velocity leads far beside it, as most do: without a root.
     #[inline(always)]
-    fn is_beside(&self, velocity: Vector) -> bool {
+    pub(super) fn is_beside(&self, velocity: Vector) -> bool {
         let legs = self.legs.as_ref();
         legs.is_some_and(|legs| !legs.may_hold(velocity - self.tip))
     }
