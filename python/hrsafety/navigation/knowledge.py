@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from hrsafety._arguments import instance
-from hrsafety.navigation.free_space import stands
+from hrsafety.navigation.free_space import distance, stands
 from hrsafety.navigation.regions import region_radii
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
@@ -21,6 +21,10 @@ __all__ = ["EchoRegions", "Sensing", "echo_regions", "sensing_of"]
 
 REGION_BEYOND_RANGE = "region_beyond_range"
 BLIND_NEARBY = "blind_nearby"
+UNSEEN_AT_START = "unseen_at_start"
+
+LOST = 1e-3
+"""So many frames may be lost one after the other that more have this probability."""
 
 
 class Sensing(NamedTuple):
@@ -130,8 +134,9 @@ def echo_regions(scenario: Scenario, sonar: RobotSensor) -> EchoRegions:
 def warnings_of(scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:
     """Warn of sensors that do not reach as far as the regions that they must see, or see nothing nearby.
 
-    Or whose regions are sized for slower people than there are.
+    Or whose regions are sized for slower people than there are, and of cameras that tell too late who is there.
     """
+    yield from _unseen_at_start(scenario, built.obstacle_vision)
     speeds = [own_speed(obstacle, scenario.time_limit) for obstacle in scenario.obstacles]
     for index, sensor in enumerate(built.sensors):
         regions = echo_regions(scenario, sensor)
@@ -161,6 +166,35 @@ def warnings_of(scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:
                 f"but the robot has a radius of {scenario.robot.radius:.4g} m: it may touch what the law takes to be "
                 f"off; give a range_min of at most the radius",
             )
+
+
+def _unseen_at_start(scenario: Scenario, vision: Vision | None) -> Iterator[ResultWarning]:
+    """Warn of obstacles that the robot may be unable to stop for once a camera has told of them first."""
+    if vision is None:
+        return
+    lost = math.ceil(math.log(LOST) / math.log(vision.drop_probability)) if vision.drop_probability > 0.0 else 0
+    blind = vision.delay + lost * vision.period
+    if blind == 0.0:
+        return
+    robot = scenario.robot
+    reaction = blind + scenario.control_period
+    speed = min(robot.max_speed, robot.max_acceleration * reaction)
+    way = speed * reaction + speed**2 / (2.0 * robot.max_acceleration)
+    for index, obstacle in enumerate(scenario.obstacles):
+        path = getattr(obstacle, "path", None)
+        if stands(obstacle) or (path is not None and path[0][0] > 0.0):
+            continue
+        gap = distance(obstacle, scenario.start) - obstacle.contact_distance(robot.radius)
+        toward = own_speed(obstacle, scenario.time_limit) * (reaction + speed / robot.max_acceleration)
+        if gap < way + toward:
+            yield ResultWarning(
+                UNSEEN_AT_START,
+                f"obstacles[{index}]",
+                f"obstacles[{index}] ({type(obstacle).__name__}) is {max(gap, 0.0):.3g} m from the robot at the start, "
+                f"and obstacle_vision may tell of it {blind:.3g} s later only: until then the law takes the place to "
+                f"be free, and the robot may be unable to stop; keep {way + toward:.3g} m, or give a shorter delay",
+            )
+            return
 
 
 def late_cameras(scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:
