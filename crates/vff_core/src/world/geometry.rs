@@ -176,30 +176,63 @@ fn point_velocity<R: Real, B: Wide<R>>(
 ) -> (Vector2<R>, R::Mask) {
     match body.shape {
         Shape::Disc { .. } => (widened(body.state.velocity), R::Mask::none()),
+        Shape::Rectangle { .. } if B::wide_mask(!at_rest(body.state.velocity)).any() => {
+            moving_point(body, robot)
+        }
         Shape::Rectangle {
             half_length,
             half_width,
             axis,
         } => {
-            let own: Vector2<R> = widened(body.state.velocity);
-            let moving = B::wide_mask(!at_rest(body.state.velocity)).any();
-            let local = into_axes(robot.position - widened(body.state.position), axis);
-            let velocity = if moving {
-                robot.velocity - own
-            } else {
-                robot.velocity
-            };
-            let velocity = into_axes(velocity, axis);
-            let beside = local.x.abs().le(half_length.wide());
-            let abreast = local.y.abs().le(half_width.wide());
-            let slide = Vector2::new(
-                R::select(beside, velocity.x, R::zero()),
-                R::select(abreast, velocity.y, R::zero()),
-            );
-            let slide = out_of_axes(slide, axis);
-            (if moving { own + slide } else { slide }, beside | abreast)
+            let half = [half_length, half_width];
+            sliding(
+                body.state.position,
+                (half, axis),
+                robot.position,
+                robot.velocity,
+            )
         }
     }
+}
+
+/// The same for a rectangle that moves. Few do: inlined, it makes the compiler take the lanes of all apart.
+#[inline(never)]
+fn moving_point<R: Real, B: Wide<R>>(
+    body: &Body<B>,
+    robot: &RobotState<R>,
+) -> (Vector2<R>, R::Mask) {
+    let own = widened(body.state.velocity);
+    let Shape::Rectangle {
+        half_length,
+        half_width,
+        axis,
+    } = body.shape
+    else {
+        return (own, R::Mask::none());
+    };
+    let rectangle = ([half_length, half_width], axis);
+    let relative = robot.velocity - own;
+    let (slide, along) = sliding(body.state.position, rectangle, robot.position, relative);
+    (own + slide, along)
+}
+
+/// Velocity along the faces of a rectangle of half sides and an axis, and where there is a face.
+#[inline(always)]
+fn sliding<R: Real, B: Wide<R>>(
+    center: [B; 2],
+    ([half_length, half_width], axis): ([B; 2], Vector2<B>),
+    position: Vector2<R>,
+    velocity: Vector2<R>,
+) -> (Vector2<R>, R::Mask) {
+    let local = into_axes(position - widened(center), axis);
+    let velocity = into_axes(velocity, axis);
+    let beside = local.x.abs().le(half_length.wide());
+    let abreast = local.y.abs().le(half_width.wide());
+    let slide = Vector2::new(
+        R::select(beside, velocity.x, R::zero()),
+        R::select(abreast, velocity.y, R::zero()),
+    );
+    (out_of_axes(slide, axis), beside | abreast)
 }
 
 /// Lanes whose segment from robot to goal meets the rectangle, and the cross product of the
