@@ -49,7 +49,7 @@ def distance(obstacle: Obstacle, point: Pair) -> float:
     Parameters
     ----------
     obstacle : Obstacle
-        One that stands.
+        Where it is at time 0 counts.
     point : tuple of float
         Where the center of the robot is, in m.
 

@@ -6,8 +6,12 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
+import numpy as np
+
 from hrsafety._arguments import instance
 from hrsafety.navigation.free_space import distance, stands
+from hrsafety.navigation.obstacles.base import Obstacle
+from hrsafety.navigation.obstacles.moving_rectangle import Mobile
 from hrsafety.navigation.regions import region_radii
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
@@ -24,7 +28,7 @@ BLIND_NEARBY = "blind_nearby"
 UNSEEN_AT_START = "unseen_at_start"
 
 LOST = 1e-3
-"""So many frames may be lost one after the other that more have this probability."""
+"""Probability of more lost frames, one after the other, than a warning counts on."""
 
 
 class Sensing(NamedTuple):
@@ -172,7 +176,9 @@ def _unseen_at_start(scenario: Scenario, vision: Vision | None) -> Iterator[Resu
     """Warn of obstacles that the robot may be unable to stop for once a camera has told of them first."""
     if vision is None:
         return
-    lost = math.ceil(math.log(LOST) / math.log(vision.drop_probability)) if vision.drop_probability > 0.0 else 0
+    dropped = vision.drop_probability
+    # n + 1 frames in a row are lost with the probability p^(n + 1).
+    lost = max(math.ceil(math.log(LOST) / math.log(dropped)) - 1, 0) if dropped > 0.0 else 0
     blind = vision.delay + lost * vision.period
     if blind == 0.0:
         return
@@ -181,10 +187,7 @@ def _unseen_at_start(scenario: Scenario, vision: Vision | None) -> Iterator[Resu
     speed = min(robot.max_speed, robot.max_acceleration * reaction)
     way = speed * reaction + speed**2 / (2.0 * robot.max_acceleration)
     for index, obstacle in enumerate(scenario.obstacles):
-        path = getattr(obstacle, "path", None)
-        if stands(obstacle) or (path is not None and path[0][0] > 0.0):
-            continue
-        gap = distance(obstacle, scenario.start) - obstacle.contact_distance(robot.radius)
+        gap = math.inf if stands(obstacle) else _gap_at_start(scenario, obstacle)
         toward = own_speed(obstacle, scenario.time_limit) * (reaction + speed / robot.max_acceleration)
         if gap < way + toward:
             yield ResultWarning(
@@ -194,7 +197,19 @@ def _unseen_at_start(scenario: Scenario, vision: Vision | None) -> Iterator[Resu
                 f"and obstacle_vision may tell of it {blind:.3g} s later only: until then the law takes the place to "
                 f"be free, and the robot may be unable to stop; keep {way + toward:.3g} m, or give a shorter delay",
             )
-            return
+
+
+def _gap_at_start(scenario: Scenario, obstacle: Obstacle) -> float:
+    """Return how far robot and obstacle are apart at the start in m, infinite for one who is absent then."""
+    x, y = scenario.start
+    if isinstance(obstacle, Mobile) and obstacle.path is not None:
+        time, places = obstacle.path
+        if not time[0] <= 0.0 <= time[-1]:
+            return math.inf
+        # Distances are from the first sample, which may be before the start.
+        ahead = [np.interp(0.0, time, along).item() - along[0] for along in zip(*places, strict=True)]
+        x, y = x - ahead[0], y - ahead[1]
+    return distance(obstacle, (x, y)) - obstacle.contact_distance(scenario.robot.radius)
 
 
 def late_cameras(scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:

@@ -112,8 +112,10 @@ class Vision(Parameters):
     """How the position of a body is measured during a run.
 
     Frames are exposed at whole multiples of the period and known a delay later; some give nothing.
-    The velocity is estimated; nothing else is known. Defaults are the vision of the source (section
-    6.2.2 and appendix D.4 of Zeng 2011); it states neither delay nor lost frames.
+    The velocity is estimated; nothing else is known. Until the first frame is known, what moves is taken to
+    be absent: results carry the warning ``"unseen_at_start"`` where the robot may be unable to stop then.
+    Defaults are the vision of the source (section 6.2.2 and appendix D.4 of Zeng 2011); it states neither
+    delay nor lost frames.
 
     Parameters
     ----------
