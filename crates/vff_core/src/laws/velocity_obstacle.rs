@@ -301,23 +301,21 @@ impl VelocityObstaclePlanner {
         let slowest = velocity * ((reachable.max_speed / speed).min(1.0));
         let still = Vector2::select(speed > 0.0, slowest, velocity);
         let mut best = (f64::NEG_INFINITY, still);
-        // What is touched too early at one velocity mostly is so at the next.
-        let mut blocking = 0;
         for velocity in candidates {
             if !reachable.holds(velocity) {
                 continue;
             }
-            // One contact that is not later than the latest known one is enough.
-            let known = (blocking < self.cones.len()).then_some(blocking);
+            // One contact that is not later than the latest known one is enough, and what forbids a velocity mostly
+            // forbids its neighbors.
             let mut time = f64::INFINITY;
-            for index in known.into_iter().chain(0..self.cones.len()) {
-                let cone = &self.cones[index];
-                if cone.is_beside(velocity) {
+            for index in std::iter::once(self.blocking.get()).chain(0..self.cones.len()) {
+                let cone = self.cones.get(index);
+                let Some(cone) = cone.filter(|cone| !cone.is_beside(velocity)) else {
                     continue;
-                }
+                };
                 time = time.min(cone.time_to_contact(velocity, &self.edged));
                 if time <= best.0 {
-                    blocking = index;
+                    self.blocking.set(index);
                     break;
                 }
             }
