@@ -14,9 +14,13 @@ import numpy as np
 import pytest
 
 from hrsafety import navigation as nav
+from hrsafety.benchmarks import SUITES, entry
+from hrsafety.benchmarks.protocol import Case
+from hrsafety.benchmarks.reacting import SCENES
 
 ROUNDS = 5
 AWAY = 60.0
+FASTEST = SUITES["bottleneck"].fastest or 0.0  # of the people, in m/s
 LAWS: dict[str, nav.Law] = {
     "field": nav.VirtualForceField(),
     "Masoud": nav.Masoud(),
@@ -71,3 +75,19 @@ def test_growth(benchmark: Any, law: str) -> None:
     benchmark.extra_info["us_of_none_10_100_and_1000_far"] = [round(each, 2) for each in (none, ten, hundred, away)]
     benchmark.extra_info["hundred_over_ten"] = round(hundred / ten, 2)
     benchmark.extra_info["far_over_none"] = round(away / none, 1)
+
+
+@pytest.mark.benchmark(group="a control period deep in a crowd, one core")
+def test_before_a_door(benchmark: Any) -> None:
+    """A hundred people leave a room, and a velocity obstacle finds hardly a velocity that is free."""
+    taken = {}
+    for word in ("velocity_obstacle", "field"):
+        case = Case(cases=range(1), entry=entry(word), person_speed=FASTEST, data=None, seed=0, threads=1)
+        world = SCENES["bottleneck"](case, 1)
+        begin = time.process_time()
+        run = nav.crowd.simulate_crowd(world)
+        periods = run.time[-1] / (world.robots[0].control_period or world.step)
+        taken[word] = (time.process_time() - begin) / float(periods)
+    benchmark.pedantic(nav.crowd.simulate_crowd, (world,), rounds=1)
+    benchmark.extra_info["us_of_people_and_field"] = round(1e6 * taken["field"])
+    benchmark.extra_info["us_of_people_and_velocity_obstacle"] = round(1e6 * taken["velocity_obstacle"])
