@@ -234,12 +234,11 @@ fn sample<R: Real, L: Law<R>, C: Recorder<R>>(
     if !runs.running.any() {
         return Ok(());
     }
-    let robot = observe(runs, measured);
     let situation = Situation {
         time,
         bodies: known,
         ages: &[],
-        robot,
+        robot: observe(runs, measured),
         heading: runs.scenario.rules.heading,
         interval: clock.interval,
         stop: block.stop,

@@ -108,15 +108,10 @@ impl<R: Real> Approach<R> {
         let distance = offset.distance_squared.sqrt();
         let inverse = R::splat(1.0) / distance;
         let outward = offset.vector * inverse;
-        // The nearest point of a rectangle's face slides along with the robot.
-        let (point_velocity, sliding) = point_velocity(body, robot);
-        let relative = robot.velocity - point_velocity;
+        let point = NearestPoint::of(body, &offset, robot, goal);
+        let relative = robot.velocity - point.velocity;
         let bearing_rate = outward.perp(&relative) * inverse;
-        // For a disc straight from its centre, so that one on the goal gives exactly zero.
-        let to_goal = match body.shape {
-            Shape::Disc { .. } => goal - widened(body.state.position),
-            Shape::Rectangle { .. } => goal - (robot.position - offset.vector),
-        };
+        let to_goal = point.to_goal;
         let away = to_goal
             .dot(&to_goal)
             .gt(R::splat(ON_THE_GOAL * ON_THE_GOAL));
@@ -130,8 +125,8 @@ impl<R: Real> Approach<R> {
             offset: offset.vector,
             distance,
             range_rate: outward.dot(&relative),
-            bearing_rate: R::select(sliding, R::zero(), bearing_rate),
-            goal_bearing_rate: goal_bearing_rate(body, aim, point_velocity),
+            bearing_rate: R::select(point.slides, R::zero(), bearing_rate),
+            goal_bearing_rate: point.goal_bearing_rate(aim),
             angle: unsigned_angle(cross, dot),
             shortest_side: cross.sign(),
             collinear: behind,
@@ -141,23 +136,70 @@ impl<R: Real> Approach<R> {
     }
 }
 
-/// `alphadot = t_W.(-V_o)/|W|` in rad/s; 0 for an obstacle exactly on the goal.
-#[inline(always)]
-fn goal_bearing_rate<R: Real, B: Wide<R>>(
-    body: &Body<B>,
+/// The point of an obstacle that distances are measured from.
+struct NearestPoint<R: Real> {
+    /// Velocity in m/s: that of the obstacle, and along a face that of the robot relative to it.
+    velocity: Vector2<R>,
+    /// Where it slides along a face with the robot.
+    slides: R::Mask,
+    /// Where its direction from the goal may change.
+    moves: R::Mask,
+    /// From it to the goal, in m.
     to_goal: Vector2<R>,
-    point_velocity: Vector2<R>,
-) -> R {
-    let turning = match body.shape {
-        Shape::Disc { .. } => B::wide_mask(!at_rest(body.state.velocity)),
-        Shape::Rectangle { .. } => R::Mask::splat(true),
-    };
-    if !turning.any() {
-        return R::zero();
+}
+
+impl<R: Real> NearestPoint<R> {
+    /// Rectangles keep their heading.
+    #[inline(always)]
+    fn of<B: Wide<R>>(
+        body: &Body<B>,
+        offset: &Offset<R>,
+        robot: &RobotState<R>,
+        goal: Vector2<R>,
+    ) -> Self {
+        let (center, own) = (widened(body.state.position), widened(body.state.velocity));
+        match body.shape {
+            Shape::Disc { .. } => Self {
+                velocity: own,
+                slides: R::Mask::none(),
+                moves: B::wide_mask(!at_rest(body.state.velocity)),
+                // Straight from its center, so that one on the goal gives exactly zero.
+                to_goal: goal - center,
+            },
+            Shape::Rectangle {
+                half_length,
+                half_width,
+                axis,
+            } => {
+                let local = into_axes(robot.position - center, axis);
+                // No branch for those that stand: with one the compiler takes the lanes of all apart.
+                let velocity = into_axes(robot.velocity - own, axis);
+                let beside = local.x.abs().le(half_length.wide());
+                let abreast = local.y.abs().le(half_width.wide());
+                let slide = Vector2::new(
+                    R::select(beside, velocity.x, R::zero()),
+                    R::select(abreast, velocity.y, R::zero()),
+                );
+                Self {
+                    velocity: own + out_of_axes(slide, axis),
+                    slides: beside | abreast,
+                    moves: R::Mask::splat(true),
+                    to_goal: goal - (robot.position - offset.vector),
+                }
+            }
+        }
     }
-    let length_squared = to_goal.dot(&to_goal);
-    let rate = -to_goal.perp(&point_velocity) / length_squared;
-    R::select(length_squared.gt(R::zero()) & turning, rate, R::zero())
+
+    /// `alphadot = t_W.(-V_o)/|W|` in rad/s; 0 for an obstacle exactly on the goal.
+    #[inline(always)]
+    fn goal_bearing_rate(&self, to_goal: Vector2<R>) -> R {
+        if !self.moves.any() {
+            return R::zero();
+        }
+        let length_squared = to_goal.dot(&to_goal);
+        let rate = -to_goal.perp(&self.velocity) / length_squared;
+        R::select(length_squared.gt(R::zero()) & self.moves, rate, R::zero())
+    }
 }
 
 /// Where both components are zero, of either sign.
@@ -165,74 +207,6 @@ fn goal_bearing_rate<R: Real, B: Wide<R>>(
 pub(crate) fn at_rest<B: Real>([x, y]: [B; 2]) -> B::Mask {
     let zero = B::zero();
     x.le(zero) & x.ge(zero) & y.le(zero) & y.ge(zero)
-}
-
-/// Velocity of the point that distances are measured from, and where it slides along a face: that of
-/// the obstacle, and along a face that of the robot relative to it. Rectangles keep their heading.
-#[inline(always)]
-fn point_velocity<R: Real, B: Wide<R>>(
-    body: &Body<B>,
-    robot: &RobotState<R>,
-) -> (Vector2<R>, R::Mask) {
-    match body.shape {
-        Shape::Disc { .. } => (widened(body.state.velocity), R::Mask::none()),
-        Shape::Rectangle { .. } if B::wide_mask(!at_rest(body.state.velocity)).any() => {
-            moving_point(body, robot)
-        }
-        Shape::Rectangle {
-            half_length,
-            half_width,
-            axis,
-        } => {
-            let half = [half_length, half_width];
-            sliding(
-                body.state.position,
-                (half, axis),
-                robot.position,
-                robot.velocity,
-            )
-        }
-    }
-}
-
-/// The same for a rectangle that moves. Few do: inlined, it makes the compiler take the lanes of all apart.
-#[inline(never)]
-fn moving_point<R: Real, B: Wide<R>>(
-    body: &Body<B>,
-    robot: &RobotState<R>,
-) -> (Vector2<R>, R::Mask) {
-    let own = widened(body.state.velocity);
-    let Shape::Rectangle {
-        half_length,
-        half_width,
-        axis,
-    } = body.shape
-    else {
-        return (own, R::Mask::none());
-    };
-    let rectangle = ([half_length, half_width], axis);
-    let relative = robot.velocity - own;
-    let (slide, along) = sliding(body.state.position, rectangle, robot.position, relative);
-    (own + slide, along)
-}
-
-/// Velocity along the faces of a rectangle of half sides and an axis, and where there is a face.
-#[inline(always)]
-fn sliding<R: Real, B: Wide<R>>(
-    center: [B; 2],
-    ([half_length, half_width], axis): ([B; 2], Vector2<B>),
-    position: Vector2<R>,
-    velocity: Vector2<R>,
-) -> (Vector2<R>, R::Mask) {
-    let local = into_axes(position - widened(center), axis);
-    let velocity = into_axes(velocity, axis);
-    let beside = local.x.abs().le(half_length.wide());
-    let abreast = local.y.abs().le(half_width.wide());
-    let slide = Vector2::new(
-        R::select(beside, velocity.x, R::zero()),
-        R::select(abreast, velocity.y, R::zero()),
-    );
-    (out_of_axes(slide, axis), beside | abreast)
 }
 
 /// Lanes whose segment from robot to goal meets the rectangle, and the cross product of the
