@@ -225,6 +225,8 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
     ) -> (Vector2<R>, R::Mask) {
         let critical = self.fill_slots(situation);
         self.break_ties();
+        // Without a stabilizing force only a record of the terms shows Omega.
+        let dissipates = RECORD || self.stabilizing != Stabilizing::Off;
         let robot = self.dissipative(&situation.robot);
         let mut total = Vector2::zeros();
         self.dissipation = Dissipation::zero();
@@ -236,9 +238,11 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
             let both = total + (slot.repulsive + slot.detouring);
             total = Vector2::select(slot.approach.active, both, total);
             *latched = R::select(slot.approach.active, slot.detour.side, R::zero());
-            let seen = (&slot.approach, &slot.repulsion, &slot.turning, &slot.detour);
-            self.dissipation
-                .add(&self.gains, &robot, &situation.bodies[slot.index], seen);
+            if dissipates {
+                let seen = (&slot.approach, &slot.repulsion, &slot.turning, &slot.detour);
+                self.dissipation
+                    .add(&self.gains, &robot, &situation.bodies[slot.index], seen);
+            }
         }
         (total, critical)
     }
