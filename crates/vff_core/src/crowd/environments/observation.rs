@@ -4,7 +4,7 @@ use crate::crowd::environments::settings::{Axes, Settings};
 use crate::crowd::people::PersonState;
 use crate::crowd::simulation::Simulation;
 use crate::crowd::walls::Wall;
-use crate::lanes::Vector2;
+use crate::lanes::{Planar, Vector2};
 use crate::world::shape::{PlacedShape, cast_on_disc};
 
 type Vector = Vector2<f64>;
@@ -14,39 +14,35 @@ pub const BOUND: f64 = 100.0;
 /// Range of the lidar, in m.
 pub const RANGE: f64 = 10.0;
 
-/// A rotation of the plane.
+/// Axes of an observation in those of the world: none if they are the same, else the x axis.
 #[derive(Clone, Copy)]
-struct Turn {
-    cos: f64,
-    sin: f64,
-}
+struct Turn(Option<Vector>);
 
 impl Turn {
-    /// From the axes of the world into those of an observation.
     fn of(axes: Axes, to_goal: Vector) -> Self {
-        let distance = to_goal.norm();
         match axes {
-            Axes::Goal if distance > 0.0 => Self {
-                cos: to_goal.x / distance,
-                sin: to_goal.y / distance,
-            },
-            Axes::Goal | Axes::World => Self { cos: 1.0, sin: 0.0 },
+            Axes::World => Self(None),
+            Axes::Goal => {
+                let distance = to_goal.norm();
+                Self((distance > 0.0).then(|| to_goal / distance))
+            }
         }
     }
 
+    #[inline(always)]
     fn into_axes(self, vector: Vector) -> [f64; 2] {
-        [
-            vector.x * self.cos + vector.y * self.sin,
-            vector.y * self.cos - vector.x * self.sin,
-        ]
+        match self.0 {
+            None => vector.into(),
+            Some(x) => [x.dot(&vector), x.perp(&vector)],
+        }
     }
 
     fn out_of_axes(self, angle: f64) -> Vector {
         let (sin, cos) = angle.sin_cos();
-        Vector::new(
-            cos * self.cos - sin * self.sin,
-            sin * self.cos + cos * self.sin,
-        )
+        match self.0 {
+            None => Vector::new(cos, sin),
+            Some(x) => x * cos + x.left_normal() * sin,
+        }
     }
 }
 
@@ -66,39 +62,45 @@ pub(super) struct Ranking {
 }
 
 impl Ranking {
-    /// The nearest people of those present by the distance of their centers, then by number.
-    fn nearest(&mut self, simulation: &Simulation, robot: Vector, most: usize) -> &[Ranked] {
-        let period = simulation.world().period;
-        self.present.clear();
-        let people = simulation.people().iter().enumerate();
-        let present = people.filter(|(_, person)| person.is_present());
-        self.present.extend(
-            present.map(|(number, person)| (period.wrap(person.position - robot).norm(), number)),
-        );
-        // Distances that are no numbers, at the end of a world that diverges, have no ranks.
-        let few = self.present.len() <= FEW && self.present.iter().all(|one| !one.0.is_nan());
-        if few {
-            self.rank();
-        } else {
+    /// The nearest people of those present by the distance of their centers, then by number; `ways`: to them, NaN to
+    /// those who are absent.
+    fn nearest(&mut self, people: &[PersonState], ways: &[Vector], most: usize) -> &[Ranked] {
+        if !self.rank(ways) {
+            self.present.clear();
+            let ways = people.iter().zip(ways).enumerate();
+            let present = ways.filter(|(_, (person, _))| person.is_present());
+            let ranked = present.map(|(number, (_, way))| (way.norm(), number));
+            self.present.extend(ranked);
             self.insert(most);
         }
         &self.nearest[..most.min(self.nearest.len())]
     }
 
-    /// Puts a few people at the places of their ranks.
-    fn rank(&mut self) {
-        let mut ranks = [0; FEW];
-        for (later, (distance, _)) in self.present.iter().enumerate() {
-            for (earlier, before) in self.present[..later].iter().enumerate() {
-                let first = before.0 <= *distance;
-                ranks[later] += usize::from(first);
-                ranks[earlier] += usize::from(!first);
+    /// Puts a few people at the places of their ranks; whether that is done.
+    fn rank(&mut self, ways: &[Vector]) -> bool {
+        let (mut distances, mut ranks) = ([0.0; FEW], [0; FEW]);
+        if ways.len() > FEW {
+            return false;
+        }
+        for (distance, way) in distances.iter_mut().zip(ways) {
+            *distance = way.norm();
+            // Those who are absent, or lost at the end of a world that diverges, have no rank.
+            if distance.is_nan() {
+                return false;
             }
         }
-        self.nearest.resize(self.present.len(), (0.0, 0));
-        for (rank, one) in ranks.into_iter().zip(&self.present) {
-            self.nearest[rank] = *one;
+        for later in 1..ways.len() {
+            for earlier in 0..later {
+                let first = usize::from(distances[earlier] <= distances[later]);
+                ranks[later] += first;
+                ranks[earlier] += 1 - first;
+            }
         }
+        self.nearest.resize(ways.len(), (0.0, 0));
+        for (number, (distance, rank)) in distances.iter().zip(ranks).take(ways.len()).enumerate() {
+            self.nearest[rank] = (*distance, number);
+        }
+        true
     }
 
     /// Inserts one after the other among the nearest before.
@@ -115,10 +117,10 @@ impl Ranking {
 }
 
 /// Writes an observation; `own` goal and greatest speed are those of the robot that is driven. Returns how many
-/// people of it are there.
+/// people of it are there. `ways`: from the robot to the people, NaN to those who are absent.
 pub(super) fn observe(
     settings: &Settings,
-    simulation: &Simulation,
+    (simulation, ways): (&Simulation, &[Vector]),
     ranking: &mut Ranking,
     into: &mut [f32],
 ) -> usize {
@@ -136,15 +138,15 @@ pub(super) fn observe(
     }
     head[5] = bounded(simulation.time() / world.time_limit, 0.0, 1.0);
     let (people, rays) = rest.split_at_mut(Settings::PERSON * settings.people);
-    let nearest = ranking.nearest(simulation, state.position, settings.people);
+    let nearest = ranking.nearest(simulation.people(), ways, settings.people);
+    let radius = setup.radius();
     let (there, nobody) = people.split_at_mut(Settings::PERSON * nearest.len());
     nobody.fill(0.0);
     for (slots, (distance, number)) in there.chunks_exact_mut(Settings::PERSON).zip(nearest) {
         let person: &PersonState = &simulation.people()[*number];
-        let way = world.period.wrap(person.position - state.position);
-        let [x, y] = turn.into_axes(way);
+        let [x, y] = turn.into_axes(ways[*number]);
         let [vx, vy] = turn.into_axes(person.velocity - state.velocity);
-        let gap = distance - setup.radius() - person.radius;
+        let gap = distance - radius - person.radius;
         for (slot, value) in slots.iter_mut().zip([x, y, vx, vy, gap]) {
             *slot = bounded(value, -BOUND, BOUND);
         }

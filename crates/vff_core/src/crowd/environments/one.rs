@@ -5,11 +5,13 @@ use crate::crowd::environments::layout::seed_of;
 use crate::crowd::environments::observation::{Ranking, observe};
 use crate::crowd::environments::settings::{Action, Settings};
 use crate::crowd::metrics::RobotMetrics;
+use crate::crowd::neighbors::grid::Period;
 use crate::crowd::simulation::{DecisionRoom, Simulation};
 use crate::crowd::world_lanes::WorldLanes;
 use crate::error::Result;
 use crate::lanes::Vector2;
 use crate::run::Request;
+use smallvec::SmallVec;
 
 type Vector = Vector2<f64>;
 
@@ -117,7 +119,7 @@ pub struct Environment {
     distance: f64,
     clearance: f64,
     /// From the robot to the people at the last instant; NaN for who was absent.
-    ways: Vec<Vector>,
+    ways: SmallVec<[Vector; 5]>,
 }
 
 impl Environment {
@@ -143,7 +145,7 @@ impl Environment {
             history: History::default(),
             distance: f64::NAN,
             clearance: f64::INFINITY,
-            ways: Vec::new(),
+            ways: SmallVec::new(),
         };
         environment.open(settings);
         Ok(environment)
@@ -193,7 +195,8 @@ impl Environment {
 
     /// Writes what the robot sees; returns how many of the people are there.
     pub fn observe(&self, settings: &Settings, shared: &mut Shared, into: &mut [f32]) -> usize {
-        observe(settings, &self.simulation, &mut shared.ranking, into)
+        let seen = (&self.simulation, &self.ways[..]);
+        observe(settings, seen, &mut shared.ranking, into)
     }
 
     /// Metrics of the episode up to now, if positions are kept.
@@ -312,6 +315,16 @@ impl Environment {
     /// Least gap to people since the last look, in straight relative motion, in m.
     fn look(&mut self, settings: &Settings) -> f64 {
         let period = settings.world.period;
+        if period == Period::default() {
+            self.look_along(|way| way)
+        } else {
+            self.look_along(|way| period.wrap(way))
+        }
+    }
+
+    /// The same, with differences of positions as the world has them.
+    #[inline(always)]
+    fn look_along(&mut self, wrap: impl Fn(Vector) -> Vector) -> f64 {
         let robot = &self.simulation.robots()[0];
         let (place, radius) = (robot.state().position, robot.radius());
         let mut least = f64::INFINITY;
@@ -322,11 +335,11 @@ impl Environment {
                 *before = Vector::repeat(f64::NAN);
                 continue;
             }
-            let way = period.wrap(person.position - place);
+            let way = wrap(person.position - place);
             let distance = if before.x.is_nan() {
                 way.norm()
             } else {
-                nearest_between(way - period.wrap(way - *before), way)
+                nearest_between(way - wrap(way - *before), way)
             };
             *before = way;
             least = least.min(distance - radius - person.radius);
