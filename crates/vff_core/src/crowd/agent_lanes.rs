@@ -62,12 +62,22 @@ pub(super) struct AgentLanes {
     pub all: Vec<LaneAgent>,
     /// What the people want.
     pub intentions: Vec<Intention>,
+    /// Places of two who may be near each other: a person, and another one who comes later, then a robot.
+    pub pairs: Vec<(usize, usize)>,
 }
 
 impl AgentLanes {
     /// Makes room for people, who stay, and robots.
     pub fn open(&mut self, people: usize, robots: usize) {
-        self.all.resize(people + robots, LaneAgent::nobody());
+        let all = people + robots;
+        if (self.people(), self.all.len()) != (people, all) {
+            let beside = |one| (one + 1..people).map(move |other| (one, other));
+            let robots = |one| (people..all).map(move |robot| (one, robot));
+            self.pairs.clear();
+            self.pairs.extend((0..people).flat_map(beside));
+            self.pairs.extend((0..people).flat_map(robots));
+        }
+        self.all.resize(all, LaneAgent::nobody());
         self.intentions.resize(people, Intention::none());
         for intention in &mut self.intentions {
             intention.walks = LaneMask::none();
@@ -91,10 +101,16 @@ impl AgentLanes {
     }
 
     /// Moves the people by their decisions, which hold for a step in s: velocities, or, where there is a cap on the
-    /// speed as a multiple of the desired one, accelerations.
+    /// speed as a multiple of the desired one, accelerations. Returns where everybody is at a finite place.
     #[inline(always)]
-    pub fn advance(&mut self, decisions: &[Vectors], cap: Option<f64>, step: f64) {
+    pub fn advance(
+        &mut self,
+        decisions: &[Vectors],
+        cap: Option<f64>,
+        step: f64,
+    ) -> LaneMask<WIDTH> {
         let step = Each::splat(step);
+        let mut finite = LaneMask::splat(true);
         let people = self.all.iter_mut().zip(&self.intentions);
         for ((agent, intention), decision) in people.zip(decisions) {
             agent.velocity = if let Some(cap) = cap {
@@ -107,22 +123,16 @@ impl AgentLanes {
                 *decision
             };
             agent.position += agent.velocity * step;
+            let state = agent.position + agent.velocity;
+            finite = finite & state.dot(&state).lt(Each::splat(f64::INFINITY));
         }
+        finite
     }
 
     /// How many people there are.
     #[inline(always)]
     pub fn people(&self) -> usize {
         self.intentions.len()
-    }
-
-    /// Those who may be near a person and come later: people, then robots.
-    #[inline(always)]
-    pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let (people, all) = (self.people(), self.all.len());
-        let mutual =
-            (0..people).flat_map(move |one| (one + 1..people).map(move |other| (one, other)));
-        mutual.chain((0..people).flat_map(move |one| (people..all).map(move |robot| (one, robot))))
     }
 
     /// Two who are within a distance in m of each other, if they are in any world.
@@ -164,7 +174,7 @@ impl AgentLanes {
             let time = Each::splat(relaxation_time);
             sums.push(Planar::<Each>::over(wanted - own.velocity, time));
         }
-        for (one, other) in self.pairs() {
+        for &(one, other) in &self.pairs {
             let Some(pair) = self.pair((one, other), cutoff) else {
                 continue;
             };

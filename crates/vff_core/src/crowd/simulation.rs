@@ -36,8 +36,9 @@ struct CrowdParts {
     sources: Vec<Source>,
     groups: Groups,
     room: Box<DecisionRoom>,
-    /// Whether people have made the next motion, together with those of other worlds.
-    moved: bool,
+    /// Whether people have made the next motion, together with those of other worlds; and whether somebody may no
+    /// longer be at a finite place then.
+    moved: Option<bool>,
     reach: f64,
     /// Whether somebody follows a recording.
     replays: bool,
@@ -68,7 +69,7 @@ impl CrowdParts {
             sources: Vec::new(),
             groups: Groups::default(),
             room: Box::default(),
-            moved: false,
+            moved: None,
             reach: 0.0,
             replays: false,
             record: record.then(Trajectories::default),
@@ -95,7 +96,7 @@ impl CrowdParts {
             let robot = robot.map_err(|error| error.within(&format!("robots[{index}]")))?;
             self.robots.push(robot);
         }
-        self.moved = false;
+        self.moved = None;
         self.sources.clear();
         let sources = world.sources.iter().enumerate();
         self.sources
@@ -124,8 +125,8 @@ impl CrowdParts {
         if people.is_empty() {
             return false;
         }
-        if std::mem::take(&mut self.moved) {
-            return true;
+        if let Some(doubtful) = self.moved.take() {
+            return doubtful;
         }
         let DecisionRoom {
             decisions,
@@ -358,15 +359,16 @@ impl Simulation {
         self.0.end()
     }
 
-    /// The people, to be moved together with those of other worlds by what they decide.
-    pub(super) fn move_people(&mut self) -> &mut [PersonState] {
-        self.0.parts.moved = true;
+    /// The people, to be moved together with those of other worlds by what they decide; `doubtful`: whether somebody
+    /// may no longer be at a finite place then.
+    pub(super) fn move_people(&mut self, doubtful: bool) -> &mut [PersonState] {
+        self.0.parts.moved = Some(doubtful);
         &mut self.0.parts.people
     }
 
     /// Whether the people have made the next motion.
     pub(super) fn people_have_moved(&self) -> bool {
-        self.0.parts.moved
+        self.0.parts.moved.is_some()
     }
 
     /// The robots as others see them.

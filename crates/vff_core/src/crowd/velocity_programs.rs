@@ -7,15 +7,15 @@ use crate::laws::planning::half_planes::{HalfPlane, PARALLEL, Solver};
 
 /// The constraint on the velocity of one person of each world by another one.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Constraint {
+struct Constraint {
     /// Change of the own velocity in m/s.
-    pub change: Vectors,
+    change: Vectors,
     /// Direction of the line of permitted velocities.
-    pub direction: Vectors,
+    direction: Vectors,
     /// Distance in m; infinite where they are not near each other.
-    pub distance: Each,
+    distance: Each,
     /// Where they are.
-    pub near: LaneMask<WIDTH>,
+    near: LaneMask<WIDTH>,
 }
 
 /// A half-plane of each world.
@@ -33,15 +33,23 @@ pub(super) struct Objective {
 /// Places for half-planes, as many as there are others at least.
 const PLACES: usize = FEW.next_power_of_two();
 
+/// The constraints on the velocity of one person of each world, in the order of the others' numbers.
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    all: [Constraint; PLACES],
+    count: usize,
+}
+
 /// Half-planes of the people of some worlds.
 #[derive(Clone, Debug)]
 pub(super) struct VelocityPrograms {
-    /// For each person a row of the constraints by the others.
-    constraints: Vec<Vec<Constraint>>,
-    ranks: Vec<Each>,
+    /// One for each person.
+    rows: Vec<Row>,
+    ranks: [Each; PLACES],
     planes: [Plane; PLACES],
-    /// How many half-planes there are in each world.
-    counts: [usize; WIDTH],
+    /// How many half-planes there are in each world, and at most.
+    counts: Each,
+    most: usize,
     /// Those of one world, and its program if it has no solution.
     alone: Vec<HalfPlane>,
     solver: Solver,
@@ -50,10 +58,11 @@ pub(super) struct VelocityPrograms {
 impl Default for VelocityPrograms {
     fn default() -> Self {
         Self {
-            constraints: Vec::new(),
-            ranks: Vec::new(),
+            rows: Vec::new(),
+            ranks: [Each::zero(); PLACES],
             planes: [everything(); PLACES],
-            counts: [0; WIDTH],
+            counts: Each::zero(),
+            most: 0,
             alone: Vec::new(),
             solver: Solver::default(),
         }
@@ -63,17 +72,30 @@ impl Default for VelocityPrograms {
 impl VelocityPrograms {
     /// Nothing constrains any of so many people.
     pub fn open(&mut self, people: usize) {
-        self.constraints.resize_with(people, Vec::new);
-        for row in &mut self.constraints {
-            row.clear();
+        self.rows.resize(people, Row::empty());
+        for row in &mut self.rows {
+            row.count = 0;
         }
     }
 
-    /// Adds the constraint by somebody with a higher number than those before; robots have none.
+    /// Adds the constraint by somebody with a higher number than those before: a change of the own velocity and the
+    /// direction of the line of permitted ones, a distance in m, infinite where they are not near, and where they are.
+    /// Robots have none.
     #[inline(always)]
-    pub fn constrain(&mut self, person: usize, constraint: &Constraint) {
-        if let Some(row) = self.constraints.get_mut(person) {
-            row.push(*constraint);
+    pub fn constrain(
+        &mut self,
+        person: usize,
+        (change, direction): (Vectors, Vectors),
+        (distance, near): (Each, LaneMask<WIDTH>),
+    ) {
+        if let Some(row) = self.rows.get_mut(person)
+            && let Some(place) = row.all.get_mut(row.count)
+        {
+            // One by one: a copy of the whole would go through memory once more.
+            place.change = change;
+            place.direction = direction;
+            (place.distance, place.near) = (distance, near);
+            row.count += 1;
         }
     }
 
@@ -93,43 +115,40 @@ impl VelocityPrograms {
     /// Finds how many come before each: who is nearer, then who has a lower number.
     #[inline(always)]
     fn rank(&mut self, person: usize, most: usize) {
-        let row = &self.constraints[person];
-        let one = Each::splat(1.0);
-        let mut counts = Each::zero();
-        self.ranks.clear();
+        let row = self.rows[person].known();
+        let (one, none) = (Each::splat(1.0), Each::zero());
+        let mut counts = none;
         for (index, later) in row.iter().enumerate() {
-            let mut rank = Each::zero();
+            let mut rank = none;
             for (earlier, before) in self.ranks.iter_mut().zip(&row[..index]) {
                 let first = before.distance.le(later.distance);
-                rank += Each::select(first, one, Each::zero());
-                *earlier += Each::select(first, Each::zero(), one);
+                rank += Each::select(first, one, none);
+                *earlier += Each::select(first, none, one);
             }
-            self.ranks.push(rank);
-            counts += Each::select(later.near, one, Each::zero());
+            self.ranks[index] = rank;
+            counts += Each::select(later.near, one, none);
         }
-        self.counts = std::array::from_fn(|lane| place_of(counts.lane(lane)).min(most));
+        self.counts = counts.min(Each::splat(most as f64));
+        let counts = (0..WIDTH).map(|lane| place_of(self.counts.lane(lane)));
+        self.most = counts.max().unwrap_or(0);
     }
 
-    /// Writes the half-planes in that order.
+    /// Puts the half-planes into that order.
+    // By comparisons: numbers that are written lane by lane cannot be read side by side at once.
     #[inline(always)]
     fn line_up(&mut self, person: usize, velocity: Vectors) {
-        let row = &self.constraints[person];
-        let planes = &mut self.planes;
-        for (constraint, rank) in row.iter().zip(&self.ranks) {
-            let point = velocity + constraint.change;
-            for lane in 0..WIDTH {
-                let plane = &mut planes[place_of(rank.lane(lane))];
-                plane.point.x.set(lane, point.x.lane(lane));
-                plane.point.y.set(lane, point.y.lane(lane));
-                plane
-                    .direction
-                    .x
-                    .set(lane, constraint.direction.x.lane(lane));
-                plane
-                    .direction
-                    .y
-                    .set(lane, constraint.direction.y.lane(lane));
+        let row = self.rows[person].known();
+        for (place, plane) in self.planes[..self.most].iter_mut().enumerate() {
+            let place = Each::splat(place as f64);
+            let mut found = everything();
+            for (constraint, rank) in row.iter().zip(&self.ranks) {
+                let here = rank.le(place) & rank.ge(place);
+                let (change, direction) = (constraint.change, constraint.direction);
+                found.point = Planar::<Each>::select(here, change, found.point);
+                found.direction = Planar::<Each>::select(here, direction, found.direction);
             }
+            found.point = velocity + found.point;
+            *plane = found;
         }
     }
 
@@ -142,11 +161,10 @@ impl VelocityPrograms {
         let mut velocity = Planar::<Each>::select(speed.gt(max_speed), shorter, wanted);
         let mut failed = LaneMask::none();
         let mut failures = [0; WIDTH];
-        let most = self.counts.into_iter().max().unwrap_or(0);
-        for (index, plane) in self.planes[..most].iter().enumerate() {
+        for (index, plane) in self.planes[..self.most].iter().enumerate() {
             let violation = plane.violation(velocity);
-            let there = Each::from_fn(|lane| if index < self.counts[lane] { 1.0 } else { 0.0 });
-            let broken = violation.gt(Each::zero()) & there.gt(Each::zero()) & !failed;
+            let there = Each::splat(index as f64).lt(self.counts);
+            let broken = violation.gt(Each::zero()) & there & !failed;
             if !broken.any() {
                 continue;
             }
@@ -183,7 +201,7 @@ impl VelocityPrograms {
         max_speed: f64,
         best: Vector2<f64>,
     ) -> Vector2<f64> {
-        let planes = self.planes[..self.counts[lane]].iter();
+        let planes = self.planes[..place_of(self.counts.lane(lane))].iter();
         self.alone.clear();
         self.alone.extend(planes.map(|plane| HalfPlane {
             point: Planar::<Each>::lane(plane.point, lane).into(),
@@ -194,7 +212,28 @@ impl VelocityPrograms {
     }
 }
 
+impl Row {
+    fn empty() -> Self {
+        let nothing = Constraint {
+            change: Vectors::zeros(),
+            direction: Vectors::zeros(),
+            distance: Each::zero(),
+            near: LaneMask::none(),
+        };
+        Self {
+            all: [nothing; PLACES],
+            count: 0,
+        }
+    }
+
+    #[inline(always)]
+    fn known(&self) -> &[Constraint] {
+        &self.all[..self.count.min(PLACES)]
+    }
+}
+
 /// A half-plane of all velocities.
+#[inline(always)]
 fn everything() -> Plane {
     Plane {
         point: Vector2::zeros(),

@@ -11,7 +11,7 @@ use crate::crowd::people::{PersonState, Presence};
 use crate::crowd::simulation::Simulation;
 use crate::crowd::velocity_programs::VelocityPrograms;
 use crate::crowd::world::{CrowdWorld, PersonSetup};
-use crate::lanes::{Real, Vector2, vectors};
+use crate::lanes::{LaneMask, Mask, Real, Vector2, vectors};
 
 /// Fewest worlds that are worth the lanes.
 const WORTH: usize = 3;
@@ -69,11 +69,11 @@ impl WorldLanes {
             step: worlds[0].part(),
             lanes: self,
         };
-        pulp::Simd::vectorize(vectors, job);
+        let finite = pulp::Simd::vectorize(vectors, job);
         for (lane, world) in worlds.iter_mut().enumerate() {
             // Changes nothing but that no bound is checked.
             let lane = lane % WIDTH;
-            let people = world.move_people().iter_mut();
+            let people = world.move_people(!finite.lane(lane)).iter_mut();
             for (person, agent) in people.zip(&self.agents.all) {
                 let of = |vectors: &Vectors| Vector2::new(vectors.x.at(lane), vectors.y.at(lane));
                 (person.position, person.velocity) = (of(&agent.position), of(&agent.velocity));
@@ -90,10 +90,11 @@ struct Job<'a> {
 }
 
 impl pulp::NullaryFnOnce for Job<'_> {
-    type Output = ();
+    /// Where everybody is at a finite place.
+    type Output = LaneMask<WIDTH>;
 
     #[inline(always)]
-    fn call(self) {
+    fn call(self) -> Self::Output {
         let WorldLanes {
             agents,
             decisions,
@@ -112,7 +113,7 @@ impl pulp::NullaryFnOnce for Job<'_> {
             Model::SocialForce2000(_) | Model::CollisionFreeSpeed(_) => {}
         }
         let cap = self.model.is_force().then(|| self.model.cap());
-        agents.advance(decisions, cap, self.step);
+        agents.advance(decisions, cap, self.step)
     }
 }
 

@@ -5,7 +5,7 @@ use crate::crowd::models::reciprocal_people::{DiscPair, ReciprocalPeople, away, 
 use crate::crowd::neighbors::mutual::Known;
 use crate::crowd::neighbors::pairs::Each;
 use crate::crowd::pedestrian::{Around, Decision, Room, Walker, awareness_of, deciding};
-use crate::crowd::velocity_programs::{Constraint, Objective, VelocityPrograms};
+use crate::crowd::velocity_programs::{Objective, VelocityPrograms};
 use crate::lanes::{Mask, Planar, Real, Vector2};
 use crate::laws::planning::half_planes::HalfPlane;
 
@@ -92,7 +92,7 @@ impl ReciprocalPeople {
     #[inline(always)]
     fn constrain_in_lanes(&self, agents: &AgentLanes, step: f64, programs: &mut VelocityPrograms) {
         programs.open(agents.people());
-        for places in agents.pairs() {
+        for &places in &agents.pairs {
             let Some(pair) = agents.pair(places, self.cutoff) else {
                 continue;
             };
@@ -104,15 +104,9 @@ impl ReciprocalPeople {
             };
             let sides = self.sides(&discs, pair.weight, step);
             let distance = Real::select(pair.near, pair.distance, Real::splat(f64::INFINITY));
-            for (person, (change, direction)) in [places.0, places.1].into_iter().zip(sides) {
-                let constraint = Constraint {
-                    change,
-                    direction,
-                    distance,
-                    near: pair.near,
-                };
-                programs.constrain(person, &constraint);
-            }
+            let [mine, theirs] = sides;
+            programs.constrain(places.0, mine, (distance, pair.near));
+            programs.constrain(places.1, theirs, (distance, pair.near));
         }
     }
 
