@@ -2,6 +2,7 @@
 
 use numeric::order::sort_indices;
 use numeric::random::Stream;
+use smallvec::SmallVec;
 
 use crate::crowd::agent::{Agent, SHORTEST, direction_of};
 use crate::crowd::models::Model;
@@ -82,6 +83,10 @@ pub struct PersonState {
     pub arrival_position: Vector,
 }
 
+/// The people of a world. As many as learners mostly put into one lie beside the rest of it, so that a thousand worlds
+/// that are stepped in turn come from memory in one stream.
+pub(super) type People = SmallVec<[PersonState; 5]>;
+
 impl PersonState {
     /// A person with a number at a place.
     #[allow(clippy::cast_possible_truncation)] // models and sources are few
@@ -151,6 +156,18 @@ impl PersonState {
         };
         self.velocity = state.velocity.into();
         self.position = state.position.into();
+    }
+
+    /// Whether something may be done by what is said of the person before the run: most are on their way, and that is
+    /// elsewhere in memory.
+    #[inline]
+    pub(super) fn needs_setup(&self) -> bool {
+        match self.presence {
+            _ if self.recorded => false,
+            Presence::Expected => true,
+            Presence::Walking => !self.is_off_target(),
+            Presence::Staying | Presence::Left => false,
+        }
     }
 
     /// Enters if it is time to, in s.
@@ -245,7 +262,6 @@ impl PersonState {
     /// Looks at the next points of the route at a time in s.
     #[inline]
     pub(super) fn follow(&mut self, route: &Route, time: f64) {
-        // On the way nothing of the route is read: it is elsewhere in memory.
         if self.presence != Presence::Walking || self.is_off_target() {
             return;
         }

@@ -26,6 +26,13 @@ enum Chassis {
     Motors(Box<dyn MotorDrive>),
 }
 
+/// What drives a robot by itself: apart from it, for robots that are told what to do have none.
+struct Pilot {
+    law: Box<dyn Steering>,
+    /// What the law sees.
+    sight: Sight,
+}
+
 /// A robot at work.
 pub struct CrowdRobot {
     state: RobotState<f64>,
@@ -36,8 +43,7 @@ pub struct CrowdRobot {
     arrival_time: f64,
     chassis: Chassis,
     mass: f64,
-    /// A law with what it sees.
-    law: Option<(Box<dyn Steering>, Sight)>,
+    pilot: Option<Box<Pilot>>,
     /// What is asked for from outside.
     request: Request,
     /// Steps of the world between two commands.
@@ -66,14 +72,15 @@ impl CrowdRobot {
             ..AsBuilt::default()
         };
         let start = built.start_in(&scenario);
-        let law = match (&setup.law, sight) {
+        let pilot = match (&setup.law, sight) {
             (Some(law), Some(mut sight)) => {
                 sight.size(&scenario);
-                Some((law.erased().steering(&scenario)?, sight))
+                let law = law.erased().steering(&scenario)?;
+                Some(Box::new(Pilot { law, sight }))
             }
             _ => None,
         };
-        let built = match (&law, scenario.differential()) {
+        let built = match (&pilot, scenario.differential()) {
             // From outside a robot with two wheels is told velocities and twists.
             (None, Some(_)) => AsBuilt {
                 steering_law: crate::run::as_built::SteeringLaw::Velocity,
@@ -95,7 +102,7 @@ impl CrowdRobot {
             arrival_time: f64::NAN,
             chassis,
             mass: scenario.mass(),
-            law,
+            pilot,
             request: Request::Law,
             every: setup.steps(world.step)?,
             interval: setup.control_period,
@@ -135,7 +142,7 @@ impl CrowdRobot {
     /// What parts around the law did in the last control period, if there are any.
     #[must_use]
     pub fn trace(&self) -> Option<Trace> {
-        self.law.as_ref()?.0.trace()
+        self.pilot.as_ref()?.law.trace()
     }
 
     /// The robot as others see it.
@@ -158,8 +165,8 @@ impl CrowdRobot {
 
     /// Keeps what is measured late, and looks whether it has arrived, at a time in s.
     pub(super) fn watch(&mut self, people: &[PersonState], robots: &[Agent], time: f64) {
-        if let Some((_, sight)) = &mut self.law {
-            sight.watch(people, robots);
+        if let Some(pilot) = &mut self.pilot {
+            pilot.sight.watch(people, robots);
         }
         let away = (self.goal - self.state.position).norm();
         if away <= self.tolerance && !self.has_arrived() {
@@ -196,12 +203,12 @@ impl CrowdRobot {
         };
         let toward =
             |velocity, known: &Situation<'_, f64>| force_toward(velocity, known, self.mass);
-        let force = match (self.request, &mut self.law) {
+        let force = match (self.request, self.pilot.as_deref_mut()) {
             _ if !self.arrival_time.is_nan() => toward(Vector2::zeros(), &situation),
             (Request::Force(force), _) => force.into(),
             (Request::Velocity(velocity), _) => toward(velocity.into(), &situation),
             (Request::Law, None) => toward(Vector2::zeros(), &situation),
-            (Request::Law, Some((law, sight))) => {
+            (Request::Law, Some(Pilot { law, sight })) => {
                 sight.look(people, robots, world, self.interval);
                 (known, clear) = (sight.own, sight.clear());
                 (situation.robot, situation.bodies) = (known, &sight.bodies);
@@ -227,7 +234,7 @@ impl CrowdRobot {
         index: usize,
     ) -> Result<()> {
         // Without a law nothing of the world is read.
-        let Some((law, sight)) = &mut self.law else {
+        let Some(Pilot { law, sight }) = self.pilot.as_deref_mut() else {
             return Ok(());
         };
         let Some(kind) = &world.robots[index].law else {

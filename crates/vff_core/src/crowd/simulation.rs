@@ -6,10 +6,12 @@
 
 use std::sync::Arc;
 
+use smallvec::SmallVec;
+
 use crate::crowd::agent::Agent;
 use crate::crowd::divergence::{Diverged, Divergence};
 use crate::crowd::pedestrian::Decision;
-use crate::crowd::people::{Companions, Groups, PersonState, Presence};
+use crate::crowd::people::{Companions, Groups, People, PersonState, Presence};
 use crate::crowd::record::{Trajectories, check_rows, whole_steps};
 use crate::crowd::robots::CrowdRobot;
 use crate::crowd::snapshot::{Models, Setting, Snapshot};
@@ -29,10 +31,10 @@ pub struct DecisionRoom {
 /// What an episode of a crowd consists of.
 struct CrowdParts {
     world: Arc<CrowdWorld>,
-    people: Vec<PersonState>,
-    robots: Vec<CrowdRobot>,
+    people: People,
+    robots: SmallVec<[CrowdRobot; 1]>,
     /// The robots as others see them.
-    bodies: Vec<Agent>,
+    bodies: SmallVec<[Agent; 1]>,
     sources: Vec<Source>,
     groups: Groups,
     room: Box<DecisionRoom>,
@@ -63,9 +65,9 @@ fn clock_of(world: &CrowdWorld) -> Result<Clock> {
 impl CrowdParts {
     fn new(world: Arc<CrowdWorld>, record: bool) -> Self {
         Self {
-            people: Vec::with_capacity(world.people.len()),
-            robots: Vec::with_capacity(world.robots.len()),
-            bodies: Vec::with_capacity(world.robots.len()),
+            people: People::with_capacity(world.people.len()),
+            robots: SmallVec::with_capacity(world.robots.len()),
+            bodies: SmallVec::with_capacity(world.robots.len()),
             sources: Vec::new(),
             groups: Groups::default(),
             room: Box::default(),
@@ -249,19 +251,17 @@ impl Parts for CrowdParts {
         }
         let time = clock.time(step);
         self.instant = step / clock.steps_per_sample;
-        for (person, setup) in self.people.iter_mut().zip(&self.world.people) {
-            if !person.recorded {
+        for (number, person) in self.people.iter_mut().enumerate() {
+            if !person.needs_setup() {
+                continue;
+            }
+            if let Some(source) = person.source {
+                let source = &self.world.sources[source as usize];
+                person.follow(&source.traits.route, time);
+            } else {
+                let setup = &self.world.people[number];
                 person.enter(setup, time);
                 person.follow(&setup.traits.route, time);
-            }
-        }
-        let first = self.world.people.len();
-        for person in &mut self.people[first..] {
-            let source = person
-                .source
-                .map(|index| &self.world.sources[index as usize]);
-            if let Some(source) = source {
-                person.follow(&source.traits.route, time);
             }
         }
         for robot in &mut self.robots {
