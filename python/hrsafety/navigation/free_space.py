@@ -44,12 +44,12 @@ def stands(obstacle: Obstacle) -> bool:
 
 
 def distance(obstacle: Obstacle, point: Pair) -> float:
-    """Return the distance at time 0 that the radii of an obstacle are compared with.
+    """Return the distance that the radii of an obstacle are compared with, from where it stands or sets out.
 
     Parameters
     ----------
     obstacle : Obstacle
-        Where it is at time 0 counts.
+        Where it stands, or where its motion begins, counts.
     point : tuple of float
         Where the center of the robot is, in m.
 
