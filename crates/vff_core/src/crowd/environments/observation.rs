@@ -4,8 +4,8 @@ use crate::crowd::environments::settings::{Axes, Settings};
 use crate::crowd::people::PersonState;
 use crate::crowd::simulation::Simulation;
 use crate::crowd::walls::Wall;
-use crate::lanes::{Planar, Vector2};
-use crate::world::shape::{PlacedShape, cast_on_disc};
+use crate::lanes::Vector2;
+use crate::world::shape::{PlacedShape, cast_on_disc, into_axes, out_of_axes};
 
 type Vector = Vector2<f64>;
 
@@ -33,16 +33,14 @@ impl Turn {
     fn into_axes(self, vector: Vector) -> [f64; 2] {
         match self.0 {
             None => vector.into(),
-            Some(x) => [x.dot(&vector), x.perp(&vector)],
+            Some(axis) => into_axes(vector, axis).into(),
         }
     }
 
     fn out_of_axes(self, angle: f64) -> Vector {
         let (sin, cos) = angle.sin_cos();
-        match self.0 {
-            None => Vector::new(cos, sin),
-            Some(x) => x * cos + x.left_normal() * sin,
-        }
+        let ray = Vector::new(cos, sin);
+        self.0.map_or(ray, |axis| out_of_axes(ray, axis))
     }
 }
 
