@@ -1,6 +1,7 @@
 //! People and robots of several worlds side by side, each world a lane, and pairs of them.
 
 use crate::crowd::agent::SHORTEST;
+use crate::crowd::divergence::is_finite;
 use crate::crowd::neighbors::others::parted;
 pub(super) use crate::crowd::neighbors::pairs::{Each, WIDTH};
 use crate::lanes::{LaneMask, Mask, Planar, Real, Vector2, Zero};
@@ -123,8 +124,7 @@ impl AgentLanes {
                 *decision
             };
             agent.position += agent.velocity * step;
-            let state = agent.position + agent.velocity;
-            finite = finite & state.dot(&state).lt(Each::splat(f64::INFINITY));
+            finite = finite & is_finite(agent.position, agent.velocity);
         }
         finite
     }

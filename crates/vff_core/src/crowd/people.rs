@@ -5,6 +5,7 @@ use numeric::random::Stream;
 use smallvec::SmallVec;
 
 use crate::crowd::agent::{Agent, SHORTEST, direction_of};
+use crate::crowd::divergence::is_finite;
 use crate::crowd::models::Model;
 use crate::crowd::neighbors::grid::Period;
 use crate::crowd::pedestrian::{Company, Fellows, Walker, company_of};
@@ -83,9 +84,9 @@ pub struct PersonState {
     pub arrival_position: Vector,
 }
 
-/// The people of a world. As many as learners mostly put into one lie beside the rest of it, so that a thousand worlds
-/// that are stepped in turn come from memory in one stream.
-pub(super) type People = SmallVec<[PersonState; 5]>;
+/// Something of each person of a world. For as many as learners mostly put into one it lies beside the rest of the
+/// world, so that a thousand worlds that are stepped in turn come from memory in one stream.
+pub(super) type OfPeople<T> = SmallVec<[T; 5]>;
 
 impl PersonState {
     /// A person with a number at a place.
@@ -190,7 +191,7 @@ impl PersonState {
     /// Whether the state is finite.
     #[inline]
     pub(super) fn is_finite(&self) -> bool {
-        (self.position + self.velocity).norm_squared().is_finite()
+        is_finite(self.position, self.velocity)
     }
 
     /// Whether the person is there and decides.
@@ -262,7 +263,7 @@ impl PersonState {
     /// Looks at the next points of the route at a time in s.
     #[inline]
     pub(super) fn follow(&mut self, route: &Route, time: f64) {
-        if self.presence != Presence::Walking || self.is_off_target() {
+        if self.presence != Presence::Walking {
             return;
         }
         for _ in 0..route.points.len() {

@@ -1,6 +1,7 @@
 //! The robots of a world at work: what drives and moves each of them.
 
 use crate::crowd::agent::{Agent, FIRST_ROBOT, direction_of};
+use crate::crowd::divergence::is_finite;
 use crate::crowd::neighbors::grid::Period;
 use crate::crowd::people::{PersonState, Purpose, stream_of};
 use crate::crowd::sight::{Known, Sight};
@@ -268,8 +269,7 @@ impl CrowdRobot {
 
     /// Whether its state is finite.
     pub(super) fn is_finite(&self) -> bool {
-        let RobotState { position, velocity } = self.state;
-        (position + velocity).norm_squared().is_finite()
+        is_finite(self.state.position, self.state.velocity)
     }
 
     /// Distance of the surfaces from a disc in m.

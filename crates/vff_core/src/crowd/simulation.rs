@@ -11,7 +11,7 @@ use smallvec::SmallVec;
 use crate::crowd::agent::Agent;
 use crate::crowd::divergence::{Diverged, Divergence};
 use crate::crowd::pedestrian::Decision;
-use crate::crowd::people::{Companions, Groups, People, PersonState, Presence};
+use crate::crowd::people::{Companions, Groups, OfPeople, PersonState, Presence};
 use crate::crowd::record::{Trajectories, check_rows, whole_steps};
 use crate::crowd::robots::CrowdRobot;
 use crate::crowd::snapshot::{Models, Setting, Snapshot};
@@ -31,7 +31,7 @@ pub struct DecisionRoom {
 /// What an episode of a crowd consists of.
 struct CrowdParts {
     world: Arc<CrowdWorld>,
-    people: People,
+    people: OfPeople<PersonState>,
     robots: SmallVec<[CrowdRobot; 1]>,
     /// The robots as others see them.
     bodies: SmallVec<[Agent; 1]>,
@@ -65,7 +65,7 @@ fn clock_of(world: &CrowdWorld) -> Result<Clock> {
 impl CrowdParts {
     fn new(world: Arc<CrowdWorld>, record: bool) -> Self {
         Self {
-            people: People::with_capacity(world.people.len()),
+            people: OfPeople::with_capacity(world.people.len()),
             robots: SmallVec::with_capacity(world.robots.len()),
             bodies: SmallVec::with_capacity(world.robots.len()),
             sources: Vec::new(),

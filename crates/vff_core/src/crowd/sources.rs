@@ -3,7 +3,7 @@
 use numeric::random::Stream;
 
 use crate::crowd::neighbors::grid::Period;
-use crate::crowd::people::{People, PersonState, Purpose, stream_of};
+use crate::crowd::people::{OfPeople, PersonState, Purpose, stream_of};
 use crate::crowd::robots::CrowdRobot;
 use crate::crowd::world::{CrowdWorld, SourceSetup};
 use crate::lanes::Vector2;
@@ -49,7 +49,7 @@ impl Source {
         world: &CrowdWorld,
         index: usize,
         time: f64,
-        people: &mut People,
+        people: &mut OfPeople<PersonState>,
         robots: &[CrowdRobot],
     ) {
         let setup = &world.sources[index];

@@ -6,12 +6,12 @@ use crate::crowd::environments::observation::{Ranking, observe};
 use crate::crowd::environments::settings::{Action, Settings};
 use crate::crowd::metrics::RobotMetrics;
 use crate::crowd::neighbors::grid::Period;
+use crate::crowd::people::OfPeople;
 use crate::crowd::simulation::{DecisionRoom, Simulation};
 use crate::crowd::world_lanes::WorldLanes;
 use crate::error::Result;
 use crate::lanes::Vector2;
 use crate::run::Request;
-use smallvec::SmallVec;
 
 type Vector = Vector2<f64>;
 
@@ -119,7 +119,7 @@ pub struct Environment {
     distance: f64,
     clearance: f64,
     /// From the robot to the people at the last instant; NaN for who was absent.
-    ways: SmallVec<[Vector; 5]>,
+    ways: OfPeople<Vector>,
 }
 
 impl Environment {
@@ -145,7 +145,7 @@ impl Environment {
             history: History::default(),
             distance: f64::NAN,
             clearance: f64::INFINITY,
-            ways: SmallVec::new(),
+            ways: OfPeople::new(),
         };
         environment.open(settings);
         Ok(environment)
