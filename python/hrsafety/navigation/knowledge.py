@@ -138,7 +138,7 @@ def echo_regions(scenario: Scenario, sonar: RobotSensor) -> EchoRegions:
 def warnings_of(scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:
     """Warn of sensors that do not reach as far as the regions that they must see, or see nothing nearby.
 
-    Or whose regions are sized for slower people than there are, and of cameras that tell too late who is there.
+    Or whose regions are sized for slower people than there are, and of cameras that report too late who is there.
     """
     yield from _unseen_at_start(scenario, built.obstacle_vision)
     speeds = [own_speed(obstacle, scenario.time_limit) for obstacle in scenario.obstacles]
@@ -173,7 +173,7 @@ def warnings_of(scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:
 
 
 def _unseen_at_start(scenario: Scenario, vision: Vision | None) -> Iterator[ResultWarning]:
-    """Warn of obstacles that the robot may be unable to stop for once a camera has told of them first."""
+    """Warn of obstacles that the robot may be unable to stop for once a camera has first reported them."""
     if vision is None:
         return
     dropped = vision.drop_probability
@@ -194,8 +194,8 @@ def _unseen_at_start(scenario: Scenario, vision: Vision | None) -> Iterator[Resu
                 UNSEEN_AT_START,
                 f"obstacles[{index}]",
                 f"obstacles[{index}] ({type(obstacle).__name__}) is {max(gap, 0.0):.3g} m from the robot at the start, "
-                f"and obstacle_vision may tell of it {blind:.3g} s later only: until then the law takes the place to "
-                f"be free, and the robot may be unable to stop; keep {way + toward:.3g} m, or give a shorter delay",
+                f"and obstacle_vision may first report it {blind:.3g} s later: until then the law treats the place as "
+                f"free, and the robot may be unable to stop; keep {way + toward:.3g} m, or give a shorter delay",
             )
 
 
