@@ -13,6 +13,9 @@ pub(super) const OWN: usize = 5;
 /// A promise is worth this much more than it says, relative to it: well above all roundings.
 const SLACK: f64 = 1e-6;
 
+/// Most lines for which it does not pay to ask whether single obstacles forbid them.
+const FEW: usize = 3;
+
 /// Lines that are looked at side by side.
 const GROUP: usize = 4;
 type Group = Lanes<GROUP>;
@@ -189,7 +192,8 @@ impl<'a> Best<'a> {
             if self.is_better_than(line.promise) {
                 break;
             }
-            if self.least > least && self.is_covered(&line) {
+            let many = self.room.lines.len() > FEW;
+            if many && self.least > least && self.is_covered(&line) {
                 continue;
             }
             self.offer_own(line.index, &line.line, wanted);
@@ -256,8 +260,8 @@ impl<'a> Best<'a> {
     fn sort_out_group(&mut self, first: usize) {
         let count = GROUP.min(self.room.lines.len() - first);
         let chosen = &self.room.lines[first..first + count];
-        let group: [Line; GROUP] =
-            std::array::from_fn(|lane| self.planner.line_or_none(chosen[lane.min(count - 1)]));
+        let line = |lane: usize| self.planner.line_or_none(chosen[lane.min(count - 1)]);
+        let group: [Line; GROUP] = [line(0), line(1), line(2), line(3)];
         let number = |of: fn(&Line) -> f64| Group::from_fn(|lane| of(&group[lane]));
         let from = Vector2::new(number(|line| line.from.x), number(|line| line.from.y));
         let along = Vector2::new(number(|line| line.along.x), number(|line| line.along.y));
@@ -269,7 +273,8 @@ impl<'a> Best<'a> {
             (Group::splat(f64::INFINITY), ends)
         };
         let kept = some & !promises.lt(Group::splat(self.least));
-        let forever = to_goal && self.planner.settings.horizon == f64::INFINITY;
+        let many = to_goal && self.room.lines.len() > FEW;
+        let forever = many && self.planner.settings.horizon == f64::INFINITY;
         let open = if forever && kept.any() {
             let line = |lane: usize| chosen[lane.min(count - 1)];
             kept & !self.room.covers.known(&self.planner.cones, line, parts)
@@ -281,7 +286,7 @@ impl<'a> Best<'a> {
                 [one.lane(lane).into(), other.lane(lane).into()]
             };
             let (index, ends) = (self.room.lines[first + lane], of_lane(ends));
-            if to_goal && self.covers(index, of_lane(parts), forever) {
+            if many && self.covers(index, of_lane(parts), forever) {
                 continue;
             }
             let promise = if to_goal {

@@ -105,7 +105,7 @@ fn draw_group(cones: &mut [Cone]) -> LegGroup {
         // In place of what is no disc.
         _ => [1.0, 0.0, 0.0],
     };
-    let discs: [[f64; 3]; GROUP] = std::array::from_fn(disc);
+    let discs: [[f64; 3]; GROUP] = [disc(0), disc(1), disc(2), disc(3)];
     let [x, y, radius] = [0, 1, 2].map(|of| Group::from_fn(|lane| discs[lane][of]));
     let center = Vector2::new(x, y);
     let touched = center.dot(&center).le(radius * radius);
@@ -115,7 +115,7 @@ fn draw_group(cones: &mut [Cone]) -> LegGroup {
             .get(lane)
             .map_or(Vector2::new(0.0, 0.0), |cone| cone.tip)
     };
-    let tips: [Vector; GROUP] = std::array::from_fn(tip);
+    let tips: [Vector; GROUP] = [tip(0), tip(1), tip(2), tip(3)];
     let mut side_by_side = LegGroup {
         tip: Vector2::new(
             Group::from_fn(|lane| tips[lane].x),

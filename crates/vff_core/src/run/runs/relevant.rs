@@ -27,13 +27,12 @@ pub(crate) struct Relevant {
     tracks: Tracks,
 }
 
-/// Straight motions of discs side by side: where they are at the start, velocities and radii. What is no disc, or
-/// moves otherwise, has no number for its place.
+/// Straight motions of discs side by side, with where they are at the start. What is no disc, or moves otherwise,
+/// has no number for its place.
 #[derive(Clone, Debug, Default)]
 struct Tracks {
-    center: [Vec<f64>; 2],
-    velocity: [Vec<f64>; 2],
-    radius: Vec<f64>,
+    groups: Vec<Discs<Group>>,
+    count: usize,
 }
 
 impl Relevant {
@@ -52,7 +51,7 @@ impl Relevant {
         let all = scenario.obstacles.len();
         match attention {
             Attention::Within(outlook) => {
-                if self.tracks.radius.is_empty() {
+                if self.tracks.groups.is_empty() {
                     self.tracks = Tracks::of(&scenario.obstacles);
                 }
                 self.told.clear();
@@ -105,39 +104,26 @@ impl Relevant {
 
 impl Tracks {
     fn of(obstacles: &[PlacedObstacle]) -> Self {
-        let mut tracks = Self::default();
-        for placed in obstacles {
-            let ([x, y], [u, v], radius) = track(placed).unwrap_or(([f64::NAN; 2], [0.0; 2], 0.0));
-            tracks.center[0].push(x);
-            tracks.center[1].push(y);
-            tracks.velocity[0].push(u);
-            tracks.velocity[1].push(v);
-            tracks.radius.push(radius);
+        let groups = obstacles.chunks(GROUP).map(|chunk| {
+            let mut numbers = [[f64::NAN; GROUP]; 5];
+            for (lane, placed) in chunk.iter().enumerate() {
+                if let Some(([x, y], [u, v], radius)) = track(placed) {
+                    for (number, own) in numbers.iter_mut().zip([x, y, u, v, radius]) {
+                        number[lane] = own;
+                    }
+                }
+            }
+            let [x, y, u, v, radius] = numbers.map(|number| Group::from_fn(|lane| number[lane]));
+            Discs {
+                center: Vector2::new(x, y),
+                velocity: Vector2::new(u, v),
+                radius,
+            }
+        });
+        Self {
+            groups: groups.collect(),
+            count: obstacles.len(),
         }
-        tracks
-    }
-
-    /// Discs from one on, at an instant in s; the last one again where there are no more.
-    #[inline(always)]
-    fn group(&self, first: usize, time: f64) -> Discs<Group> {
-        let [[x, y], [u, v]] = [&self.center, &self.velocity];
-        let velocity = Vector2::new(group_of(u, first), group_of(v, first));
-        let start = Vector2::new(group_of(x, first), group_of(y, first));
-        Discs {
-            center: start + velocity * Group::splat(time),
-            velocity,
-            radius: group_of(&self.radius, first),
-        }
-    }
-}
-
-/// Numbers from one on.
-#[inline(always)]
-fn group_of(numbers: &[f64], first: usize) -> Group {
-    let whole: Option<&[f64; GROUP]> = numbers[first..].first_chunk();
-    match whole {
-        Some(numbers) => Group::from_fn(|lane| numbers[lane]),
-        None => Group::from_fn(|lane| numbers[(first + lane).min(numbers.len() - 1)]),
     }
 }
 
@@ -163,10 +149,13 @@ impl pulp::NullaryFnOnce for Choice<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let count = self.tracks.radius.len();
-        for first in (0..count).step_by(GROUP) {
-            let concerned = self.outlook.concerns(&self.tracks.group(first, self.time));
+        let Tracks { groups, count } = self.tracks;
+        let time = Group::splat(self.time);
+        for (place, start) in groups.iter().enumerate() {
+            let center = start.center + start.velocity * time;
+            let concerned = self.outlook.concerns(&Discs { center, ..*start });
             if concerned.any() {
+                let first = place * GROUP;
                 let lanes = 0..GROUP.min(count - first);
                 let chosen = lanes.filter(|lane| concerned.lane(*lane));
                 self.told.extend(chosen.map(|lane| first + lane));
