@@ -286,10 +286,11 @@ def test_no_file_names_a_place_of_one_machine() -> None:
 
 
 def test_failing_random_cases_are_written_where_they_are_committed() -> None:
-    """proptest writes them beside the tests, or beside the sources of the crate, unless it is told not to."""
+    """proptest writes them beside the tests and the sources of a crate, unless it is told not to."""
     sources = (REPOSITORY / "crates").rglob("*.rs")
     assert not [path for path in sources if "failure_persistence" in path.read_text(encoding="utf-8")]
-    places = ["crates/vff_core/tests/lanes.proptest-regressions", "crates/vff_core/proptest-regressions/laws/law.txt"]
+    folder = "crates/vff_core"
+    places = [f"{folder}/tests/proptest-regressions/lanes.txt", f"{folder}/proptest-regressions/laws/law.txt"]
     command = ["git", "check-ignore", "--no-index", *places]
     assert subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True, check=False).stdout == ""
     command = ["git", "ls-files", "--others", "--exclude-standard", "--", "*proptest-regressions*"]
