@@ -8,7 +8,7 @@ BIN    := $(VENV)/bin
 # As maturin does: the binding crate is loaded by an interpreter, not linked with one.
 export PYO3_BUILD_EXTENSION_MODULE = 1
 
-.PHONY: build develop hooks test test-fast lint bench docs images fuzz check reproduce clean
+.PHONY: build develop hooks test test-rust test-fast lint bench docs images fuzz check reproduce clean
 
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
@@ -26,9 +26,13 @@ hooks: build
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check pre-commit
 	$(BIN)/pre-commit install
 
-test: build
-	cargo test --workspace --locked
+# The native module is compiled on one core for minutes: tests in Rust run beside that.
+test:
+	$(MAKE) -j2 build test-rust
 	$(BIN)/python -m pytest -n auto --dist loadfile
+
+test-rust:
+	cargo test --workspace --locked
 
 # What fails first when a formula, a message or a name is wrong: units in Rust, and the quick files.
 test-fast: build
