@@ -150,7 +150,7 @@ def _value(value: object, unit: str) -> tuple[str, str]:
     if isinstance(value, (tuple, list)) and not hasattr(value, "_fields"):
         return _sequence(value), unit
     # Tables say in their first line which part of them would follow.
-    return _cut(repr(value).splitlines()[0].split("; here the first")[0]), ""
+    return _cut(repr(value).splitlines()[0].split("; here ")[0]), ""
 
 
 def _number(value: float) -> str:

@@ -95,14 +95,19 @@ class Table:
         head = {name: values[:SHOWN_ROWS] for name, values in columns.items()}
         return head, len(next(iter(columns.values())))
 
+    def _telling(self) -> tuple[str, ...]:
+        """Return the columns that are printed before the others."""
+        return ()
+
     def _shown(self) -> tuple[list[str], list[list[str]], str]:
         """Return header, cells and title of the part that is printed."""
         head, rows = self._head()
-        header = list(head)[:_SHOWN_COLUMNS]
+        telling = [name for name in self._telling() if name in head]
+        header = [*telling, *(name for name in head if name not in telling)][:_SHOWN_COLUMNS]
         columns = [[_short(value) for value in head[name].tolist()] for name in header]
         title = f"{type(self).__name__}: {rows} rows, {len(head)} columns"
         if rows > SHOWN_ROWS or len(head) > len(header):
-            title += f"; here the first {min(rows, SHOWN_ROWS)} and {len(header)}"
+            title += f"; here {min(rows, SHOWN_ROWS)} rows and {len(header)} columns"
         return header, [list(row) for row in zip(*columns, strict=True)], title
 
     def to_polars(self) -> polars.DataFrame:

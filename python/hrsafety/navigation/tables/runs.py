@@ -196,6 +196,11 @@ class RunTable(RunRows):
         """
         return self._columns(slice(None))
 
+    def _telling(self) -> tuple[str, ...]:
+        varied = () if self.gain_index.max(initial=0) == 0 else tuple(self._of_gains(slice(0)))
+        found = ("outcome", "arrival_time_s", "min_clearance_m", "contacts_moving", "performance_total")
+        return ("law", "scenario", "seed", *varied, *found)
+
     def _columns(self, rows: slice) -> Columns:
         found = self._of_law(rows) | self._of_gains(rows)
         for name, unit in _UNITS.items():
