@@ -4,6 +4,7 @@
 PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
+PYTEST := $(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
 
 # As maturin does: the binding crate is loaded by an interpreter, not linked with one.
 export PYO3_BUILD_EXTENSION_MODULE = 1
@@ -29,7 +30,7 @@ hooks: build
 # The native module is compiled on one core for minutes: tests in Rust run beside that.
 test:
 	$(MAKE) -j2 build test-rust
-	$(BIN)/python -m pytest -n auto --dist loadfile
+	$(PYTEST)
 
 test-rust:
 	cargo test --workspace --locked
@@ -37,7 +38,7 @@ test-rust:
 # What fails first when a formula, a message or a name is wrong: units in Rust, and the quick files.
 test-fast: build
 	cargo test --workspace --locked --lib
-	$(BIN)/python -m pytest -n auto --dist loadfile --fast
+	$(PYTEST) --fast
 
 lint: build
 	cargo fmt --all --check

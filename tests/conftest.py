@@ -64,13 +64,20 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--fast", action="store_true", help="leave out the files that take more than 7 s")
 
 
+def is_slow(path: Path) -> bool:
+    """Return whether a file is a slow one; tests that a test makes in a folder of its own are none of ours."""
+    part = path.parent.relative_to(TESTS).as_posix() if path.is_relative_to(TESTS) else ""
+    return path.name in SLOW.get(part, ())
+
+
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
     """Leave a slow file out of the quick run."""
-    # Tests that a test makes in a folder of its own are none of ours.
-    inside = collection_path.is_relative_to(TESTS)
-    part = collection_path.parent.relative_to(TESTS).as_posix() if inside else ""
-    slow = collection_path.name in SLOW.get(part, ())
-    return True if slow and config.getoption("--fast") else None
+    return True if is_slow(collection_path) and config.getoption("--fast") else None
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the slow files, so that no core waits for one that another core began at last."""
+    items.sort(key=lambda item: not is_slow(item.path))
 
 
 @pytest.fixture(scope="session")
