@@ -1,8 +1,8 @@
 //! The guide: check values, completeness of the plan, arrival by local goals, what is refused.
 
 use std::f64::consts::PI;
-use std::path::{Path, PathBuf};
 
+use crate::planning::barn;
 use nalgebra::Vector2;
 use proptest::prelude::*;
 use vff_core::error::Failure;
@@ -99,26 +99,17 @@ fn local_goals_lie_within_the_look_ahead_and_laws_get_them_far_enough() {
     assert!(far.perp(&(goal.point - place)).abs() < 1e-12);
 }
 
-fn barn() -> serde_json::Value {
-    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(3);
-    let beside = repository.unwrap().join("shared");
-    let shared = std::env::var("HRSAFETY_SHARED").map_or(beside, PathBuf::from);
-    let text = std::fs::read_to_string(shared.join("data/barn/barn_even.json")).unwrap();
-    serde_json::from_str(&text).unwrap()
-}
-
 #[test]
 fn every_barn_world_has_a_way_that_local_goals_lead_along() {
-    let data = barn();
+    let Some(worlds) = barn() else { return };
     let guide = Guide {
         bounds: Some([[-6.0, -0.5], [1.5, 15.0]]),
         ..Guide::default()
     };
-    for world in data["worlds"].as_array().unwrap() {
+    for world in worlds {
         let mut shapes = MapShapes::new();
-        for center in world["cyl_mm"].as_array().unwrap() {
-            let [x, y] = [0, 1].map(|axis| center[axis].as_f64().unwrap() / 1000.0);
-            shapes.disc([x, y], 0.075).unwrap();
+        for center in world.cylinders {
+            shapes.disc(center, world.radius).unwrap();
         }
         let map = shapes.map();
         let ends = [[-2.0, 3.0], [-2.0, 13.0]];
@@ -126,9 +117,8 @@ fn every_barn_world_has_a_way_that_local_goals_lead_along() {
         let length = follow(&plan, ends[0].into(), 0.22);
         assert!(
             (10.0 - 1e-9..16.0).contains(&length),
-            "{} in {}",
-            length,
-            world["id"]
+            "{length} in {}",
+            world.id
         );
     }
 }
