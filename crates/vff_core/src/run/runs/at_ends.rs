@@ -1,4 +1,5 @@
-//! Far obstacles, side by side, that the robot was nearest to where it began or ended: its mean velocities tell.
+//! Far obstacles, side by side, that the robot was nearest to where it began or ended, or soon after it began: its
+//! mean velocities tell.
 
 use super::dormant::Bound;
 use super::means::Means;
@@ -26,7 +27,7 @@ pub(super) struct AtEnds<'a> {
 }
 
 impl AtEnds<'_> {
-    /// Finds the least distances that are at an end; compiled for the instructions of the processor, its bits
+    /// Finds the least distances that are at an end or in the head; compiled for the instructions of the processor, its bits
     /// are the same for all.
     pub fn find(self) {
         pulp::Arch::new().dispatch(self);
@@ -79,11 +80,35 @@ impl AtEnds<'_> {
         let step = Group::splat(self.clock.step);
         let way = Vector2::new(u * step, v * step);
         let settled = self.means.nearest_at_an_end(ends, way, margin);
-        if settled.any() {
-            let least = ends[0].dot(&ends[0]).min(ends[1].dot(&ends[1]));
-            let lanes = (0..count).filter(|lane| settled.lane(*lane));
+        let [begin, end] = ends.map(|end| end.dot(&end));
+        self.note((first, count), settled, begin.min(end));
+        if !(!settled).any() {
+            return;
+        }
+        let head = self.sees(&motion, self.path.head());
+        let early = !settled & self.means.nearest_in_the_head(head, way, margin);
+        if early.any() {
+            let mut least = begin;
+            for step in self.path.first() + 1..=self.path.head() {
+                let seen = self.sees(&motion, step);
+                least = least.min(seen.dot(&seen));
+            }
+            self.note((first, count), early, least);
+        }
+    }
+
+    /// Notes the least distances of some lanes.
+    #[inline(always)]
+    fn note(
+        &mut self,
+        (first, count): (usize, usize),
+        known: <Group as Real>::Mask,
+        squared: Group,
+    ) {
+        if known.any() {
+            let lanes = (0..count).filter(|lane| known.lane(*lane));
             self.found
-                .extend(lanes.map(|lane| (first + lane, least.lane(lane))));
+                .extend(lanes.map(|lane| (first + lane, squared.lane(lane))));
         }
     }
 }

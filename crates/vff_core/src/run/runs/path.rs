@@ -103,6 +103,11 @@ impl Path {
         (1..steps).map(off).fold(0.0, f64::max).sqrt()
     }
 
+    /// Last step of the first ones, in which a robot speeds up.
+    pub fn head(&self) -> usize {
+        self.last().min(self.begin + (SHORTEST << MARKED))
+    }
+
     /// Mean velocities on all of the path, which has been measured.
     pub fn means(&self) -> Means {
         let (size, last) = (SHORTEST << MARKED, self.places.len() - 1);
@@ -113,13 +118,13 @@ impl Path {
         };
         let single = |steps: usize| mark(steps, 0.0);
         // Single steps at both ends, and whole pieces between them.
-        let head = size.min(last);
+        let head = self.head() - self.begin;
         let tail = head.max(last.saturating_sub(1) / size * size);
         let piece = |number: usize| mark(number * size, self.bends[MARKED][number - 1]);
         let pieces = (head / size + 1..=tail / size).map(piece);
         let marks = (1..=head).map(single).chain(pieces);
         let marks = marks.chain((tail + 1..=last).map(single));
-        Means::of(marks, [0, last].map(single))
+        Means::of(marks, [0, head, last].map(single))
     }
 
     fn bend_of(&self, level: usize, piece: usize, size: usize) -> f64 {
