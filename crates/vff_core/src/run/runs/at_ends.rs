@@ -27,8 +27,8 @@ pub(super) struct AtEnds<'a> {
 }
 
 impl AtEnds<'_> {
-    /// Finds the least distances that are at an end or in the head; compiled for the instructions of the processor, its bits
-    /// are the same for all.
+    /// Finds the least distances that are at an end or in the head; compiled for the instructions of the processor,
+    /// its bits are the same for all.
     pub fn find(self) {
         pulp::Arch::new().dispatch(self);
     }
@@ -82,11 +82,12 @@ impl AtEnds<'_> {
         let settled = self.means.nearest_at_an_end(ends, way, margin);
         let [begin, end] = ends.map(|end| end.dot(&end));
         self.note((first, count), settled, begin.min(end));
-        if !(!settled).any() {
+        let open = !settled;
+        if !open.any() {
             return;
         }
         let head = self.sees(&motion, self.path.head());
-        let early = !settled & self.means.nearest_in_the_head(head, way, margin);
+        let early = open & self.means.nearest_in_the_head(head, way, margin);
         if early.any() {
             let mut least = begin;
             for step in self.path.first() + 1..=self.path.head() {

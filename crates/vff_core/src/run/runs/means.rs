@@ -26,31 +26,23 @@ impl Range {
         }
     }
 
-    /// Takes in the means from a mark to all places between two that are not before it: a mean to a place on the
-    /// straight way lies between those to the two, and what is off that way counts by the steps to it.
-    fn hold_from(
+    /// Takes in the means between a mark and all places from one mark to the next, which lie on one side of it: a
+    /// mean to a place on the straight way lies between those to the two, and what is off that way counts by the
+    /// steps to it.
+    fn hold_between(
         &mut self,
         base: &Mark,
-        between: [&Mark; 2],
-        means: impl Fn(&Mark, &Mark) -> Vector,
+        marks: [&Mark; 2],
+        mean: impl Fn([&Mark; 2]) -> Vector,
     ) {
-        let [from, to] = between;
-        let passed = from.steps - base.steps;
-        let off = to.bend / passed.max(1) as f64;
-        self.hold(means(base, to), off);
-        if passed > 0 {
-            self.hold(means(base, from), off);
-        }
-    }
-
-    /// The same from the places to a mark that is not before them.
-    fn hold_to(&mut self, between: [&Mark; 2], end: &Mark, means: impl Fn(&Mark, &Mark) -> Vector) {
-        let [from, to] = between;
-        let left = end.steps - to.steps;
-        let off = to.bend / left.max(1) as f64;
-        self.hold(means(from, end), off);
-        if left > 0 {
-            self.hold(means(to, end), off);
+        let steps = marks.map(|mark| mark.steps.abs_diff(base.steps));
+        let passed = marks[1].steps - marks[0].steps;
+        debug_assert!(passed > 0 && steps[0].abs_diff(steps[1]) == passed);
+        let off = marks[1].bend / steps[0].min(steps[1]).max(1) as f64;
+        for (mark, steps) in marks.into_iter().zip(steps) {
+            if steps > 0 {
+                self.hold(mean([base, mark]), off);
+            }
         }
     }
 
@@ -66,6 +58,13 @@ impl Range {
     }
 }
 
+/// A vector as boxes along an axis of length 1 stand.
+#[inline(always)]
+fn along<R: Real>(axis: Vector, vector: Vector2<R>) -> Vector2<R> {
+    let axis = Vector2::<R>::splat(axis.into());
+    Vector2::new(axis.dot(&vector), axis.perp(&vector))
+}
+
 /// A place on the way, after a number of steps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mark {
@@ -75,7 +74,7 @@ pub(super) struct Mark {
     pub bend: f64,
 }
 
-/// Mean velocities from the begin of a path, and from a place soon after it, to each later place, and from each
+/// Mean velocities from the start of a path, and from a place soon after it, to each later place, and from each
 /// place to the end.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Means {
@@ -97,34 +96,27 @@ impl Means {
         } else {
             Vector::new(1.0, 0.0)
         };
-        let mut means = Self {
-            axis,
-            from_begin: Range::EMPTY,
-            from_head: Range::EMPTY,
-            to_end: Range::EMPTY,
+        let mean = |[from, to]: [&Mark; 2]| {
+            let steps = to.steps as f64 - from.steps as f64;
+            along(axis, (to.place - from.place) * (1.0 / steps))
         };
-        let mean = |from: &Mark, to: &Mark| {
-            let way = (to.place - from.place) * (1.0 / (to.steps - from.steps) as f64);
-            Vector::new(axis.dot(&way), axis.perp(&way))
-        };
+        let [mut from_begin, mut from_head, mut to_end] = [Range::EMPTY; 3];
         let mut before = begin;
         for mark in marks {
             let between = [&before, &mark];
-            means.from_begin.hold_from(&begin, between, mean);
+            from_begin.hold_between(&begin, between, mean);
             if before.steps >= head.steps {
-                means.from_head.hold_from(&head, between, mean);
+                from_head.hold_between(&head, between, mean);
             }
-            means.to_end.hold_to(between, &end, mean);
+            to_end.hold_between(&end, between, mean);
             before = mark;
         }
-        means
-    }
-
-    /// A vector as the boxes stand.
-    #[inline(always)]
-    fn along<R: Real>(&self, vector: Vector2<R>) -> Vector2<R> {
-        let axis = Vector2::<R>::splat(self.axis.into());
-        Vector2::new(axis.dot(&vector), axis.perp(&vector))
+        Self {
+            axis,
+            from_begin,
+            from_head,
+            to_end,
+        }
     }
 
     /// Of which obstacles all places on the way are farther than one of the ends is, by more than a
@@ -136,7 +128,7 @@ impl Means {
         step: Vector2<R>,
         margin: R,
     ) -> R::Mask {
-        let (step, [away, toward]) = (self.along(step), ends.map(|end| self.along(end)));
+        let [step, away, toward] = [step, ends[0], ends[1]].map(|vector| along(self.axis, vector));
         self.from_begin.goes(away, step, margin) | self.to_end.goes(-toward, step, margin)
     }
 
@@ -148,7 +140,7 @@ impl Means {
         step: Vector2<R>,
         margin: R,
     ) -> R::Mask {
-        let (step, away) = (self.along(step), self.along(seen));
+        let [step, away] = [step, seen].map(|vector| along(self.axis, vector));
         self.from_head.goes(away, step, margin)
     }
 }

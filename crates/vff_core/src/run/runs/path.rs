@@ -103,7 +103,7 @@ impl Path {
         (1..steps).map(off).fold(0.0, f64::max).sqrt()
     }
 
-    /// Last step of the first ones, in which a robot speeds up.
+    /// End of the head, the first few steps: a robot at rest mostly has sped up by then.
     pub fn head(&self) -> usize {
         self.last().min(self.begin + (SHORTEST << MARKED))
     }
