@@ -43,6 +43,8 @@ pub struct Outlook {
     pub way: f64,
     /// The same for each m/s of the speed of an obstacle, in s.
     pub haste: f64,
+    /// Whether obstacles that all of the velocities lead away from matter, too.
+    pub behind: bool,
 }
 
 /// Discs that move straight on, side by side.
@@ -61,7 +63,8 @@ impl Outlook {
     /// disc passes at the distance `|c x w|/|w|`, `c` to where it is and `w` the velocity relative to it.
     /// A velocity within `r` of that passes by `r |c|/|w|` nearer, since `sin(a + b) <= sin a + sin b`, with
     /// `b` the angle between the two and `a` that at which the disc is seen.
-    /// The same holds for directions away from it. Where a number is not one, it matters.
+    /// The same holds for directions away from it: `c . w < 0` for `w` and all velocities within `r` of it.
+    /// Where a number is not one, it matters.
     #[inline(always)]
     pub fn concerns<R: Real>(&self, discs: &Discs<R>) -> R::Mask {
         let number = R::splat;
@@ -86,7 +89,13 @@ impl Outlook {
         let across = seen.perp(&relative).abs();
         let least = distance * number(1.0 - SHARE) - speed * number(self.span);
         let beside = (across * number(1.0 - SHARE)).gt(kept * speed + wide * farthest);
-        !(beside & least.gt(near))
+        let nearer = seen.dot(&relative) + number(self.off) * speed + wide * farthest;
+        let left = if self.behind {
+            beside
+        } else {
+            beside | nearer.lt(R::zero())
+        };
+        !(left & least.gt(near))
     }
 }
 

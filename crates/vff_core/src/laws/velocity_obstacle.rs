@@ -260,7 +260,8 @@ impl VelocityObstaclePlanner {
             best.offer((0, number), velocity);
         }
         let last = Self::last_candidates(&reachable, aim).enumerate();
-        for (number, velocity) in last {
+        // What is wanted mostly is one of them, and has been offered.
+        for (number, velocity) in last.filter(|(_, velocity)| *velocity != wanted) {
             best.offer((usize::MAX, number), velocity);
         }
         // The lines that gave the best velocity a control period ago mostly do so again.
@@ -331,14 +332,22 @@ impl Planner for VelocityObstaclePlanner {
     /// A free velocity by the rule of selection; if there is none with the margin, one without
     /// it, and otherwise the velocity with the latest contact.
     fn desired_velocity(&mut self, situation: &Situation<'_, f64>) -> [f64; 2] {
+        self.view.begin();
         for (pass, margin) in [self.settings.margin, 0.0].into_iter().enumerate() {
             self.look(situation, margin);
+            if self.takes_whole_lines() && self.view.lacks_those_behind() {
+                return [0.0; 2];
+            }
             if let Some(best) = self.select(pass, situation) {
                 return best.lane(0);
             }
             if self.overlooks() {
                 return [0.0; 2];
             }
+        }
+        // Where nothing is free, all crossings are tried.
+        if self.view.lacks_those_behind() {
+            return [0.0; 2];
         }
         self.latest_contact(situation).lane(0)
     }

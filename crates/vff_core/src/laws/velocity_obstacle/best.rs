@@ -1,7 +1,7 @@
 //! The best velocity so far, and what a line of velocities may still promise.
 
 use super::cover::Covers;
-use super::lines::{Cap, Line, ON_THE_LIMIT, Reachable};
+use super::lines::{BESIDE, Cap, Line, ON_THE_LIMIT, Reachable};
 use super::remaining::Remaining;
 use super::{Selection, Situation, Vector, VelocityObstaclePlanner, cones};
 use crate::lanes::{Lanes, Mask, Planar, Real, Vector2};
@@ -99,12 +99,18 @@ impl<'a> Best<'a> {
     /// of reach, which their squares tell.
     #[inline]
     pub fn offer(&mut self, place: Place, velocity: Vector) {
-        if self.reachable.may_hold(velocity) && self.at_most(velocity) >= self.least {
+        if self.may_be_taken(velocity) {
             self.take(place, velocity);
         }
     }
 
-    /// The same for a velocity that is not far out of reach and may be worth enough.
+    /// Whether a velocity is not far out of reach and may be worth enough.
+    #[inline]
+    fn may_be_taken(&self, velocity: Vector) -> bool {
+        self.reachable.may_hold(velocity) && self.at_most(velocity) >= self.least
+    }
+
+    /// The same for a velocity that may be taken.
     #[inline(never)]
     fn take(&mut self, place: Place, velocity: Vector) {
         if !self.reachable.holds(velocity) {
@@ -139,7 +145,8 @@ impl<'a> Best<'a> {
         self.caps = caps;
         let VelocityObstaclePlanner { cones, legs, .. } = self.planner;
         let Room { near, lines, .. } = &mut *self.room;
-        cones::sort_out((cones, legs), caps, (near, lines));
+        let whole = self.planner.takes_whole_lines();
+        cones::sort_out((cones, legs), (caps, whole), (near, lines));
         let ahead = 2 * cones.len();
         lines.extend(ahead..ahead + self.planner.ahead.len());
     }
@@ -215,8 +222,11 @@ impl<'a> Best<'a> {
     /// Offers the crossing of a line with an earlier one.
     #[inline]
     pub fn offer_crossing(&mut self, later: (usize, &Line), earlier: (usize, &Line)) {
-        if let Some(velocity) = later.1.crossing(earlier.1) {
-            self.offer((1 + later.0, OWN + earlier.0), velocity);
+        if let Some(velocity) = later.1.crossing(earlier.1)
+            && self.may_be_taken(velocity)
+            && self.planner.meet(later.1, earlier.1, velocity)
+        {
+            self.take((1 + later.0, OWN + earlier.0), velocity);
         }
     }
 
@@ -265,7 +275,12 @@ impl<'a> Best<'a> {
         let number = |of: fn(&Line) -> f64| Group::from_fn(|lane| of(&group[lane]));
         let from = Vector2::new(number(|line| line.from.x), number(|line| line.from.y));
         let along = Vector2::new(number(|line| line.along.x), number(|line| line.along.y));
-        let (some, ends) = self.reachable.chords(from, along);
+        let begin = if self.planner.takes_whole_lines() {
+            f64::NEG_INFINITY
+        } else {
+            -BESIDE
+        };
+        let (some, ends) = self.reachable.chords((from, along), begin);
         let to_goal = self.planner.settings.selection == Selection::ToGoal;
         let (promises, parts) = if to_goal {
             self.promises(ends)
@@ -286,7 +301,10 @@ impl<'a> Best<'a> {
                 [one.lane(lane).into(), other.lane(lane).into()]
             };
             let (index, ends) = (self.room.lines[first + lane], of_lane(ends));
-            if many && self.covers(index, of_lane(parts), forever) {
+            if many
+                && !self.is_found_on(&group[lane])
+                && self.covers(index, of_lane(parts), forever)
+            {
                 continue;
             }
             let promise = if to_goal {
@@ -330,6 +348,13 @@ impl<'a> Best<'a> {
     fn is_covered(&mut self, line: &Promising) -> bool {
         let part = self.better_part(line);
         part.is_some_and(|ends| self.covers(line.index, ends, false))
+    }
+
+    /// Whether what was found lies on a line: then no obstacle forbids all of it that may be worth as much.
+    fn is_found_on(&self, line: &Line) -> bool {
+        let across = |velocity: Vector| (velocity - line.from).perp(&line.along).abs();
+        self.found
+            .is_some_and(|(.., velocity)| across(velocity) <= BESIDE)
     }
 
     /// Whether one obstacle forbids a part of a line.

@@ -62,6 +62,26 @@ impl VelocityObstaclePlanner {
         places.filter_map(|place| Some((place, self.line(place)?)))
     }
 
+    /// Whether lines count behind the points that they begin at. Where only cones forbid anything, at any time, and
+    /// a component of the velocity is wanted, the best velocity is where legs meet, or where one meets a limit;
+    /// elsewhere crossings are samples of what other limits leave.
+    #[inline]
+    pub(super) fn takes_whole_lines(&self) -> bool {
+        self.always_takes_whole_lines() || !self.close.is_empty()
+    }
+
+    /// The same whatever is near.
+    #[inline]
+    pub(super) fn always_takes_whole_lines(&self) -> bool {
+        self.settings.selection != Selection::ToGoal || self.settings.horizon < f64::INFINITY
+    }
+
+    /// Whether a velocity on two lines counts as their crossing.
+    #[inline]
+    pub(super) fn meet(&self, one: &Line, other: &Line, velocity: Vector) -> bool {
+        self.takes_whole_lines() || (one.is_ahead(velocity) && other.is_ahead(velocity))
+    }
+
     /// The velocity that reaches the goal soonest, if nothing is in between.
     pub(super) fn wanted(&self, situation: &Situation<'_, f64>, aim: Vector) -> Vector {
         let to_goal = self.goal - situation.robot.position;
@@ -120,7 +140,11 @@ impl VelocityObstaclePlanner {
         let line = self.line(line.checked_sub(1)?)?;
         match number.checked_sub(OWN) {
             None => line.own(wanted, reachable)[number],
-            Some(other) => line.crossing(&self.line(other)?),
+            Some(other) => {
+                let other = self.line(other)?;
+                let velocity = line.crossing(&other)?;
+                self.meet(&line, &other, velocity).then_some(velocity)
+            }
         }
     }
 }

@@ -43,6 +43,13 @@ impl LegGroup {
         let relative = Vector2::splat([velocity.x, velocity.y]) - self.tip;
         [-self.left.perp(&relative), self.right.perp(&relative)]
     }
+
+    /// How far velocities are from the tips along each leg, in m/s.
+    #[inline(always)]
+    fn along(&self, velocity: Vector) -> [Group; 2] {
+        let relative = Vector2::splat([velocity.x, velocity.y]) - self.tip;
+        [self.left.dot(&relative), self.right.dot(&relative)]
+    }
 }
 
 /// Draws the legs of all discs; those of all cones go side by side as well.
@@ -66,10 +73,10 @@ pub(super) fn find_near(
 }
 
 /// Notes the cones that may forbid velocities of any of some discs, and the places of the legs on which some of
-/// these lie.
+/// these lie, or on the whole lines through them.
 pub(super) fn sort_out(
     (cones, legs): (&[Cone], &[LegGroup]),
-    caps: &[Cap],
+    (caps, whole): (&[Cap], bool),
     (near, lines): (&mut Vec<usize>, &mut Vec<usize>),
 ) {
     near.clear();
@@ -78,6 +85,7 @@ pub(super) fn sort_out(
         cones,
         legs,
         caps,
+        whole,
         near,
         lines,
     });
@@ -214,6 +222,7 @@ struct Sorting<'a> {
     cones: &'a [Cone],
     legs: &'a [LegGroup],
     caps: &'a [Cap],
+    whole: bool,
     near: &'a mut Vec<usize>,
     lines: &'a mut Vec<usize>,
 }
@@ -232,8 +241,13 @@ impl pulp::NullaryFnOnce for Sorting<'_> {
                 let beside = [left.lt(-reach), right.lt(-reach)];
                 let within = [left.gt(reach), right.gt(reach)];
                 near[0] = near[0] | !(beside[0] | beside[1]);
-                near[1] = near[1] | !(beside[0] | within[0]);
-                near[2] = near[2] | !(beside[1] | within[1]);
+                let behind = if self.whole {
+                    [<Group as Real>::Mask::none(); 2]
+                } else {
+                    group.along(cap.center).map(|along| along.lt(-reach))
+                };
+                near[1] = near[1] | !(beside[0] | within[0] | behind[0]);
+                near[2] = near[2] | !(beside[1] | within[1] | behind[1]);
             }
             if !(near[0] | near[1] | near[2]).any() {
                 continue;

@@ -124,6 +124,9 @@ impl VelocityObstaclePlanner {
     /// Whether the way to a new velocity itself touches an obstacle, or comes closer to one whose
     /// margin is broken already.
     fn touches_on_the_way(&self, situation: &Situation<'_, f64>, velocity: Vector) -> bool {
+        if self.close.is_empty() {
+            return false;
+        }
         let robot = &situation.robot;
         let change = velocity - robot.velocity;
         let period = situation.interval;

@@ -12,7 +12,7 @@ pub(super) const ON_THE_LIMIT: f64 = 1e-9;
 const FAR_BEYOND: f64 = 1.0 + 1e-8;
 
 /// The same where a line that nothing reachable lies on is left out: well above all roundings.
-const BESIDE: f64 = 1e-7;
+pub(super) const BESIDE: f64 = 1e-7;
 
 /// Discs whose common part the robot can reach by the next sample.
 #[derive(Clone, Copy, Debug)]
@@ -44,21 +44,21 @@ impl Reachable {
         near(velocity, self.max_speed) & near(velocity - self.velocity, self.change)
     }
 
-    /// Ends of the part of a line that is reachable, generously; `None` without one.
+    /// Ends of the part of a whole line that is reachable, generously; `None` without one.
     pub fn chord(&self, line: &Line) -> Option<[Vector; 2]> {
-        let (some, ends) = self.chords(line.from, line.along);
+        let (some, ends) = self.chords((line.from, line.along), f64::NEG_INFINITY);
         some.then_some(ends)
     }
 
-    /// The same for lines side by side, each from a velocity along a direction of length 1: which of them
-    /// have such a part, and its ends.
+    /// The same for lines side by side, each along a direction of length 1 from so far ahead of a velocity on:
+    /// which of them have such a part, and its ends.
     #[inline(always)]
     pub fn chords<R: Real>(
         &self,
-        from: Vector2<R>,
-        along: Vector2<R>,
+        (from, along): (Vector2<R>, Vector2<R>),
+        begin: f64,
     ) -> (R::Mask, [Vector2<R>; 2]) {
-        let (mut low, mut high) = (R::splat(f64::NEG_INFINITY), R::splat(f64::INFINITY));
+        let (mut low, mut high) = (R::splat(begin), R::splat(f64::INFINITY));
         let mut beside = R::Mask::none();
         let circles = self.circles();
         for (center, radius) in &circles {
@@ -146,6 +146,12 @@ impl Line {
         }
         let half = square.sqrt();
         [foot - half, foot + half].map(|share| (share >= 0.0).then(|| from + along * share))
+    }
+
+    /// Whether a velocity on it is not behind the point that it begins at, up to roundings.
+    #[inline]
+    pub fn is_ahead(&self, velocity: Vector) -> bool {
+        (velocity - self.from).dot(&self.along) >= -ON_THE_LIMIT
     }
 
     /// Where it crosses the whole line of another one.

@@ -34,6 +34,8 @@ pub(super) struct View {
     periods: f64,
     /// How often the last decision mattered on others.
     missed: u32,
+    /// Whether obstacles behind the robot counted in the last decision.
+    behind: bool,
 }
 
 impl View {
@@ -57,6 +59,19 @@ impl View {
     pub fn note(&mut self, cap: Cap, told: bool) {
         self.last = Some(cap);
         self.missed = if told { 0 } else { self.missed + 1 };
+    }
+
+    /// Begins a decision; one that is made again keeps what it lacked before.
+    pub fn begin(&mut self) {
+        self.behind &= self.missed > 0;
+    }
+
+    /// Whether obstacles behind the robot were left out, which count in this decision: it must be made again.
+    pub fn lacks_those_behind(&mut self) -> bool {
+        self.behind = true;
+        let lacking = self.outlook.is_some_and(|(outlook, _)| !outlook.behind);
+        self.missed += u32::from(lacking);
+        lacking
     }
 
     /// Whether the last decision counts for nothing.
@@ -118,6 +133,7 @@ impl VelocityObstaclePlanner {
             clearance: clearance + ROUNDING,
             way,
             haste: 2.0 * period,
+            behind: self.view.behind || self.always_takes_whole_lines(),
         };
         self.view.outlook = Some((outlook, situation.time));
         Attention::Within(outlook)

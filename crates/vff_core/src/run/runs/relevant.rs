@@ -222,6 +222,59 @@ mod tests {
         Scenario::new(robot, [0.0; 2], [9.0, 1.0], obstacles, Rules::default()).unwrap()
     }
 
+    /// Asserts that a planner which is told of few obstacles decides as one that is told of all; returns how many
+    /// the two were told of.
+    fn assert_same(
+        scenario: &Scenario,
+        settings: VelocityObstacle,
+        periods: u32,
+        draws: &mut Draws,
+    ) -> [usize; 2] {
+        let planner = || VelocityObstaclePlanner::new(settings, scenario);
+        let (mut one, mut other) = (planner(), planner());
+        let mut relevant = Relevant::new(scenario);
+        let (mut position, mut velocity) = (Vector::zeros(), Vector::zeros());
+        let [mut told, mut all] = [0; 2];
+        for period in 0..periods {
+            let time = 0.06 * f64::from(period);
+            let everything = bodies_at(scenario, time);
+            let situation = Situation {
+                time,
+                bodies: &everything,
+                ages: &[],
+                robot: RobotState { position, velocity },
+                heading: 0.0,
+                interval: 0.06,
+                stop: Stop::never(),
+            };
+            let wanted = other.desired_velocity(&situation);
+            let chosen = loop {
+                let attention = one.attention(&situation);
+                let bodies = relevant.at(scenario, time, attention);
+                let chosen = one.desired_velocity(&Situation {
+                    bodies,
+                    ..situation
+                });
+                if !one.overlooks() {
+                    break chosen;
+                }
+            };
+            let bits = [chosen, wanted].map(|velocity| velocity.map(f64::to_bits));
+            assert_eq!(
+                bits[0],
+                bits[1],
+                "{} obstacles, period {period}",
+                everything.len()
+            );
+            (told, all) = (told + relevant.told.len(), all + everything.len());
+            // Robots that are pushed off their way look anew.
+            let push = if period % 9 == 8 { 0.3 } else { 0.0 };
+            velocity = Vector::from(wanted);
+            position += velocity * 0.06 + within(draws, push);
+        }
+        [told, all]
+    }
+
     #[test]
     fn a_planner_that_is_told_of_few_obstacles_decides_as_one_that_is_told_of_all() {
         let mut draws = Draws(0x9e37_79b9_7f4a_7c15);
@@ -238,54 +291,49 @@ mod tests {
                 margin: [0.0, 0.1, 0.4][case % 7 % 3],
                 ..VelocityObstacle::default()
             };
-            let planner = || VelocityObstaclePlanner::new(settings, &scenario);
-            let (mut one, mut other) = (planner(), planner());
-            let mut relevant = Relevant::new(&scenario);
-            let (mut position, mut velocity) = (Vector::zeros(), Vector::zeros());
-            for period in 0..24 {
-                let time = 0.06 * f64::from(period);
-                let everything = bodies_at(&scenario, time);
-                let situation = Situation {
-                    time,
-                    bodies: &everything,
-                    ages: &[],
-                    robot: RobotState { position, velocity },
-                    heading: 0.0,
-                    interval: 0.06,
-                    stop: Stop::never(),
-                };
-                let wanted = other.desired_velocity(&situation);
-                let chosen = loop {
-                    let attention = one.attention(&situation);
-                    let bodies = relevant.at(&scenario, time, attention);
-                    let chosen = one.desired_velocity(&Situation {
-                        bodies,
-                        ..situation
-                    });
-                    if !one.overlooks() {
-                        break chosen;
-                    }
-                };
-                assert_eq!(
-                    chosen.map(f64::to_bits),
-                    wanted.map(f64::to_bits),
-                    "case {case}, period {period}"
-                );
-                (told, all) = (told + relevant.told.len(), all + everything.len());
-                // Robots that are pushed off their way look anew.
-                let push = if period % 9 == 8 { 0.3 } else { 0.0 };
-                velocity = Vector::from(wanted);
-                position += velocity * 0.06 + within(&mut draws, push);
-            }
+            let [few, everything] = assert_same(&scenario, settings, 24, &mut draws);
+            (told, all) = (told + few, all + everything);
         }
         assert!(3 * told < 2 * all, "{told} of {all}");
     }
 
     #[test]
+    fn obstacles_behind_are_told_of_where_they_count() {
+        let mut draws = Draws(0x1234_5678_9abc_def1);
+        let (mut told, mut all) = (0, 0);
+        for case in 0..400 {
+            let (spread, fast) = ([1.5, 3.0, 12.0][case % 3], [0.3, 0.8, 1.5][case / 3 % 3]);
+            let mut obstacles = Vec::new();
+            while obstacles.len() < [16, 24, 48][case / 9 % 3] {
+                let center = within(&mut draws, spread);
+                if center.norm() > 0.52 {
+                    let velocity = within(&mut draws, fast).into();
+                    let motion = Motion::moving(center.into(), velocity, [0.0; 2], None);
+                    let limits = Limits::default();
+                    obstacles.push(Obstacle::disc(0.1, motion.unwrap(), limits).unwrap());
+                }
+            }
+            let robot = HolonomicRobot {
+                max_acceleration: [0.4, 10.0][case % 2],
+                ..HolonomicRobot::default()
+            };
+            let goal = [9.0, 1.0];
+            let scenario = Scenario::new(robot, [0.0; 2], goal, obstacles, Rules::default());
+            let settings = VelocityObstacle {
+                margin: [0.0, 0.1, 0.3][case % 7 % 3],
+                ..VelocityObstacle::default()
+            };
+            let [few, everything] = assert_same(&scenario.unwrap(), settings, 12, &mut draws);
+            (told, all) = (told + few, all + everything);
+        }
+        assert!(10 * told < 9 * all, "{told} of {all}");
+    }
+
+    #[test]
     fn no_velocity_that_matters_leads_near_a_disc_that_does_not() {
         let mut draws = Draws(0x2545_f491_4f6c_dd1d);
-        let mut left_out = 0;
-        for _ in 0..20_000 {
+        let (mut left_out, mut left_behind) = (0, 0);
+        for case in 0..20_000 {
             let radius = draws.between(0.0, 0.5);
             let outlook = Outlook {
                 center: within(&mut draws, 1.0),
@@ -297,6 +345,7 @@ mod tests {
                 clearance: draws.between(0.1, 0.8),
                 way: 0.1,
                 haste: 0.12,
+                behind: case % 2 == 0,
             };
             let center = within(&mut draws, 30.0);
             let velocity = within(&mut draws, 2.0);
@@ -317,12 +366,26 @@ mod tests {
                 assert!(seen.norm() > kept + outlook.way + outlook.haste * velocity.norm());
                 let legs = Legs::of_disc(seen, kept);
                 let relative = outlook.center - velocity;
-                let across = [legs.left, legs.right].map(|leg| leg.perp(&relative));
-                assert!(across.iter().all(|side| side.abs() > outlook.radius));
-                assert!(across[0] > 0.0 || across[1] < 0.0);
+                let [left, right] = [legs.left, legs.right].map(|leg| leg.perp(&relative));
+                assert!(left > 0.0 || right < 0.0);
+                // A leg is a ray from standstill relative to the disc on.
+                let lines = [left.abs(), right.abs()];
+                let rays = [legs.left, legs.right].map(|leg| {
+                    let along = leg.dot(&relative).max(0.0);
+                    (relative - leg * along).norm()
+                });
+                let far = |from: [f64; 2]| from.iter().all(|away| *away > outlook.radius);
+                assert!(
+                    far(if outlook.behind { lines } else { rays }),
+                    "case {case}"
+                );
+                left_behind += usize::from(!far(lines));
             }
         }
-        assert!(left_out > 2_000, "{left_out}");
+        assert!(
+            left_out > 2_000 && left_behind > 2_000,
+            "{left_out} {left_behind}"
+        );
     }
 
     #[test]
@@ -340,6 +403,7 @@ mod tests {
             clearance: 0.0,
             way: 0.0,
             haste: 0.0,
+            behind: true,
         };
         relevant.at(&scenario, 0.3, Attention::Within(outlook));
         for (index, placed) in scenario.obstacles.iter().enumerate() {
