@@ -12,6 +12,7 @@ mod remaining;
 #[cfg(test)]
 pub(crate) mod tests;
 mod view;
+mod worth;
 
 use std::cell::Cell;
 

@@ -1,7 +1,7 @@
 //! The best velocity so far, and what a line of velocities may still promise.
 
 use super::cover::Covers;
-use super::lines::{BESIDE, Cap, Line, ON_THE_LIMIT, Reachable};
+use super::lines::{BESIDE, Cap, Line, Reachable};
 use super::remaining::Remaining;
 use super::{Selection, Situation, Vector, VelocityObstaclePlanner, cones};
 use crate::lanes::{Lanes, Mask, Planar, Real, Vector2};
@@ -417,57 +417,6 @@ impl pulp::NullaryFnOnce for LineSorting<'_, '_> {
     fn call(self) {
         for first in (0..self.0.room.lines.len()).step_by(GROUP) {
             self.0.sort_out_group(first);
-        }
-    }
-}
-
-/// What velocities are worth.
-impl VelocityObstaclePlanner {
-    /// Speeds that differ by roundings have the same rank.
-    fn rank(&self, speed: f64) -> f64 {
-        (speed / (self.max_speed * ON_THE_LIMIT)).round()
-    }
-
-    /// Time to the goal at full speed after a control period at a velocity, in s.
-    fn time_left(&self, situation: &Situation<'_, f64>, velocity: Vector) -> f64 {
-        let left = self.goal - situation.robot.position - velocity * situation.interval;
-        left.dot(&left).sqrt() / self.max_speed
-    }
-
-    /// The least such time of all velocities with no larger component toward the goal.
-    fn least_time_left(&self, situation: &Situation<'_, f64>, forward: f64) -> f64 {
-        let to_goal = self.goal - situation.robot.position;
-        let left = to_goal.dot(&to_goal).sqrt() - forward * situation.interval;
-        left.max(0.0) / self.max_speed
-    }
-
-    /// What a rule prefers: larger is better, then by the second number.
-    pub(super) fn worth(
-        &self,
-        situation: &Situation<'_, f64>,
-        aim: Vector,
-        velocity: Vector,
-    ) -> (f64, f64) {
-        let forward = velocity.dot(&aim);
-        let speed = velocity.dot(&velocity).sqrt();
-        match self.settings.selection {
-            Selection::ToGoal => (forward, speed),
-            Selection::Fastest { sector } => {
-                let within = forward >= speed * (sector.cos() - ON_THE_LIMIT);
-                let rank = self.rank(speed);
-                (
-                    if within {
-                        rank
-                    } else {
-                        rank - 2.0 / ON_THE_LIMIT
-                    },
-                    forward,
-                )
-            }
-            Selection::TimeAndRisk { risk } => {
-                let time = self.time_left(situation, velocity);
-                (-(time + risk / self.time_to_contact(velocity)), forward)
-            }
         }
     }
 }
