@@ -47,6 +47,29 @@ fn crowd(draws: &mut Draws, count: usize) -> Scenario {
     Scenario::new(robot, [0.0; 2], [14.0, 0.0], obstacles, Rules::default()).unwrap()
 }
 
+/// Discs that move straight on around a robot, farther away than given and within a square.
+pub(crate) fn crowd_around(
+    draws: &mut Draws,
+    count: usize,
+    [clear, spread, fast]: [f64; 3],
+    max_acceleration: f64,
+) -> Scenario {
+    let mut obstacles = Vec::new();
+    while obstacles.len() < count {
+        let mut pair = |size: f64| [draws.between(-size, size), draws.between(-size, size)];
+        let (start, velocity) = (pair(spread), pair(fast));
+        if start[0].hypot(start[1]) > clear {
+            let motion = Motion::moving(start, velocity, [0.0; 2], None).unwrap();
+            obstacles.push(Obstacle::disc(0.1, motion, Limits::default()).unwrap());
+        }
+    }
+    let robot = HolonomicRobot {
+        max_acceleration,
+        ..HolonomicRobot::default()
+    };
+    Scenario::new(robot, [0.0; 2], [9.0, 1.0], obstacles, Rules::default()).unwrap()
+}
+
 fn bodies_at(scenario: &Scenario, time: f64) -> Vec<Body> {
     let body = |placed: &PlacedObstacle| Body {
         shape: placed.obstacle.shape,
@@ -73,6 +96,15 @@ fn best_of_all(
     planner: &VelocityObstaclePlanner,
     situation: &Situation<'_, f64>,
 ) -> Option<Vector> {
+    best_of(planner, situation, |_| true)
+}
+
+/// The best of all candidates but the crossings of some lines.
+fn best_of(
+    planner: &VelocityObstaclePlanner,
+    situation: &Situation<'_, f64>,
+    counts: impl Fn((&Line, &Line, Vector)) -> bool,
+) -> Option<Vector> {
     let reachable = planner.reachable(situation);
     let aim = planner.direction_to_goal(situation);
     let wanted = planner.wanted(situation, aim);
@@ -81,7 +113,10 @@ fn best_of_all(
     for (index, line) in lines.iter().enumerate() {
         candidates.extend(line.own(wanted, &reachable).into_iter().flatten());
         let crossings = lines[..index].iter();
-        candidates.extend(crossings.filter_map(|other| line.crossing(other)));
+        candidates.extend(crossings.filter_map(|other| {
+            let crossing = line.crossing(other);
+            crossing.filter(|velocity| counts((line, other, *velocity)))
+        }));
     }
     candidates.extend(VelocityObstaclePlanner::last_candidates(&reachable, aim));
     let mut best: Option<((f64, f64), Vector)> = None;
@@ -143,6 +178,39 @@ fn the_most_promising_lines_give_the_velocity_of_all_candidates() {
         }
     }
     assert!(found > 160 && nothing > 20, "{found} {nothing}");
+}
+
+#[test]
+fn crossings_behind_the_tips_count_where_something_is_near() {
+    let mut draws = Draws(0x9e37_79b9_7f4a_7c15);
+    let (mut near, mut behind) = (0, 0);
+    for case in 0..120 {
+        let scenario = crowd_around(&mut draws, 24, [0.4, 1.5, 0.8], [0.4, 10.0][case % 2]);
+        let mut planner = VelocityObstaclePlanner::new(VelocityObstacle::default(), &scenario);
+        let mut robot = RobotState {
+            position: Vector2::zeros(),
+            velocity: Vector2::zeros(),
+        };
+        for period in 0..12 {
+            let bodies = bodies_at(&scenario, INTERVAL * f64::from(period));
+            let situation = situation(&bodies, robot, INTERVAL * f64::from(period));
+            planner.look(&situation, 0.01);
+            let chosen = planner.select(0, &situation);
+            let wanted = best_of_all(&planner, &situation);
+            assert_eq!(chosen, wanted, "case {case}, period {period}");
+            let ahead = |(one, other, velocity): (&Line, &Line, Vector)| {
+                one.is_ahead(velocity) && other.is_ahead(velocity)
+            };
+            if best_of(&planner, &situation, ahead) != wanted {
+                assert!(!planner.close.is_empty(), "case {case}, period {period}");
+                behind += 1;
+            }
+            near += usize::from(!planner.close.is_empty());
+            robot.velocity = wanted.unwrap_or(robot.velocity);
+            robot.position += robot.velocity * INTERVAL;
+        }
+    }
+    assert!(near > 200 && behind > 1, "{near} {behind}");
 }
 
 #[test]
