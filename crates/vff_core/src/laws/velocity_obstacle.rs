@@ -271,11 +271,9 @@ impl VelocityObstaclePlanner {
         }
         let wide = [best.cap()];
         best.narrow_down(&wide, &mut remaining, wanted);
+        best.look_along_lines(wanted);
         let cap = best.cap();
         let told = self.view.holds(&cap, &reachable);
-        if told {
-            best.look_along_lines(wanted);
-        }
         let (chosen, mut room) = best.ended();
         room.remaining = remaining;
         self.rooms[pass] = Some(room);

@@ -18,6 +18,9 @@ const GROWTH: (f64, f64) = (2.0, 0.25);
 /// How far off its way the robot may be, as a share of the distance that it keeps.
 const OFF: f64 = 0.1;
 
+/// Most decisions in a row that mattered on others before all reachable velocities are taken to matter.
+const MOST_MISSES: u32 = 8;
+
 /// Room for rounding, relative: well above all roundings.
 const ROUNDING: f64 = 1e-6;
 
@@ -139,10 +142,10 @@ impl VelocityObstaclePlanner {
         Attention::Within(outlook)
     }
 
-    /// Velocities that are expected to matter; after two misses all that are reachable.
+    /// Velocities that are expected to matter; after many misses all that are reachable.
     fn expected(&self, situation: &Situation<'_, f64>) -> Cap {
         let room = self.view.room;
-        if self.view.missed < 2 {
+        if self.view.missed < MOST_MISSES {
             let Cap { center, radius } = self
                 .view
                 .last
