@@ -145,9 +145,8 @@ impl Controller {
         let scans = lidar.map(|lidar| Scans::new(&scenario, lidar, 0));
         let scans = scans.transpose()?;
         let mut known = scenario.clone();
-        known
-            .obstacles
-            .extend_from_slice(scans.as_ref().map_or(&[], Scans::points));
+        let points = scans.iter().flat_map(Scans::points);
+        known.obstacles.extend(points.cloned());
         let bodies = known.obstacles.iter().map(|placed| {
             let mut body = hidden(placed);
             body.state.present = placed.stationary;

@@ -8,11 +8,11 @@ use crate::run::options::{Clock, Integrator, Options};
 use crate::run::plan::Plan;
 use crate::run::record::Recorder;
 use crate::run::runs::{Dormant, Relevant, Runs};
-use crate::run::scene::{Scene, World, bodies_at, body_at};
+use crate::run::scene::{Scene, World, bodies_at};
 use crate::run::walls::Maps;
 use crate::sensing::sampled::{Measured, SampledScene};
 use crate::world::geometry::{Body, RobotState};
-use crate::world::scenario::Scenario;
+use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// Blocks of steps, times obstacles, between two questions whether to stop; about a millisecond.
 const BLOCKS_PER_QUESTION: usize = 512;
@@ -50,28 +50,25 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
     debug_assert!(R::WIDTH == 1 || !staged, "stages have no lanes");
     let mut sensor = SampledScene::new(scenario);
     let mut groups: Vec<Runs<&Scenario, R>> = Vec::with_capacity(team.len());
-    // Those that are led come when they part.
-    let bodies = scenario.obstacles.iter();
-    let bodies = bodies.map(|placed| body_at(placed, 0.0, &mut 0));
-    let first = Runs::new(scenario, clock, bodies, maps.clone());
-    groups.resize(if led { 1 } else { team.len() }, first);
     // A group by itself that keeps no rows needs the obstacles between two samples only where they
     // are near; several groups share them.
     let alone = team.len() == 1 && !C::EVERY_STEP && !staged;
     // One run by itself that knows everything exactly need not look at what is far away.
     let single = R::WIDTH == 1 && alone && sensor.is_none() && !led && !plan.shortcuts;
-    let mut dormant = single
-        .then(|| Dormant::new(scenario, clock, |placed| team[0].law.felt_within(placed)))
-        .flatten();
-    // Memory for all of them costs more than a look at those that are near.
-    let mut seen = match &dormant {
-        Some(_) => Vec::new(),
-        None => bodies_at(scenario, 0.0),
-    };
     let steps = clock.steps_per_sample.min(STEPS_PER_BLOCK);
-    let mut scene = match &mut dormant {
-        Some(dormant) => dormant.scene(&mut groups[0], steps),
-        None => Scene::of(scenario, seen.clone(), (steps, staged)),
+    let mut seen = Vec::new();
+    let (mut scene, mut dormant) = if single && Dormant::pays(scenario) {
+        let count = scenario.obstacle_count();
+        groups.push(Runs::at_start(scenario, clock, count, maps.clone()));
+        let felt_within = |placed: &PlacedObstacle| team[0].law.felt_within(placed);
+        let (dormant, scene) = Dormant::begin(&mut groups[0], steps, felt_within);
+        (scene, Some(dormant))
+    } else {
+        seen = bodies_at(scenario, 0.0);
+        let first = Runs::new(scenario, clock, seen.iter().copied(), maps.clone());
+        // Those that are led come when they part.
+        groups.resize(if led { 1 } else { team.len() }, first);
+        (Scene::of(scenario, seen.clone(), (steps, staged)), None)
     };
     let longest = longest_block(&groups);
     let blocks_per_question = (BLOCKS_PER_QUESTION / scene.told.len().max(1)).max(1);

@@ -15,10 +15,10 @@ pub(crate) trait World<R: Real>: Clone {
     fn common(&self) -> &Scenario;
     /// The scenario of a lane.
     fn of_lane(&self, lane: usize) -> &Scenario;
-    /// Distance `d` at which the robot touches an obstacle, in m.
-    fn reach(&self, obstacle: usize) -> Self::Number;
-    /// Largest speed of an obstacle in m/s, infinite if there is none.
-    fn speed_bound(&self, obstacle: usize) -> Self::Number;
+    /// Distance `d` at which the robot touches each of so many obstacles, in m.
+    fn reaches(&self, count: usize) -> Vec<Self::Number>;
+    /// Largest speed of each obstacle in m/s, infinite if there is none.
+    fn speed_bounds(&self, count: usize) -> Vec<Self::Number>;
     /// Instant from which no obstacle moves any more, in s; infinite if there is none.
     fn stands_from(&self) -> f64;
 }
@@ -34,13 +34,12 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> World<R> for S {
         self
     }
 
-    fn reach(&self, obstacle: usize) -> f64 {
-        self.obstacles[obstacle].contact_distance
+    fn reaches(&self, _count: usize) -> Vec<f64> {
+        self.obstacles.reaches()
     }
 
-    fn speed_bound(&self, obstacle: usize) -> f64 {
-        let placed = &self.obstacles[obstacle];
-        placed.speed_bound.unwrap_or(f64::INFINITY)
+    fn speed_bounds(&self, _count: usize) -> Vec<f64> {
+        self.obstacles.speed_bounds()
     }
 
     fn stands_from(&self) -> f64 {

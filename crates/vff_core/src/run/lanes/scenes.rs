@@ -47,15 +47,11 @@ impl<'a> LaneScenes<'a> {
         self.of[lane] = scenario;
     }
 
-    /// A number of an obstacle in every lane, `padded` where a lane has no such obstacle.
-    fn of_obstacle<R: Real>(
-        &self,
-        obstacle: usize,
-        padded: f64,
-        number: impl Fn(&PlacedObstacle) -> f64,
-    ) -> R {
-        let placed = |lane: usize| self.of[lane].obstacles.get(obstacle);
-        R::from_fn(|lane| placed(lane).map_or(padded, &number))
+    /// A number of each of so many obstacles in every lane, `0` where a lane has no such obstacle.
+    fn of_obstacles<R: Real>(&self, count: usize, of: fn(&PlacedObstacle) -> f64) -> Vec<R> {
+        let placed = |lane: usize, obstacle| self.of[lane].obstacles.get(obstacle);
+        let number = |obstacle| R::from_fn(|lane| placed(lane, obstacle).map_or(0.0, of));
+        (0..count).map(number).collect()
     }
 }
 
@@ -70,13 +66,12 @@ impl<R: Real + Wide<R>> World<R> for LaneScenes<'_> {
         self.of[lane]
     }
 
-    fn reach(&self, obstacle: usize) -> R {
-        self.of_obstacle(obstacle, 0.0, |placed| placed.contact_distance)
+    fn reaches(&self, count: usize) -> Vec<R> {
+        self.of_obstacles(count, |placed| placed.contact_distance)
     }
 
-    fn speed_bound(&self, obstacle: usize) -> R {
-        let bound = |placed: &PlacedObstacle| placed.speed_bound.unwrap_or(f64::INFINITY);
-        self.of_obstacle(obstacle, 0.0, bound)
+    fn speed_bounds(&self, count: usize) -> Vec<R> {
+        self.of_obstacles(count, PlacedObstacle::fastest)
     }
 
     /// Only searches ask, which run many gain sets in one scene.

@@ -1,131 +1,117 @@
 //! Far obstacles, side by side, that the robot was nearest to where it began or ended, or soon after it began: its
 //! mean velocities tell.
 
-use super::dormant::Bound;
+use super::bounds::Bounds;
 use super::means::Means;
-use super::path::{Path, straight_disc};
-use crate::lanes::{Lanes, Mask, Real, Vector2};
+use super::path::Path;
+use crate::lanes::{Mask, Real, Vector2};
 use crate::run::options::Clock;
-use crate::world::motion::Piece;
-use crate::world::scenario::PlacedObstacle;
-
-/// Obstacles that are looked at side by side.
-const GROUP: usize = 4;
-type Group = Lanes<GROUP>;
+use crate::world::scenario::{GROUP, Group, ObstacleGroup};
 
 /// A path that has been measured, past obstacles of which some have been left alone on all of it.
-pub(super) struct AtEnds<'a> {
+pub(super) struct AtEnds<'a, R> {
     pub path: &'a Path,
     pub clock: &'a Clock,
     pub means: &'a Means,
-    pub obstacles: &'a [PlacedObstacle],
+    pub groups: &'a [ObstacleGroup],
+    pub bounds: &'a Bounds,
     /// First motion step of each whose distance is not counted yet.
-    pub since: &'a [usize],
-    pub bounds: &'a [Bound],
-    /// Those whose least distance is known, with its square in m^2.
-    pub found: &'a mut Vec<(usize, f64)>,
+    pub since: &'a mut [usize],
+    /// Squares of the least distances in m^2.
+    pub least: &'a mut [R],
 }
 
-impl AtEnds<'_> {
-    /// Finds the least distances that are at an end or in the head; compiled for the instructions of the processor,
-    /// its bits are the same for all.
+/// A place on the path, and when the robot is there, for obstacles side by side.
+#[derive(Clone, Copy)]
+struct Instant {
+    time: Group,
+    place: Vector2<Group>,
+}
+
+impl<R: Real> AtEnds<'_, R> {
+    /// Finds the least distances that are at an end or in the head, and counts all steps of these obstacles; compiled
+    /// for the instructions of the processor, its bits are the same for all.
     pub fn find(self) {
         pulp::Arch::new().dispatch(self);
     }
 
-    /// Obstacles as seen from the robot after a motion step.
     #[inline(always)]
-    fn sees(&self, motion: &Piece<Group>, step: usize) -> Vector2<Group> {
-        let ([x, y], _) = motion.at(Group::splat(self.clock.time(step)));
+    fn instant(&self, step: usize) -> Instant {
         let place = self.path.at(step);
-        Vector2::new(Group::splat(place.x) - x, Group::splat(place.y) - y)
+        Instant {
+            time: Group::splat(self.clock.time(step)),
+            place: Vector2::new(Group::splat(place.x), Group::splat(place.y)),
+        }
     }
 
     #[inline(always)]
-    fn find_in_group(&mut self, first: usize) {
-        let count = GROUP.min(self.obstacles.len() - first);
-        // In place of what is no disc that moves straight on, or was not left alone, there is no number.
-        let mut numbers = [[f64::NAN; GROUP]; 6];
-        for lane in 0..count {
-            let index = first + lane;
-            if self.since[index] == self.path.first() + 1
-                && let Some(piece) = straight_disc(&self.obstacles[index])
-            {
-                let ([x, y], [u, v]) = (piece.position, piece.velocity);
-                let own = [x, y, u, v, piece.start, self.bounds[index].margin];
-                for (number, own) in numbers.iter_mut().zip(own) {
-                    number[lane] = own;
+    fn find_in_group(&mut self, place: usize, ends: [Instant; 2], head: &[Instant]) {
+        let first = place * GROUP;
+        let since = &self.since[first..self.since.len().min(first + GROUP)];
+        let begin = self.path.first() + 1;
+        let group = &self.groups[place];
+        let mut margin = self.bounds.margin(place);
+        if since != [begin; GROUP] {
+            // Nothing is farther by what is no number.
+            let alone = |lane: usize| since.get(lane) == Some(&begin);
+            let own = |lane| {
+                if alone(lane) {
+                    margin.lane(lane)
+                } else {
+                    f64::NAN
                 }
-            }
+            };
+            margin = Group::from_fn(own);
         }
-        let number = [
-            group_of(&numbers[0]),
-            group_of(&numbers[1]),
-            group_of(&numbers[2]),
-            group_of(&numbers[3]),
-            group_of(&numbers[4]),
-            group_of(&numbers[5]),
-        ];
-        let [x, y, u, v, start, margin] = number;
-        let motion = Piece {
-            start,
-            position: [x, y],
-            velocity: [u, v],
-            acceleration: [Group::splat(0.0); 2],
-        };
-        let ends = [
-            self.sees(&motion, self.path.first()),
-            self.sees(&motion, self.path.last()),
-        ];
+        let sees = |instant: &Instant| instant.place - group.at(instant.time);
+        let seen = [sees(&ends[0]), sees(&ends[1])];
+        let [u, v] = group.velocity;
         let step = Group::splat(self.clock.step);
         let way = Vector2::new(u * step, v * step);
-        let settled = self.means.nearest_at_an_end(ends, way, margin);
-        let [begin, end] = ends.map(|end| end.dot(&end));
-        self.note((first, count), settled, begin.min(end));
+        let settled = self.means.nearest_at_an_end(seen, way, margin);
+        let [begin, end] = seen.map(|end| end.dot(&end));
+        self.count(first, settled, begin.min(end));
         let open = !settled;
         if !open.any() {
             return;
         }
-        let head = self.sees(&motion, self.path.head());
-        let early = open & self.means.nearest_in_the_head(head, way, margin);
+        let Some(last) = head.last() else { return };
+        let early = open & self.means.nearest_in_the_head(sees(last), way, margin);
         if early.any() {
             let mut least = begin;
-            for step in self.path.first() + 1..=self.path.head() {
-                let seen = self.sees(&motion, step);
+            for instant in head {
+                let seen = sees(instant);
                 least = least.min(seen.dot(&seen));
             }
-            self.note((first, count), early, least);
+            self.count(first, early, least);
         }
     }
 
-    /// Notes the least distances of some lanes.
+    /// Counts all steps of some lanes, whose least distances are known.
     #[inline(always)]
-    fn note(
-        &mut self,
-        (first, count): (usize, usize),
-        known: <Group as Real>::Mask,
-        squared: Group,
-    ) {
-        if known.any() {
-            let lanes = (0..count).filter(|lane| known.lane(*lane));
-            self.found
-                .extend(lanes.map(|lane| (first + lane, squared.lane(lane))));
+    fn count(&mut self, first: usize, known: <Group as Real>::Mask, squared: Group) {
+        let end = self.path.last() + 1;
+        let lanes = self.since[first..].iter_mut().zip(&mut self.least[first..]);
+        for (lane, (since, least)) in lanes.take(GROUP).enumerate() {
+            if known.lane(lane) {
+                *least = least.min(R::splat(squared.lane(lane)));
+                *since = end;
+            }
         }
     }
 }
 
-#[inline(always)]
-fn group_of(numbers: &[f64; GROUP]) -> Group {
-    Group::from_fn(|lane| numbers[lane])
-}
-
-impl pulp::NullaryFnOnce for AtEnds<'_> {
+impl<R: Real> pulp::NullaryFnOnce for AtEnds<'_, R> {
     type Output = ();
 
     #[inline(always)]
     fn call(mut self) {
-        for first in (0..self.obstacles.len()).step_by(GROUP) {
-            self.find_in_group(first);
+        let (first, last) = (self.path.first(), self.path.last());
+        let ends = [self.instant(first), self.instant(last)];
+        let head = first + 1..=self.path.head();
+        let head: Vec<Instant> = head.map(|step| self.instant(step)).collect();
+        for place in 0..self.groups.len() {
+            self.find_in_group(place, ends, &head);
         }
     }
 }

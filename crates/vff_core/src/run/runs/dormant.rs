@@ -5,20 +5,15 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use super::Runs;
 use super::at_ends::AtEnds;
+use super::bounds::{Bounds, FEWEST_PERIODS, FirstLook, without_alarm};
 use super::path::{Passage, Path};
 use super::relevant::Relevant;
-use super::{BOUND_MARGIN, Runs};
 use crate::lanes::{Mask, Planar, Real};
 use crate::run::options::Clock;
 use crate::run::scene::{Scene, body_at};
 use crate::world::scenario::{PlacedObstacle, Scenario};
-
-/// Fewest obstacles for which it pays to tell the far ones from the near ones.
-const FEWEST: usize = 16;
-
-/// Fewest control periods for which it pays to leave an obstacle alone.
-const FEWEST_PERIODS: usize = 8;
 
 /// Fewest dormant obstacles for which it pays to look at the mean velocities of the robot.
 const FEWEST_FOR_MEANS: usize = 32;
@@ -26,30 +21,14 @@ const FEWEST_FOR_MEANS: usize = 32;
 /// Most positions of the robot that are kept.
 const LONGEST_PATH: usize = 1 << 14;
 
-/// Room for rounding: as a share of a way, and of the largest numbers that distances are made of.
-const SHARE: f64 = 1e-9;
-const ROUNDING: f64 = 1e-12;
-
 /// Mark of an obstacle that is looked at.
 const AWAKE: usize = usize::MAX;
-
-/// What bounds the distance to an obstacle.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Bound {
-    /// Distance in m beyond which it is neither felt nor touched, and room for rounding in it.
-    felt: f64,
-    pub(super) margin: f64,
-    /// Most by which the distance changes in a motion step, in m.
-    stride: f64,
-    /// Square of the distance beyond which it may be left alone, in m^2.
-    alone: f64,
-}
 
 /// The dormant obstacles of one run.
 #[derive(Clone, Debug)]
 pub(crate) struct Dormant {
     clock: Clock,
-    bounds: Vec<Bound>,
+    bounds: Bounds,
     /// First motion step whose distance to each obstacle is not counted yet, at least the second.
     since: Vec<usize>,
     /// Steps at which dormant obstacles are looked at, with their indices; none for those that sleep to
@@ -61,54 +40,62 @@ pub(crate) struct Dormant {
 }
 
 impl Dormant {
-    /// For a law that feels each obstacle within a distance in m; `None` where there are few obstacles.
-    pub fn new(
-        scenario: &Scenario,
-        clock: Clock,
+    /// Whether a scenario has so many obstacles that it pays.
+    pub fn pays(scenario: &Scenario) -> bool {
+        !scenario.obstacles.groups().is_empty()
+    }
+
+    /// Robots that have not seen the obstacles yet look at them, for a law that feels each within a distance in m;
+    /// the scene at the start, without those that are far away.
+    pub fn begin<'a, R: Real>(
+        runs: &mut Runs<&'a Scenario, R>,
+        steps: usize,
         felt_within: impl Fn(&PlacedObstacle) -> f64,
-    ) -> Option<Self> {
-        let obstacles = &scenario.obstacles;
-        if obstacles.len() < FEWEST {
-            return None;
+    ) -> (Self, Scene<&'a Scenario>) {
+        let scenario = runs.scenario;
+        let count = scenario.obstacle_count();
+        let finite = |felt: &f64| *felt < f64::INFINITY;
+        let mut felt = Vec::with_capacity(count);
+        felt.extend(
+            scenario
+                .obstacles
+                .iter()
+                .map(felt_within)
+                .take_while(finite),
+        );
+        let told_all = felt.len() < count;
+        if told_all {
+            felt.clear();
         }
-        let felt: Vec<f64> = obstacles.iter().map(felt_within).collect();
-        let told_all = felt.contains(&f64::INFINITY);
-        let felt = felt.iter().map(|felt| if told_all { 0.0 } else { *felt });
-        let bound = |(placed, felt)| Bound::of(placed, scenario, &clock, felt);
-        Some(Self {
-            clock,
-            bounds: obstacles.iter().zip(felt).map(bound).collect(),
-            since: vec![AWAKE; obstacles.len()],
+        let first = FirstLook::at(scenario, &runs.clock, &felt);
+        let mut dormant = Self {
+            clock: runs.clock,
+            bounds: first.bounds,
+            since: vec![1; count],
             alarms: BinaryHeap::new(),
             path: Path::from(scenario.start),
             relevant: told_all.then(|| Relevant::new(scenario)),
-        })
+        };
+        let distances = first.least.into_iter();
+        runs.min_distance_squared = distances.map(R::splat).collect();
+        let mut scene = Scene::of(scenario, Vec::new(), (steps, false));
+        for index in first.near {
+            let body = body_at(&scenario.obstacles[index], 0.0, &mut 0);
+            runs.watch(index, &body, 0.0, runs.running);
+            let distance = runs.min_distance_squared[index].lane(0).sqrt();
+            if !dormant.sleeps(index, 0, distance) {
+                dormant.since[index] = AWAKE;
+                scene.insert(scene.told.len(), index, &body);
+            }
+        }
+        runs.watched.truncate(scene.told.len());
+        runs.awake = Some(scene.told.clone());
+        (dormant, scene)
     }
 
     /// What the law is told of, where that is not what is looked at.
     pub fn relevant(&mut self) -> Option<&mut Relevant> {
         self.relevant.as_mut()
-    }
-
-    /// The scene at the start, without the obstacles that are far away.
-    pub fn scene<'a, R: Real>(
-        &mut self,
-        runs: &mut Runs<&'a Scenario, R>,
-        steps: usize,
-    ) -> Scene<&'a Scenario> {
-        let scenario = runs.scenario;
-        let mut scene = Scene::of(scenario, Vec::new(), (steps, false));
-        for (index, placed) in scenario.obstacles.iter().enumerate() {
-            let distance = runs.min_distance_squared[index].lane(0).sqrt();
-            if self.sleeps(index, 0, distance) {
-                self.since[index] = 1;
-            } else {
-                scene.insert(scene.told.len(), index, &body_at(placed, 0.0, &mut 0));
-            }
-        }
-        runs.watched.truncate(scene.told.len());
-        runs.awake = Some(scene.told.clone());
-        scene
     }
 
     /// At the sample of a step, for which the scene has begun: wakes obstacles that may be felt soon, and
@@ -131,7 +118,7 @@ impl Dormant {
             let index = scene.told[slot];
             let offset = scene.frames[0][slot].offset(runs.position);
             let squared = offset.distance_squared.lane(0);
-            let far = squared > self.bounds[index].alone;
+            let far = squared > self.bounds.alone(index);
             if far && self.sleeps(index, step, squared.sqrt()) {
                 self.since[index] = step + 1;
                 scene.remove(slot);
@@ -175,13 +162,9 @@ impl Dormant {
             ..
         } = self.clock;
         // All steps until then are within the bound, and so is the sample then.
-        let until = step.saturating_add(self.bounds[index].steps(distance));
+        let until = step.saturating_add(self.bounds.steps(index, distance));
         // Most need no alarm.
-        if until
-            >= end
-                .max(step + FEWEST_PERIODS * period)
-                .saturating_add(period)
-        {
+        if until >= without_alarm(&self.clock, step) {
             return true;
         }
         let alarm = until / period * period;
@@ -215,7 +198,16 @@ impl Dormant {
             self.path.measure();
         }
         if asleep >= FEWEST_FOR_MEANS {
-            self.count_at_ends(runs);
+            AtEnds {
+                path: &self.path,
+                clock: &self.clock,
+                means: &self.path.means(),
+                groups: runs.scenario.obstacles.groups(),
+                bounds: &self.bounds,
+                since: &mut self.since,
+                least: &mut runs.min_distance_squared,
+            }
+            .find();
         }
         for index in 0..self.since.len() {
             let since = self.since[index];
@@ -226,27 +218,6 @@ impl Dormant {
         }
     }
 
-    /// Counts all steps of those obstacles that have been left alone on all of the path and were nearest at one of
-    /// its ends.
-    fn count_at_ends<R: Real>(&mut self, runs: &mut Runs<&Scenario, R>) {
-        let mut found = Vec::with_capacity(self.since.len());
-        AtEnds {
-            path: &self.path,
-            clock: &self.clock,
-            means: &self.path.means(),
-            obstacles: &runs.scenario.obstacles,
-            since: &self.since,
-            bounds: &self.bounds,
-            found: &mut found,
-        }
-        .find();
-        for (index, squared) in found {
-            let least = &mut runs.min_distance_squared[index];
-            *least = least.min(R::splat(squared));
-            self.since[index] = self.path.last() + 1;
-        }
-    }
-
     /// Counts the steps so far in which an obstacle was dormant: the least of the distances that a look
     /// at each of them would have found. The path has been measured.
     fn count<R: Real>(&mut self, index: usize, runs: &mut Runs<&Scenario, R>) {
@@ -254,52 +225,18 @@ impl Dormant {
         if first >= last {
             return;
         }
-        let bound = &self.bounds[index];
+        let [stride, margin] = self.bounds.stride_and_margin(index);
         let least = runs.min_distance_squared[index].lane(0);
         let mut passage = Passage {
             path: &self.path,
             placed: &runs.scenario.obstacles[index],
             clock: &self.clock,
-            stride: bound.stride,
-            margin: bound.margin,
+            stride,
+            margin,
             nearest: least.sqrt(),
             least,
         };
         passage.look(first, last);
         runs.min_distance_squared[index] = R::splat(passage.least);
-    }
-}
-
-impl Bound {
-    fn of(placed: &PlacedObstacle, scenario: &Scenario, clock: &Clock, felt: f64) -> Self {
-        let motion = &placed.obstacle.motion;
-        let always = motion.presence() == (f64::NEG_INFINITY, f64::INFINITY);
-        let speed = placed.speed_bound.filter(|_| always);
-        let speed = speed.unwrap_or(f64::INFINITY);
-        let own = scenario.robot.max_speed;
-        let way = (own + speed) * clock.step;
-        // No number that is added up is larger than this.
-        let [x, y] = motion.at(0.0, &mut 0).position;
-        let [start_x, start_y] = scenario.start;
-        let robot = start_x.abs() + start_y.abs() + own * scenario.rules.time_limit;
-        let obstacle = x.abs() + y.abs() + speed * scenario.rules.time_limit;
-        let stride = way * (1.0 + SHARE) + robot * (2.0 * f64::EPSILON);
-        let largest = robot + obstacle + placed.obstacle.shape.extent();
-        let margin = BOUND_MARGIN + largest * ROUNDING;
-        let felt = felt.max(placed.contact_distance);
-        let periods = (FEWEST_PERIODS + 1) * clock.steps_per_sample;
-        let alone = felt + margin + periods as f64 * stride;
-        Self {
-            felt,
-            margin,
-            stride,
-            alone: alone * alone,
-        }
-    }
-
-    /// Motion steps for which an obstacle at a distance in m is neither felt nor touched.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
-    fn steps(&self, distance: f64) -> usize {
-        ((distance - self.felt - self.margin) / self.stride) as usize
     }
 }

@@ -26,26 +26,6 @@ impl Range {
         }
     }
 
-    /// Takes in the means between a mark and all places from one mark to the next, which lie on one side of it: a
-    /// mean to a place on the straight way lies between those to the two, and what is off that way counts by the
-    /// steps to it.
-    fn hold_between(
-        &mut self,
-        base: &Mark,
-        marks: [&Mark; 2],
-        mean: impl Fn([&Mark; 2]) -> Vector,
-    ) {
-        let steps = marks.map(|mark| mark.steps.abs_diff(base.steps));
-        let passed = marks[1].steps - marks[0].steps;
-        debug_assert!(passed > 0 && steps[0].abs_diff(steps[1]) == passed);
-        let off = marks[1].bend / steps[0].min(steps[1]).max(1) as f64;
-        for (mark, steps) in marks.into_iter().zip(steps) {
-            if steps > 0 {
-                self.hold(mean([base, mark]), off);
-            }
-        }
-    }
-
     /// Whether all of them, less another velocity, go along a direction by more than a share of its length.
     #[inline(always)]
     fn goes<R: Real>(&self, along: Vector2<R>, less: Vector2<R>, share: R) -> R::Mask {
@@ -55,6 +35,52 @@ impl Range {
             along[axis] * (end - less[axis])
         };
         (share * (along.x.abs() + along.y.abs())).lt(least(0) + least(1))
+    }
+}
+
+/// The means between a mark and places that are taken in one after the other.
+struct Between {
+    base: Mark,
+    axis: Vector,
+    range: Range,
+    /// The last mark, and what is off the straight way to it.
+    last: Mark,
+    off: f64,
+}
+
+impl Between {
+    fn from(base: Mark, axis: Vector, first: Mark) -> Self {
+        Self {
+            base,
+            axis,
+            range: Range::EMPTY,
+            last: first,
+            off: 0.0,
+        }
+    }
+
+    /// Takes in all places up to the next mark, which lie on one side of the base: a mean to a place on the straight
+    /// way lies between those to the two, and what is off that way counts by the steps to it.
+    fn take(&mut self, next: Mark) {
+        let steps = [self.last, next].map(|mark| mark.steps.abs_diff(self.base.steps));
+        let passed = next.steps - self.last.steps;
+        debug_assert!(passed > 0 && steps[0].abs_diff(steps[1]) == passed);
+        let off = next.bend / steps[0].min(steps[1]).max(1) as f64;
+        self.hold_last(off.max(self.off));
+        (self.last, self.off) = (next, off);
+    }
+
+    fn hold_last(&mut self, off: f64) {
+        let steps = self.last.steps as f64 - self.base.steps as f64;
+        if steps != 0.0 {
+            let way = self.last.place - self.base.place;
+            self.range.hold(along(self.axis, way * (1.0 / steps)), off);
+        }
+    }
+
+    fn all(mut self) -> Range {
+        self.hold_last(self.off);
+        self.range
     }
 }
 
@@ -96,26 +122,21 @@ impl Means {
         } else {
             Vector::new(1.0, 0.0)
         };
-        let mean = |[from, to]: [&Mark; 2]| {
-            let steps = to.steps as f64 - from.steps as f64;
-            along(axis, (to.place - from.place) * (1.0 / steps))
-        };
-        let [mut from_begin, mut from_head, mut to_end] = [Range::EMPTY; 3];
-        let mut before = begin;
+        let mut from_begin = Between::from(begin, axis, begin);
+        let mut from_head = Between::from(head, axis, head);
+        let mut to_end = Between::from(end, axis, begin);
         for mark in marks {
-            let between = [&before, &mark];
-            from_begin.hold_between(&begin, between, mean);
-            if before.steps >= head.steps {
-                from_head.hold_between(&head, between, mean);
+            from_begin.take(mark);
+            if mark.steps > head.steps {
+                from_head.take(mark);
             }
-            to_end.hold_between(&end, between, mean);
-            before = mark;
+            to_end.take(mark);
         }
         Self {
             axis,
-            from_begin,
-            from_head,
-            to_end,
+            from_begin: from_begin.all(),
+            from_head: from_head.all(),
+            to_end: to_end.all(),
         }
     }
 

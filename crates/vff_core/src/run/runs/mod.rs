@@ -2,6 +2,7 @@
 
 mod account;
 mod at_ends;
+mod bounds;
 mod dormant;
 mod ends;
 mod means;
@@ -95,18 +96,16 @@ impl<W: World<R>, R: Real> Runs<W, R> {
         for (index, body) in bodies.enumerate() {
             runs.watch(index, &body, W::Number::zero(), runs.running);
         }
-        runs.watch_walls(R::zero(), runs.running);
-        runs.remember();
         runs
     }
 
     /// Robots at their starts, before the first look at the obstacles.
-    fn at_start(world: W, clock: Clock, count: usize, maps: Maps) -> Self {
+    pub fn at_start(world: W, clock: Clock, count: usize, maps: Maps) -> Self {
         let scenario = world.common();
         let velocity = Vector2::zeros();
         let wheels = WheelModel::new(&scenario.robot, scenario.rules.heading, clock.step);
         let unset = R::splat(f64::NAN);
-        Self {
+        let mut runs = Self {
             clock,
             position: Vector2::splat(scenario.start),
             velocity,
@@ -130,8 +129,8 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             near_goal: true,
             watched: vec![true; count],
             awake: None,
-            reach: (0..count).map(|index| world.reach(index)).collect(),
-            speed_bound: (0..count).map(|index| world.speed_bound(index)).collect(),
+            reach: world.reaches(count),
+            speed_bound: world.speed_bounds(count),
             all_stand_from: world.stands_from(),
             moved: R::zero(),
             end_time: unset,
@@ -145,7 +144,10 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             at_fault: vec![R::zero(); count],
             walls: Walls::new(maps, scenario.robot.radius).map(Box::new),
             scenario: world,
-        }
+        };
+        runs.watch_walls(R::zero(), runs.running);
+        runs.remember();
+        runs
     }
 
     /// A lane takes another scenario, whose robot is at its start.
@@ -232,7 +234,6 @@ impl<W: World<R>, R: Real> Runs<W, R> {
 /// m/s, infinite if there is none; both 0 where the lane has no such obstacle.
 fn reach_and_bound(placed: Option<&PlacedObstacle>) -> (f64, f64) {
     placed.map_or((0.0, 0.0), |placed| {
-        let bound = placed.speed_bound.unwrap_or(f64::INFINITY);
-        (placed.contact_distance, bound)
+        (placed.contact_distance, placed.fastest())
     })
 }

@@ -207,15 +207,6 @@ fn step_at(place: f64, [first, last]: [usize; 2]) -> usize {
     ((place + 0.5) as usize).clamp(first, last)
 }
 
-/// Motion of a disc that is always present and moves straight on, or stands.
-#[inline]
-pub(super) fn straight_disc(placed: &PlacedObstacle) -> Option<&Piece> {
-    match placed.obstacle.shape {
-        Shape::Disc { .. } => placed.obstacle.motion.straight(),
-        Shape::Rectangle { .. } => None,
-    }
-}
-
 /// First and last of the steps of a straight way at constant speed that may be nearer than a distance, and more,
 /// where they are few.
 #[inline]
@@ -244,7 +235,7 @@ struct Sample {
 impl Passage<'_> {
     /// Looks at all steps of which any may be nearer than the nearest one.
     pub fn look(&mut self, first: usize, last: usize) {
-        if let Some(motion) = straight_disc(self.placed) {
+        if let Some(motion) = self.placed.straight_disc() {
             return self.look_straight(motion, first, last);
         }
         // What comes nearer is nearest at last.

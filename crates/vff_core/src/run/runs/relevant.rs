@@ -1,17 +1,12 @@
 //! The obstacles that a law is told of which feels them from anywhere: all of them, or those that matter for
 //! the velocities that it may choose.
 
-use crate::lanes::{Lanes, Mask, Real, Vector2};
+use crate::lanes::{Mask, Real};
 use crate::laws::outlook::{Attention, Discs, Outlook};
 use crate::run::scene::body_at;
 use crate::world::geometry::Body;
 use crate::world::motion::Piece;
-use crate::world::obstacle::Shape;
-use crate::world::scenario::{PlacedObstacle, Scenario};
-
-/// Discs that are looked at side by side.
-const GROUP: usize = 4;
-type Group = Lanes<GROUP>;
+use crate::world::scenario::{GROUP, Group, Obstacles, Scenario};
 
 /// The obstacles of one run.
 #[derive(Clone, Debug)]
@@ -23,16 +18,6 @@ pub(crate) struct Relevant {
     straight: Vec<Option<Piece>>,
     /// Cursors of the motions of all obstacles.
     cursors: Vec<usize>,
-    /// All obstacles, once they are chosen from.
-    tracks: Tracks,
-}
-
-/// Straight motions of discs side by side, with where they are at the start. What is no disc, or moves otherwise,
-/// has no number for its place.
-#[derive(Clone, Debug, Default)]
-struct Tracks {
-    groups: Vec<Discs<Group>>,
-    count: usize,
 }
 
 impl Relevant {
@@ -42,7 +27,6 @@ impl Relevant {
             bodies: Vec::new(),
             straight: Vec::new(),
             cursors: vec![0; scenario.obstacles.len()],
-            tracks: Tracks::default(),
         }
     }
 
@@ -51,16 +35,12 @@ impl Relevant {
         let all = scenario.obstacles.len();
         match attention {
             Attention::Within(outlook) => {
-                if self.tracks.groups.is_empty() {
-                    self.tracks = Tracks::of(&scenario.obstacles);
-                }
                 self.told.clear();
-                let (tracks, told) = (&self.tracks, &mut self.told);
                 pulp::Arch::new().dispatch(Choice {
-                    tracks,
+                    obstacles: &scenario.obstacles,
                     outlook: &outlook,
                     time,
-                    told,
+                    told: &mut self.told,
                 });
                 self.place(scenario, time);
             }
@@ -102,43 +82,9 @@ impl Relevant {
     }
 }
 
-impl Tracks {
-    fn of(obstacles: &[PlacedObstacle]) -> Self {
-        let groups = obstacles.chunks(GROUP).map(|chunk| {
-            let mut numbers = [[f64::NAN; GROUP]; 5];
-            for (lane, placed) in chunk.iter().enumerate() {
-                if let Some(([x, y], [u, v], radius)) = track(placed) {
-                    for (number, own) in numbers.iter_mut().zip([x, y, u, v, radius]) {
-                        number[lane] = own;
-                    }
-                }
-            }
-            let [x, y, u, v, radius] = numbers.map(|number| Group::from_fn(|lane| number[lane]));
-            Discs {
-                center: Vector2::new(x, y),
-                velocity: Vector2::new(u, v),
-                radius,
-            }
-        });
-        Self {
-            groups: groups.collect(),
-            count: obstacles.len(),
-        }
-    }
-}
-
-/// Place at the start, velocity and radius of a disc that moves straight on.
-fn track(placed: &PlacedObstacle) -> Option<([f64; 2], [f64; 2], f64)> {
-    let Shape::Disc { radius } = placed.obstacle.shape else {
-        return None;
-    };
-    let piece = placed.obstacle.motion.straight()?;
-    Some((piece.at(0.0).0, piece.velocity, radius))
-}
-
 /// Chooses the obstacles, compiled for the instructions of the processor; its bits are the same for all.
 struct Choice<'a> {
-    tracks: &'a Tracks,
+    obstacles: &'a Obstacles,
     outlook: &'a Outlook,
     time: f64,
     told: &'a mut Vec<usize>,
@@ -149,11 +95,14 @@ impl pulp::NullaryFnOnce for Choice<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Tracks { groups, count } = self.tracks;
+        let count = self.obstacles.len();
         let time = Group::splat(self.time);
-        for (place, start) in groups.iter().enumerate() {
-            let center = start.center + start.velocity * time;
-            let concerned = self.outlook.concerns(&Discs { center, ..*start });
+        for (place, group) in self.obstacles.groups().iter().enumerate() {
+            let concerned = self.outlook.concerns(&Discs {
+                center: group.at(time),
+                velocity: group.velocity.into(),
+                radius: group.radius,
+            });
             if concerned.any() {
                 let first = place * GROUP;
                 let lanes = 0..GROUP.min(count - first);
@@ -167,6 +116,7 @@ impl pulp::NullaryFnOnce for Choice<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lanes::Vector2;
     use crate::laws::planning::Planner;
     use crate::laws::planning::outline::Legs;
     use crate::laws::velocity_obstacle::tests::{Draws, crowd_around};
@@ -393,7 +343,7 @@ mod tests {
         };
         relevant.at(&scenario, 0.3, Attention::Within(outlook));
         for (index, placed) in scenario.obstacles.iter().enumerate() {
-            if track(placed).is_none() {
+            if placed.straight_disc().is_none() {
                 assert!(relevant.told.contains(&index));
             }
         }
