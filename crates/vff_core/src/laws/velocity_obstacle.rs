@@ -9,6 +9,7 @@ mod free;
 mod lines;
 mod parts;
 mod remaining;
+mod sweep;
 #[cfg(test)]
 pub(crate) mod tests;
 mod view;

@@ -6,8 +6,8 @@ use crate::lanes::{Lanes, Mask, Planar, Real, Vector2, Zero};
 use crate::laws::planning::outline::Legs;
 
 /// Discs that are looked at side by side.
-const GROUP: usize = 4;
-type Group = Lanes<GROUP>;
+pub(super) const GROUP: usize = 4;
+pub(super) type Group = Lanes<GROUP>;
 
 /// Velocities that one obstacle forbids, as seen where the robot turns into its new velocity.
 #[derive(Clone, Copy, Debug)]
@@ -31,9 +31,9 @@ pub(super) enum ConeBase {
 /// Legs of cones side by side, in the order of the cones; numbers that are none where a cone has none.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LegGroup {
-    tip: Vector2<Group>,
-    left: Vector2<Group>,
-    right: Vector2<Group>,
+    pub tip: Vector2<Group>,
+    pub left: Vector2<Group>,
+    pub right: Vector2<Group>,
 }
 
 impl LegGroup {

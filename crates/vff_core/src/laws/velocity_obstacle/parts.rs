@@ -6,7 +6,7 @@ use super::lines::Cap;
 
 /// How far within a cone a velocity is at least that counts as forbidden, relative to 1 m/s and the magnitudes:
 /// well above all roundings.
-const WITHIN: f64 = 2e-6;
+pub(super) const WITHIN: f64 = 2e-6;
 
 /// Room for roundings around a set, relative: well above all roundings.
 const BESIDE: f64 = 1e-7;
@@ -92,6 +92,17 @@ impl Part {
             }
         }
         cut
+    }
+
+    /// The part of it that is in another one, or more where that has too many corners.
+    pub fn within(mut self, other: &Self) -> Self {
+        let corners = other.corners();
+        for (index, corner) in corners.iter().enumerate() {
+            let edge = corners[(index + 1) % corners.len()] - corner;
+            let inward = Vector::new(-edge.y, edge.x);
+            self = self.beyond(inward, inward.dot(corner), NO_LINE);
+        }
+        self
     }
 
     /// Appends a corner, if there is room for it.

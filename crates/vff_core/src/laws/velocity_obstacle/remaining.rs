@@ -5,6 +5,7 @@ use super::best::Best;
 use super::cones::{Cone, LegGroup, deepest};
 use super::lines::{Cap, Reachable};
 use super::parts::{Forbidden, NO_LINE, Part};
+use super::sweep::Swept;
 use super::{Selection, Vector};
 
 /// Room for roundings around what is reachable, relative: well above all roundings.
@@ -13,8 +14,8 @@ const BESIDE: f64 = 1e-7;
 /// A velocity that is farther out of reach than this, relative, is cut off.
 const OUTSIDE: f64 = 1e-4;
 
-/// Most parts that are looked at; where these are not enough, nothing is taken away.
-const MOST: usize = 20;
+/// Most parts that are looked at after a sweep that left too much; where these are not enough, nothing is taken away.
+const MOST: usize = 40;
 
 /// Share of the disc around all of them that is little.
 const NARROW: f64 = 0.3;
@@ -23,10 +24,10 @@ const NARROW: f64 = 0.3;
 const LONGEST_PAUSE: u32 = 31;
 
 /// Most lines for which it does not pay.
-const FEW: usize = 14;
+const FEW: usize = 8;
 
 /// Where there are more cones and a larger share of the velocities may be worth enough, there are mostly more.
-const FEW_CONES: usize = 24;
+const FEW_CONES: usize = 8;
 const SMALL: f64 = 0.01;
 
 /// Most cones that are asked first, since they forbade the most promising velocities last.
@@ -43,6 +44,8 @@ pub(super) struct Remaining {
     asked: Vec<usize>,
     /// Discs around what is left.
     pub caps: Vec<Cap>,
+    /// Room for sweeps, which come first.
+    swept: Swept,
     /// For how many searches nothing is tried, and how many it were last, since too much was left.
     paused: [u32; 2],
 }
@@ -129,9 +132,16 @@ impl<'a> Best<'a> {
         if self.floor() == f64::NEG_INFINITY {
             return self.narrow(wide);
         }
-        let taken = remaining.is_worth_it() && self.take_away(remaining, wanted);
-        let narrow = |cap: &Cap| cap.radius < NARROW * wide[0].radius;
-        remaining.pause(taken && remaining.caps.iter().all(narrow));
+        let narrow = |caps: &[Cap]| {
+            let mut caps = caps.iter();
+            caps.all(|cap| cap.radius < NARROW * wide[0].radius)
+        };
+        let swept =
+            self.sweep(&mut remaining.swept, &mut remaining.caps) && narrow(&remaining.caps);
+        let taken = swept || (remaining.is_worth_it() && self.take_away(remaining, wanted));
+        if !swept {
+            remaining.pause(taken && narrow(&remaining.caps));
+        }
         self.narrow(if taken { &remaining.caps } else { wide });
     }
 
@@ -214,8 +224,8 @@ impl<'a> Best<'a> {
     /// A part that holds everything reachable that may be worth enough.
     fn outer_part(&self) -> Part {
         let (aim, across) = (self.aim, Vector::new(-self.aim.y, self.aim.x));
-        if let Some(part) = self.segment(aim, across) {
-            return part;
+        if let Some(segment) = self.segment() {
+            return segment.part([across, aim]);
         }
         let mut ahead = [self.floor(), f64::INFINITY];
         let mut beside = [f64::NEG_INFINITY, f64::INFINITY];
@@ -234,30 +244,61 @@ impl<'a> Best<'a> {
         ])
     }
 
-    /// The same between a chord and the tangents where it ends and beyond its middle; `None` where there are none.
-    fn segment(&self, aim: Vector, across: Vector) -> Option<Part> {
-        let mut least: Option<(f64, [f64; 2], Vector)> = None;
+    /// The smallest such part between a chord and the tangents where it ends and beyond its middle; `None` where there
+    /// is none.
+    pub fn segment(&self) -> Option<Segment> {
+        let mut least: Option<Segment> = None;
         for (center, radius) in self.reachable.circles() {
             let wide = radius * (1.0 + BESIDE) + BESIDE;
-            let away = self.floor() - center.dot(&aim);
+            let away = self.floor() - center.dot(&self.aim);
             // Also where a number is not one.
             if !(away > 0.0 && away < wide) {
                 continue;
             }
             let half = (wide * wide - away * away).sqrt();
-            if least.is_none_or(|(known, ..)| half < known) {
-                least = Some((half, [away, wide], center));
+            if least.is_none_or(|known| half < known.half) {
+                least = Some(Segment {
+                    center,
+                    bottom: away,
+                    top: wide,
+                    half,
+                    side: half * wide / (wide + away),
+                });
             }
         }
-        let (half, [away, wide], center) = least?;
-        let side = half * wide / (wide + away);
-        let corner = |ahead: f64, beside: f64| center + aim * ahead + across * beside;
-        Some(Part::quadrangle([
-            corner(away, -half),
-            corner(wide, -side),
-            corner(wide, side),
-            corner(away, half),
-        ]))
+        least
+    }
+}
+
+/// What is above a chord of a circle, up to the tangents where the chord ends and to that at the top, in m/s.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Segment {
+    pub center: Vector,
+    /// Heights above the center.
+    pub bottom: f64,
+    pub top: f64,
+    /// How far it goes to each side at the bottom and at the top.
+    pub half: f64,
+    pub side: f64,
+}
+
+impl Segment {
+    /// The velocity at a place, given the directions to the side and up.
+    #[inline(always)]
+    pub fn velocity(&self, [across, up]: [Vector; 2], [side, height]: [f64; 2]) -> Vector {
+        self.center + across * side + up * height
+    }
+
+    /// Its corners, counter-clockwise.
+    #[inline(always)]
+    pub fn part(&self, axes: [Vector; 2]) -> Part {
+        let corner = |side: f64, height: f64| self.velocity(axes, [side, height]);
+        Part::quadrangle([
+            corner(-self.half, self.bottom),
+            corner(-self.side, self.top),
+            corner(self.side, self.top),
+            corner(self.half, self.bottom),
+        ])
     }
 }
 
