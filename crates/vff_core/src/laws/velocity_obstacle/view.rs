@@ -15,6 +15,13 @@ const ROOM: (f64, f64) = (4e-3, 0.25);
 /// By how much the room grows where it was too small, and shrinks where it was not.
 const GROWTH: (f64, f64) = (2.0, 0.25);
 
+/// Least room as a share of the radius of the disc that holds the velocities that mattered last.
+const SHARE: f64 = 0.2;
+
+/// By how much the time for which the obstacles are chosen shrinks where the room was too small, and grows where it
+/// was not.
+const LONGER: (f64, f64) = (0.5, 2.0);
+
 /// How far off its way the robot may be, as a share of the distance that it keeps.
 const OFF: f64 = 0.1;
 
@@ -97,12 +104,8 @@ impl View {
         let (least, most) = (ROOM.0 * max_speed, ROOM.1 * max_speed);
         let growth = if self.missed > 0 { GROWTH.0 } else { GROWTH.1 };
         self.room = (self.room * growth).clamp(least, most);
-        let periods = if self.missed > 0 {
-            0.0
-        } else {
-            2.0 * self.periods
-        };
-        self.periods = periods.clamp(PERIODS.0, PERIODS.1);
+        let longer = if self.missed > 0 { LONGER.0 } else { LONGER.1 };
+        self.periods = (self.periods * longer).clamp(PERIODS.0, PERIODS.1);
     }
 }
 
@@ -152,7 +155,7 @@ impl VelocityObstaclePlanner {
                 .unwrap_or_else(|| self.first_guess(situation));
             return Cap {
                 center,
-                radius: radius + room,
+                radius: radius + room.max(SHARE * radius),
             };
         }
         let [one, other] = self.reachable(situation).circles();
