@@ -35,12 +35,12 @@ LAWS: dict[str, nav.Law] = {
 
 
 @functools.cache
-def scene(obstacles: int, *, far: bool = False) -> nav.Scenario:
+def scene(obstacles: int, *, far: bool = False, away: float = AWAY, seed: int = 3) -> nav.Scenario:
     """Return a scene with so many discs that move slowly."""
-    rng = np.random.default_rng(3)
+    rng = np.random.default_rng(seed)
     around = rng.uniform(-np.pi, np.pi, obstacles)
     near = np.stack([rng.uniform(1.0, 19.0, obstacles), rng.uniform(-8.0, 8.0, obstacles)], axis=-1)
-    ring = AWAY * rng.uniform(1.0, 2.0, obstacles)[:, None] * np.stack([np.cos(around), np.sin(around)], axis=-1)
+    ring = away * rng.uniform(1.0, 2.0, obstacles)[:, None] * np.stack([np.cos(around), np.sin(around)], axis=-1)
     speed, course = rng.uniform(0.0, 0.5, obstacles), rng.uniform(-np.pi, np.pi, obstacles)
     velocity = np.stack([speed * np.cos(course), speed * np.sin(course)], axis=-1)
     discs = [
@@ -76,6 +76,19 @@ def test_growth(benchmark: Any, law: str) -> None:
     benchmark.extra_info["us_of_none_10_100_and_1000_far"] = [round(each, 2) for each in (none, ten, hundred, away)]
     benchmark.extra_info["hundred_over_ten"] = round(hundred / ten, 2)
     benchmark.extra_info["far_over_none"] = round(away / none, 1)
+
+
+@pytest.mark.benchmark(group="a control period among a thousand far obstacles, one core")
+@pytest.mark.parametrize("away", [60.0, 200.0, 500.0])
+def test_far(benchmark: Any, away: float) -> None:
+    """What a velocity obstacle without horizon makes of far obstacles depends on where they stand: twelve scenes."""
+    own = LAWS["velocity obstacle"]
+    scenes = [scene(1000, far=True, away=away, seed=seed) for seed in range(12)]
+    benchmark.pedantic(nav.simulate_batch, (scenes, own), {"threads": 1}, rounds=ROUNDS, iterations=1)
+    none, *times = periods(own, [scene(0), *scenes])
+    ratios = sorted(round(each / none, 1) for each in times)
+    benchmark.extra_info["far_over_none"] = ratios
+    benchmark.extra_info["median"] = round(statistics.median(times) / none, 1)
 
 
 @pytest.mark.benchmark(group="a control period deep in a crowd, one core")
