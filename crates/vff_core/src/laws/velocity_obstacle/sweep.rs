@@ -90,7 +90,7 @@ impl pulp::NullaryFnOnce for Sweep<'_> {
         let end = self.segment.half;
         let mut front = [-end; 2];
         let mut known = last.as_slice();
-        // After a gap there is a cone that goes on.
+        // After a gap a cone is found that holds the front.
         for _ in 0..2 * (spans.len() * GROUP + GAPS) {
             if front[0] >= end && front[1] >= end {
                 return true;
@@ -99,7 +99,7 @@ impl pulp::NullaryFnOnce for Sweep<'_> {
             let ahead = &known[..known.len().min(AHEAD)];
             let step = ahead
                 .iter()
-                .position(|index| goes_on(spans, *index, front, end));
+                .position(|index| extends(spans, *index, front, end));
             let step = if let Some(place) = step {
                 let index = known[place];
                 known = &known[place + 1..];
@@ -189,9 +189,9 @@ impl Segment {
     }
 }
 
-/// Whether a cone forbids all of a front and goes on beyond it.
+/// Whether a cone forbids all of a front and extends beyond it.
 #[inline(always)]
-fn goes_on(spans: &[Span], index: usize, [low, high]: Front, end: f64) -> bool {
+fn extends(spans: &[Span], index: usize, [low, high]: Front, end: f64) -> bool {
     let lane = index % GROUP;
     spans.get(index / GROUP).is_some_and(|span| {
         let [begin, until] =
@@ -201,7 +201,7 @@ fn goes_on(spans: &[Span], index: usize, [low, high]: Front, end: f64) -> bool {
     })
 }
 
-/// The cone that forbids all of a front and goes on farthest.
+/// The cone that forbids all of a front and extends farthest.
 #[inline(always)]
 fn farthest(spans: &[Span], [low, high]: Front, end: f64) -> Option<usize> {
     let known = low.min(end) + high.min(end);
@@ -217,7 +217,7 @@ fn farthest(spans: &[Span], [low, high]: Front, end: f64) -> Option<usize> {
     best(known, most, places)
 }
 
-/// The cone that goes on beyond a front and begins nearest to it.
+/// The cone that extends beyond a front and begins nearest to it.
 #[inline(always)]
 fn nearest(spans: &[Span], [low, high]: Front) -> Option<usize> {
     let (low, high, zero) = (Group::splat(low), Group::splat(high), Group::splat(0.0));
