@@ -173,18 +173,18 @@ mod tests {
     }
 
     /// Asserts that a planner which is told of few obstacles decides as one that is told of all; returns how many
-    /// the two were told of.
+    /// the two were told of, and how many the first one with those of decisions that it made again.
     fn assert_same(
         scenario: &Scenario,
         settings: VelocityObstacle,
         periods: u32,
         draws: &mut Draws,
-    ) -> [usize; 2] {
+    ) -> [usize; 3] {
         let planner = || VelocityObstaclePlanner::new(settings, scenario);
         let (mut one, mut other) = (planner(), planner());
         let mut relevant = Relevant::new(scenario);
         let (mut position, mut velocity) = (Vector::zeros(), Vector::zeros());
-        let [mut told, mut all] = [0; 2];
+        let [mut told, mut all, mut asked] = [0; 3];
         for period in 0..periods {
             let time = 0.06 * f64::from(period);
             let everything = bodies_at(scenario, time);
@@ -201,6 +201,7 @@ mod tests {
             let chosen = loop {
                 let attention = one.attention(&situation);
                 let bodies = relevant.at(scenario, time, attention);
+                asked += bodies.len();
                 let chosen = one.desired_velocity(&Situation {
                     bodies,
                     ..situation
@@ -222,7 +223,7 @@ mod tests {
             velocity = Vector::from(wanted);
             position += velocity * 0.06 + within(draws, push);
         }
-        [told, all]
+        [told, all, asked]
     }
 
     #[test]
@@ -241,7 +242,7 @@ mod tests {
                 margin: [0.0, 0.1, 0.4][case % 7 % 3],
                 ..VelocityObstacle::default()
             };
-            let [few, everything] = assert_same(&scenario, settings, 24, &mut draws);
+            let [few, everything, _] = assert_same(&scenario, settings, 24, &mut draws);
             (told, all) = (told + few, all + everything);
         }
         assert!(3 * told < 2 * all, "{told} of {all}");
@@ -259,10 +260,27 @@ mod tests {
                 margin: [0.0, 0.1, 0.3][case % 7 % 3],
                 ..VelocityObstacle::default()
             };
-            let [few, everything] = assert_same(&scenario, settings, 12, &mut draws);
+            let [few, everything, _] = assert_same(&scenario, settings, 12, &mut draws);
             (told, all) = (told + few, all + everything);
         }
         assert!(10 * told < 9 * all, "{told} of {all}");
+    }
+
+    #[test]
+    fn of_a_ring_of_far_obstacles_little_is_told() {
+        let mut draws = Draws(0x9e37_79b9_7f4a_7c15);
+        let (mut asked, mut all) = (0, 0);
+        for case in 0..24 {
+            let away = [60.0, 200.0, 500.0][case % 3];
+            let scenario = crowd_around(&mut draws, 300, [away, 2.0 * away, 0.5], 10.0);
+            let settings = VelocityObstacle {
+                margin: [0.01, 0.4][case % 2],
+                ..VelocityObstacle::default()
+            };
+            let [_, everything, own] = assert_same(&scenario, settings, 12, &mut draws);
+            (asked, all) = (asked + own, all + everything);
+        }
+        assert!(10 * asked < all, "{asked} of {all}");
     }
 
     #[test]
