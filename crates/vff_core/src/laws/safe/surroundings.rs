@@ -192,7 +192,7 @@ impl Known {
             ..placed.regions
         };
         let bound = family.shield.and_then(|shield| shield.person_speed);
-        let scene = placed.speed_bound.unwrap_or(f64::INFINITY);
+        let scene = placed.fastest();
         // Half the diagonal of a rectangle that moves: yielding knows discs only.
         let (rectangle, around) = match placed.obstacle.shape {
             Shape::Disc { .. } => (false, 0.0),

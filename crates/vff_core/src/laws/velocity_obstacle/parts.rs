@@ -3,10 +3,11 @@
 use super::Vector;
 use super::cones::{Cone, ConeBase};
 use super::lines::Cap;
+use crate::lanes::{Real, Vector2};
 
 /// How far within a cone a velocity is at least that counts as forbidden, relative to 1 m/s and the magnitudes:
 /// well above all roundings.
-pub(super) const WITHIN: f64 = 2e-6;
+const WITHIN: f64 = 2e-6;
 
 /// Room for roundings around a set, relative: well above all roundings.
 const BESIDE: f64 = 1e-7;
@@ -132,6 +133,24 @@ impl Part {
     }
 }
 
+/// Directions in which the left and the right leg of a disc are left behind, and how far along them a velocity up to a
+/// size is forbidden for certain; and how far within the cone that is.
+#[inline(always)]
+pub(super) fn beyond_legs<R: Real>(
+    [left, right]: [Vector2<R>; 2],
+    tip: Vector2<R>,
+    size: R,
+) -> ([(Vector2<R>, R); 2], R) {
+    let within = (R::splat(1.0) + tip.x.abs() + tip.y.abs() + size) * R::splat(WITHIN);
+    let inward = [
+        Vector2::new(left.y, -left.x),
+        Vector2::new(-right.y, right.x),
+    ];
+    let least = |inward: &Vector2<R>| inward.dot(&tip) + within;
+    let [one, other] = inward;
+    ([(one, least(&one)), (other, least(&other))], within)
+}
+
 /// Velocities that the cone of a disc forbids for certain, those beyond two lines.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Forbidden {
@@ -148,16 +167,14 @@ impl Forbidden {
             return None;
         }
         let (legs, tip) = (cone.legs?, cone.tip);
-        let within = WITHIN * (1.0 + tip.x.abs() + tip.y.abs() + size);
-        let side =
-            |inward: Vector, number: usize| (inward, inward.dot(&tip) + within, 2 * index + number);
-        let (left, right) = (legs.left, legs.right);
+        let (beyond, room) = beyond_legs([legs.left, legs.right], tip, size);
+        let side = |number: usize| {
+            let (inward, least) = beyond[number];
+            (inward, least, 2 * index + number)
+        };
         Some(Self {
-            sides: [
-                side(Vector::new(left.y, -left.x), 0),
-                side(Vector::new(-right.y, right.x), 1),
-            ],
-            room: within,
+            sides: [side(0), side(1)],
+            room,
         })
     }
 

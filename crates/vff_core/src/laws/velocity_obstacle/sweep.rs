@@ -5,7 +5,7 @@ use super::Vector;
 use super::best::Best;
 use super::cones::{GROUP, Group, LegGroup};
 use super::lines::Cap;
-use super::parts::{Part, WITHIN};
+use super::parts::{Part, beyond_legs};
 use super::remaining::Segment;
 use crate::lanes::{Mask, Real, Vector2};
 
@@ -140,17 +140,13 @@ impl Segment {
         let number = Group::splat;
         let wide = |axis: Vector| Vector2::new(number(axis.x), number(axis.y));
         let ([across, aim], center) = (axes.map(wide), wide(self.center));
-        let within = (number(1.0 + size) + group.tip.x.abs() + group.tip.y.abs()) * number(WITHIN);
-        let from = group.tip - center;
+        let (beyond, _) = beyond_legs([group.left, group.right], group.tip, number(size));
         let far = number(FAR * self.half);
         let (mut begin, mut end) = ([-far; 2], [far; 2]);
         let mut sound = <Group as Real>::Mask::splat(true);
-        for inward in [
-            Vector2::new(group.left.y, -group.left.x),
-            Vector2::new(-group.right.y, group.right.x),
-        ] {
+        for (inward, least) in beyond {
             let (slope, rise) = (inward.dot(&across), inward.dot(&aim));
-            let least = inward.dot(&from) + within;
+            let least = least - inward.dot(&center);
             sound = sound & number(FLAT).lt(slope.abs());
             let right = number(0.0).lt(slope);
             let levels = [self.bottom, self.top];
