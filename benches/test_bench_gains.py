@@ -103,6 +103,23 @@ def test_whole_procedure(benchmark: Any, threads: int | None) -> None:
     benchmark.extra_info["episodes_per_s"] = round(search.episodes / benchmark.stats.stats.min)
 
 
+@pytest.mark.benchmark(group="the optimum of C.2 without grids")
+def test_auto(benchmark: Any) -> None:
+    """What `method="auto"` reaches with ten seeds, on all cores, with the time limit of the comparison by grids."""
+
+    def search(seed: int) -> tuple[float, float]:
+        begin = time.perf_counter()
+        found = nav.optimize_gains(SCENES, method="auto", seed=seed, time_limit=10.0)
+        return found.best_value, time.perf_counter() - begin
+
+    benchmark.pedantic(search, (0,), rounds=3, iterations=1)
+    begin = time.process_time()
+    values, seconds = zip(*map(search, range(10)), strict=True)
+    benchmark.extra_info["processor_s_of_a_search"] = round((time.process_time() - begin) / 10, 2)
+    benchmark.extra_info["seconds"] = [round(min(seconds), 2), round(max(seconds), 2)]
+    benchmark.extra_info["best_values"] = [round(min(values), 5), round(max(values), 5)]
+
+
 @pytest.mark.benchmark(group="tables C.2 to C.9")
 def test_tables_of_the_sensitivity(benchmark: Any) -> None:
     law = nav.VirtualForceField(**dict(zip(LAW.GAIN_NAMES, SOURCE, strict=True)), stabilizing="off")
