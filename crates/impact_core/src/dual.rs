@@ -2,7 +2,7 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use numeric::lanes::{One, Real, Zero};
+use numeric::lanes::{Number, One, Real, Zero};
 
 /// A value and its partial derivatives with respect to `N` parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,22 +116,46 @@ impl<const N: usize> Neg for Dual<N> {
     }
 }
 
+impl<const N: usize> Add<f64> for Dual<N> {
+    type Output = Self;
+    fn add(self, other: f64) -> Self {
+        self.chain(self.value + other, 1.0)
+    }
+}
+
+impl<const N: usize> Sub<f64> for Dual<N> {
+    type Output = Self;
+    fn sub(self, other: f64) -> Self {
+        self.chain(self.value - other, 1.0)
+    }
+}
+
+impl<const N: usize> Mul<f64> for Dual<N> {
+    type Output = Self;
+    fn mul(self, other: f64) -> Self {
+        self.chain(self.value * other, other)
+    }
+}
+
 /// Comparisons look at values only.
-impl<const N: usize> Real for Dual<N> {
+impl<const N: usize> Number for Dual<N> {
     type Mask = bool;
     const WIDTH: usize = 1;
 
-    fn splat(value: f64) -> Self {
+    fn like(self, value: f64) -> Self {
         Self::constant(value)
     }
-    fn from_fn(mut value: impl FnMut(usize) -> f64) -> Self {
+    fn like_each(self, mut value: impl FnMut(usize) -> f64) -> Self {
         Self::constant(value(0))
+    }
+    fn write(self, to: &mut [f64]) {
+        to.copy_from_slice(&[self.value][..to.len()]);
+    }
+    fn truth(self, value: bool) -> bool {
+        value
     }
     fn lane(self, _index: usize) -> f64 {
         self.value
-    }
-    fn replace(self, _index: usize, value: f64) -> Self {
-        Self::constant(value)
     }
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
@@ -140,10 +164,8 @@ impl<const N: usize> Real for Dual<N> {
     fn abs(self) -> Self {
         self.chain(self.value.abs(), 1.0_f64.copysign(self.value))
     }
-    fn copysign(self, sign: Self) -> Self {
-        let value = self.value.copysign(sign.value);
-        let slope = if value == self.value { 1.0 } else { -1.0 };
-        self.chain(value, slope)
+    fn power_of_two(self) -> Self {
+        Self::constant(self.value.power_of_two())
     }
     fn lt(self, other: Self) -> bool {
         self.value < other.value
@@ -153,5 +175,22 @@ impl<const N: usize> Real for Dual<N> {
     }
     fn select(mask: bool, then: Self, otherwise: Self) -> Self {
         if mask { then } else { otherwise }
+    }
+}
+
+impl<const N: usize> Real for Dual<N> {
+    fn splat(value: f64) -> Self {
+        Self::constant(value)
+    }
+    fn from_fn(mut value: impl FnMut(usize) -> f64) -> Self {
+        Self::constant(value(0))
+    }
+    fn replace(self, _index: usize, value: f64) -> Self {
+        Self::constant(value)
+    }
+    fn copysign(self, sign: Self) -> Self {
+        let value = self.value.copysign(sign.value);
+        let slope = if value == self.value { 1.0 } else { -1.0 };
+        self.chain(value, slope)
     }
 }

@@ -1,7 +1,7 @@
 //! Exponential, sine and cosine of numbers side by side, from basic operations only, so that their
 //! bits do not depend on the width.
 
-use crate::lanes::Real;
+use crate::lanes::{Number, Real};
 
 /// `1.5 * 2^52`: a number of moderate size added to it is rounded to an integer.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
@@ -55,29 +55,28 @@ const LOGARITHM: [f64; 10] = {
 
 /// Even and odd powers apart: half as many steps wait for each other.
 #[inline(always)]
-fn polynomial<R: Real, const N: usize>(coefficients: &[f64; N], x: R) -> R {
+fn polynomial<R: Number, const N: usize>(coefficients: &[f64; N], x: R) -> R {
     let square = x * x;
-    let mut parts = [R::zero(); 2];
+    let mut parts = [x.like(0.0); 2];
     for (power, &coefficient) in coefficients.iter().enumerate().rev() {
         let part = &mut parts[power % 2];
-        *part = *part * square + R::splat(coefficient);
+        *part = *part * square + coefficient;
     }
     parts[0] + x * parts[1]
 }
 
 /// `exp(x)` of a number that is not far above zero.
 #[inline(always)]
-pub fn exponential<R: Real>(x: R) -> R {
-    within_range(x.max(R::splat(LOWEST)))
+pub fn exponential<R: Number>(x: R) -> R {
+    within_range(x.max(x.like(LOWEST)))
 }
 
 /// `exp(x)` of a number whose rounded power of two is from -1023 to 1023; NaN of NaN.
 #[inline(always)]
-fn within_range<R: Real>(x: R) -> R {
-    let rounder = R::splat(ROUNDER);
-    let shifted = x * R::splat(std::f64::consts::LOG2_E) + rounder;
-    let whole = shifted - rounder;
-    let rest = x - whole * R::splat(LN_2[0]) - whole * R::splat(LN_2[1]);
+fn within_range<R: Number>(x: R) -> R {
+    let shifted = x * std::f64::consts::LOG2_E + ROUNDER;
+    let whole = shifted - ROUNDER;
+    let rest = x - whole * LN_2[0] - whole * LN_2[1];
     polynomial(&EXPONENTIAL, rest) * shifted.power_of_two()
 }
 
@@ -123,12 +122,11 @@ pub fn logarithm<R: Real>(x: R) -> R {
 /// Cosine and sine of a number of moderate size: those of a quarter of what is left of it beside
 /// full turns, doubled twice.
 #[inline(always)]
-pub fn cosine_and_sine<R: Real>(x: R) -> [R; 2] {
-    let one = R::splat(1.0);
-    let rounder = R::splat(ROUNDER);
-    let whole = x * R::splat(0.5 * std::f64::consts::FRAC_1_PI) + rounder - rounder;
-    let rest = x - whole * R::splat(TURN[0]) - whole * R::splat(TURN[1]);
-    let quarter = rest * R::splat(0.25);
+pub fn cosine_and_sine<R: Number>(x: R) -> [R; 2] {
+    let one = x.like(1.0);
+    let whole = x * (0.5 * std::f64::consts::FRAC_1_PI) + ROUNDER - ROUNDER;
+    let rest = x - whole * TURN[0] - whole * TURN[1];
+    let quarter = rest * 0.25;
     let square = quarter * quarter;
     let mut cosine = polynomial(&COSINE, square);
     let mut sine = polynomial(&SINE, square) * quarter;
@@ -160,7 +158,7 @@ mod tests {
             assert!(exp(x).to_bits() == result.to_bits() || exp(x).is_nan() && result.is_nan());
             assert!(lanes.lane(lane).to_bits() == exp(x).to_bits() || result.is_nan());
         }
-        assert!(Real::lane(lanes, 4).is_nan());
+        assert!(Number::lane(lanes, 4).is_nan());
     }
 
     #[test]

@@ -4,10 +4,10 @@ use super::{BatchOptions, Block, Width, code};
 use crate::columns::{Columns, HeadColumns};
 use crate::criteria::Impact;
 use crate::fast::apart::apart;
-use crate::fast::{CELL_ANGLE, FINE_CELL_ANGLE, MOST_LANES, Side, Walk, Workspace};
+use crate::fast::{CELL_ANGLE, FINE_CELL_ANGLE, MOST_LANES, Rows, Side, Walk, Workspace};
 use crate::metrics::{FREE_HORIZON, Metrics, Missing, Status};
-use numeric::lanes::{Lanes, Mask, Real};
-use pulp::{Simd, WithSimd};
+use numeric::lanes::{Number, Truth, Vectors, eight, vectors};
+use pulp::{Scalar, Simd, WithSimd};
 
 /// A row by its place in a block, and what it misses.
 type Open = (usize, Missing);
@@ -20,20 +20,28 @@ pub(super) fn fill(columns: &Columns<'_>, options: &BatchOptions, block: &mut Bl
         }
         return;
     }
-    let processor = match options.width {
-        Some(Width::One) => pulp::Arch::Scalar,
-        Some(Width::Eight) | None => pulp::Arch::new(),
+    let side_by_side = match options.width {
+        Some(Width::One) => None,
+        Some(Width::Eight) | None => vectors(),
     };
-    processor.dispatch(SideBySide {
-        columns,
-        options,
-        block,
-    });
+    match side_by_side {
+        Some(vectors) => Simd::vectorize(
+            vectors,
+            SideBySide {
+                vectors,
+                columns,
+                options,
+                block,
+            },
+        ),
+        None => by_width(Scalar, 0.0, columns, options, block),
+    }
 }
 
-/// Rows of a task side by side, compiled once for each instruction set; the widest one that the
-/// processor has is chosen at run time. The arithmetic is the same, bit for bit.
+/// Eight rows side by side, compiled for the vectors of the processor. The arithmetic is the same as that
+/// of one row, bit for bit.
 struct SideBySide<'a, 'b> {
+    vectors: Vectors,
     columns: &'a Columns<'a>,
     options: &'a BatchOptions,
     block: &'a mut Block<'b>,
@@ -44,24 +52,15 @@ impl WithSimd for SideBySide<'_, '_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self {
-            columns,
-            options,
-            block,
-        } = self;
-        // A number of every row takes two vectors of the processor; with more, registers run out.
-        // Without vectors there are no lanes.
-        if S::IS_SCALAR {
-            by_width::<_, f64>(simd, columns, options, block);
-        } else {
-            by_width::<_, Lanes<8>>(simd, columns, options, block);
-        }
+        let zero = eight(self.vectors, 0.0);
+        by_width(simd, zero, self.columns, self.options, self.block);
     }
 }
 
 #[inline(always)]
-fn by_width<S: Simd, R: Real>(
+fn by_width<S: Simd, R: Number>(
     simd: S,
+    zero: R,
     columns: &Columns<'_>,
     options: &BatchOptions,
     block: &mut Block<'_>,
@@ -71,26 +70,27 @@ fn by_width<S: Simd, R: Real>(
         apart(
             simd,
             #[inline(always)]
-            || groups::<S, R, false>(simd, columns, options, block),
+            || groups::<S, R, false>(simd, zero, columns, options, block),
         );
     } else {
         apart(
             simd,
             #[inline(always)]
-            || groups::<S, R, true>(simd, columns, options, block),
+            || groups::<S, R, true>(simd, zero, columns, options, block),
         );
     }
 }
 
 #[inline(always)]
-fn groups<S: Simd, R: Real, const ALL: bool>(
+fn groups<S: Simd, R: Number, const ALL: bool>(
     simd: S,
+    zero: R,
     columns: &Columns<'_>,
     options: &BatchOptions,
     block: &mut Block<'_>,
 ) {
     let rows = block.status.len();
-    let mut space = Workspace::new();
+    let mut space = Workspace::new(simd, zero);
     // Rows whose response has two humps or a shelf, when others are beside them.
     let mut put_off: Vec<Open> = Vec::new();
     let mut refused: Vec<Open> = Vec::new();
@@ -104,17 +104,20 @@ fn groups<S: Simd, R: Real, const ALL: bool>(
     for place in (0..rows).step_by(R::WIDTH) {
         let count = R::WIDTH.min(rows - place);
         let first = block.first + place;
-        // Lanes that are left over repeat the last row.
-        let row = |lane: usize| first + lane.min(count - 1);
-        let found = Side::<R>::of::<S, ALL>(simd, &mut space, columns, walk, row);
+        let rows = if count == R::WIDTH {
+            Rows::From(first)
+        } else {
+            each_of(count, |lane| first + lane)
+        };
+        let found = Side::of::<S, ALL>(&mut space, columns, walk, rows);
         let rows = place..place + count;
         found.store(
             block.loads.as_mut().map(|column| &mut **column),
-            rows,
+            rows.clone(),
             options.gravity,
         );
-        for lane in 0..count {
-            block.status[place + lane] = code(found.status(lane));
+        for (cell, status) in block.status[rows].iter_mut().zip(found.status()) {
+            *cell = code(status);
         }
         let lacking = found.lacking(asked);
         if lacking.any() {
@@ -144,7 +147,7 @@ fn groups<S: Simd, R: Real, const ALL: bool>(
             apart(
                 simd,
                 #[inline(always)]
-                || again::<S, R, ALL>(simd, &mut space, columns, options, block, walk, &mut open),
+                || again::<S, R, ALL>(&mut space, columns, options, block, walk, &mut open),
             );
         }
     }
@@ -153,12 +156,15 @@ fn groups<S: Simd, R: Real, const ALL: bool>(
     }
 }
 
+/// Rows of the first lanes; those that are left over repeat the last one.
+fn each_of(count: usize, row: impl Fn(usize) -> usize) -> Rows {
+    Rows::Each(std::array::from_fn(|lane| row(lane.min(count - 1))))
+}
+
 /// Looks once more at rows that miss something, side by side; those that still do remain.
 #[inline(always)]
-#[allow(clippy::too_many_arguments)]
-fn again<S: Simd, R: Real, const ALL: bool>(
-    simd: S,
-    space: &mut Workspace<R>,
+fn again<S: Simd, R: Number, const ALL: bool>(
+    space: &mut Workspace<S, R>,
     columns: &Columns<'_>,
     options: &BatchOptions,
     block: &mut Block<'_>,
@@ -166,7 +172,7 @@ fn again<S: Simd, R: Real, const ALL: bool>(
     open: &mut Vec<Open>,
 ) {
     for rows in open.chunks_mut(R::WIDTH) {
-        let row = |lane: usize| block.first + rows[lane.min(rows.len() - 1)].0;
+        let places = each_of(rows.len(), |lane| block.first + rows[lane].0);
         let wanted = rows.iter().fold(Missing::NOTHING, |wanted, (_, missing)| {
             wanted.with(*missing)
         });
@@ -174,7 +180,7 @@ fn again<S: Simd, R: Real, const ALL: bool>(
             searches: wanted.searches(),
             ..walk
         };
-        let found = Side::<R>::of::<S, ALL>(simd, space, columns, walk, row);
+        let found = Side::of::<S, ALL>(space, columns, walk, places);
         let known: [Missing; MOST_LANES] = found.known(options.gravity);
         for ((lane, (place, missing)), known) in rows.iter_mut().enumerate().zip(known) {
             let left = missing.without(known);

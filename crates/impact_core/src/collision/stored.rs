@@ -4,7 +4,7 @@
 //! region together, so the time to the largest one is the integral of `deps/eps'`. That holds on the way back of
 //! every covering, with the work that unloading returns, and on the way in of one without rate.
 
-use numeric::lanes::{Lanes, Real, each, vectors};
+use numeric::lanes::{Lanes, Number, Real, each, vectors};
 use pulp::{Simd, WithSimd};
 
 use super::loading::{Turn, first_exponent, smooth_power, turns_of};

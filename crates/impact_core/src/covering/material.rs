@@ -11,7 +11,7 @@ use super::powers::{MOST_EXPONENT, Powers, power, powers, raised, within};
 use super::quadrature::integral_before_pole;
 use super::table::Table;
 use crate::error::{Failure, Given, Result, finite, not_negative, positive};
-use numeric::lanes::{Mask, Real, each};
+use numeric::lanes::{Real, Truth, each};
 
 /// Strains at which a law is asked whether it falls.
 const LOOKS: usize = 2000;

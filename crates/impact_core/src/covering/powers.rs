@@ -213,7 +213,7 @@ pub(super) fn within(name: &str, value: f64, most: f64) -> Result<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use numeric::lanes::Lanes;
+    use numeric::lanes::{Lanes, Number};
 
     #[test]
     fn shared_logarithms_keep_powers() {

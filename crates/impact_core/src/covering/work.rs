@@ -1,6 +1,6 @@
 //! What a covering stores, of one compression or of several side by side.
 
-use numeric::lanes::{Mask, Real, each};
+use numeric::lanes::{Real, Truth, each};
 
 use super::{Covering, Pad, Shape};
 

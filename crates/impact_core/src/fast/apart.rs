@@ -24,6 +24,13 @@ pub fn apart<S: Simd, T>(simd: S, work: impl FnOnce() -> T) -> T {
     }
 }
 
+/// A function that is compiled into its callers; a longer one would else be one of its own, without their
+/// instructions.
+#[inline(always)]
+pub fn inlined<F>(function: F) -> F {
+    function
+}
+
 #[inline(never)]
 fn baseline<T>(work: impl FnOnce() -> T) -> T {
     work()

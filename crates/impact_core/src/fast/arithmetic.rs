@@ -1,6 +1,6 @@
 //! Arithmetic on numbers side by side, and on values with their derivatives.
 
-use numeric::lanes::Real;
+use numeric::lanes::Number;
 
 /// A function of every entry of a short array, in line: the standard `map` becomes a function of
 /// its own for entries this wide.
@@ -43,11 +43,12 @@ impl<R: Copy, const N: usize> MapWith<R> for [R; N] {
 
 /// Step to a zero from value, slope and curvature near it, of third order.
 #[inline(always)]
-pub(super) fn third_order<R: Real>(value: R, slope: R, curve: R) -> R {
+pub(super) fn third_order<R: Number>(value: R, slope: R, curve: R) -> R {
     let newton = value / slope;
-    let bend = R::splat(0.5) * newton * curve / slope;
-    let mild = bend.abs().lt(R::splat(0.5));
-    -(newton / R::select(mild, R::splat(1.0) - bend, R::splat(1.0)))
+    let one = slope.like(1.0);
+    let bend = newton * 0.5 * curve / slope;
+    let mild = bend.abs().lt(slope.like(0.5));
+    -(newton / R::select(mild, one - bend, one))
 }
 
 /// Binomial coefficients.
@@ -61,11 +62,11 @@ const BINOMIAL: [[f64; 5]; 5] = [
 
 /// Value and derivatives of a product, by the rule of Leibniz.
 #[inline(always)]
-pub(super) fn product<R: Real, const N: usize>(f: [R; N], g: [R; N]) -> [R; N] {
-    let mut derivatives = [R::zero(); N];
+pub(super) fn product<R: Number, const N: usize>(f: [R; N], g: [R; N]) -> [R; N] {
+    let mut derivatives = [f[0].like(0.0); N];
     for (order, (derivative, row)) in derivatives.iter_mut().zip(BINOMIAL).enumerate() {
         for (left, factor) in row.into_iter().enumerate().take(order + 1) {
-            *derivative += R::splat(factor) * f[left] * g[order - left];
+            *derivative += f[left] * factor * g[order - left];
         }
     }
     derivatives

@@ -1,6 +1,6 @@
 //! A polynomial of fourth degree as the product of two factors.
 
-use numeric::lanes::{Mask, Real};
+use numeric::lanes::Number;
 
 /// Newton steps for the sum of the squared moduli of both pairs.
 const RESOLVENT_STEPS: usize = 8;
@@ -19,7 +19,7 @@ pub(super) struct Split<R> {
     over: R,
 }
 
-impl<R: Real> Split<R> {
+impl<R: Number> Split<R> {
     #[inline(always)]
     pub(super) fn new(factors: [Factor<R>; 2]) -> Self {
         let [[a, b], [c, d]] = factors;
@@ -28,7 +28,7 @@ impl<R: Real> Split<R> {
         Self {
             factors,
             resultant,
-            over: R::splat(1.0) / resultant,
+            over: resultant.like(1.0) / resultant,
         }
     }
 
@@ -62,24 +62,23 @@ impl<R: Real> Split<R> {
 /// right of the imaginary axis; the first one has the larger last coefficient. Lanes without
 /// `settled` are wrong.
 #[inline(always)]
-pub(super) fn factors<R: Real>([q1, q2, q3, q4]: [R; 4]) -> (Split<R>, R::Mask) {
-    let four = R::splat(4.0);
+pub(super) fn factors<R: Number>([q1, q2, q3, q4]: [R; 4]) -> (Split<R>, R::Mask) {
     // The sum of the last coefficients is the largest root of a cubic, from above which Newton
     // steps fall without fail; at q2 the cubic is the determinant of Routh and Hurwitz.
-    let linear = q1 * q3 - four * q4;
-    let constant = four * q2 * q4 - q3 * q3 - q1 * q1 * q4;
+    let linear = q1 * q3 - q4 * 4.0;
+    let constant = q2 * 4.0 * q4 - q3 * q3 - q1 * q1 * q4;
     let mut sum = q2;
     for _ in 0..RESOLVENT_STEPS {
         let value = ((sum - q2) * sum + linear) * sum + constant;
-        let slope = (R::splat(3.0) * sum - q2 - q2) * sum + linear;
+        let slope = (sum * 3.0 - q2 - q2) * sum + linear;
         sum -= value / slope;
     }
-    let difference = (sum * sum - four * q4).max(R::zero()).sqrt();
-    let b = R::splat(0.5) * (sum + difference);
+    let difference = (sum * sum - q4 * 4.0).max(sum.like(0.0)).sqrt();
+    let b = (sum + difference) * 0.5;
     let d = q4 / b;
     let c = (q3 - q1 * d) / (b - d);
     let mut split = Split::new([[q1 - c, b], [c, d]]);
-    let mut settled = R::Mask::none();
+    let mut settled = sum.truth(false);
     for _ in 0..FACTOR_STEPS {
         let [[a, b], [c, d]] = split.factors;
         let missing = [
@@ -89,7 +88,7 @@ pub(super) fn factors<R: Real>([q1, q2, q3, q4]: [R; 4]) -> (Split<R>, R::Mask) 
             q4 - b * d,
         ];
         let [[da, db], [dc, dd]] = split.of(missing);
-        let limit = R::splat(SETTLED_FACTOR);
+        let limit = sum.like(SETTLED_FACTOR);
         let first = (da * da).le(limit * limit * b) & db.abs().le(limit * b);
         let second = (dc * dc).le(limit * limit * d) & dd.abs().le(limit * d);
         settled = first & second;

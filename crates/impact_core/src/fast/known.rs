@@ -1,23 +1,23 @@
 //! What is known of impacts side by side, lane by lane.
 
-use numeric::lanes::{Mask, Real};
+use numeric::lanes::Number;
 
 /// A number of each lane.
 #[derive(Clone, Copy)]
-pub struct Known<R: Real> {
+pub struct Known<R: Number> {
     /// The number.
     pub value: R,
     /// Lanes in which it holds.
     pub holds: R::Mask,
 }
 
-impl<R: Real> Known<R> {
-    /// What was not asked for.
+impl<R: Number> Known<R> {
+    /// What was not asked for, with lanes like those of a number.
     #[inline(always)]
-    pub fn nothing() -> Self {
+    pub fn nothing(like: R) -> Self {
         Self {
-            value: R::splat(f64::NAN),
-            holds: R::Mask::none(),
+            value: like.like(f64::NAN),
+            holds: like.truth(false),
         }
     }
 
@@ -32,7 +32,7 @@ impl<R: Real> Known<R> {
 }
 
 /// Peaks, duration and mean, accelerations in m/s^2.
-pub struct GroupPeaks<R: Real> {
+pub struct GroupPeaks<R: Number> {
     /// Acceleration of the head.
     pub head_acceleration: Known<R>,
     /// Contact force, in N.
@@ -48,7 +48,7 @@ pub struct GroupPeaks<R: Real> {
 }
 
 /// All other metrics, accelerations in m/s^2.
-pub struct GroupRest<R: Real> {
+pub struct GroupRest<R: Number> {
     /// Injury criteria for both windows.
     pub injury: [Known<R>; 2],
     /// Largest 3 ms mean and largest level held for 3 ms.

@@ -5,7 +5,7 @@ use super::arithmetic::{MapWith, product, third_order};
 use super::modes::{Basis, Wave};
 use super::scan::Tops;
 use super::{GroupPeaks, Known, MAX_STEPS, Solved};
-use numeric::lanes::{Mask, Real};
+use numeric::lanes::{Number, Truth};
 use pulp::Simd;
 
 /// Last step to a maximum, in cells; its fifth power, over 120, is what the value may be wrong by.
@@ -20,7 +20,7 @@ enum Quantity {
     FoamPower,
 }
 
-impl<S: Simd, R: Real> Solved<'_, S, R> {
+impl<S: Simd, R: Number> Solved<'_, S, R> {
     /// A quantity with four derivatives.
     #[inline(always)]
     fn jet(&self, quantity: Quantity, basis: &Basis<R>, time: R) -> [R; 5] {
@@ -56,35 +56,40 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
     fn largest_here(&self, quantity: Quantity, tops: &Tops<R>, ends: [R; 2]) -> Largest<R> {
         let mut accepted = self.accepted & !tops.odd;
         let mut best = R::select(ends[0].gt(ends[1]), ends[0], ends[1]);
-        let mut top = [R::zero(); 3];
+        let zero = best.like(0.0);
+        let mut top = [zero; 3];
         for place in &tops.places {
             let mut open = accepted & place.found;
             if !open.any() {
                 break;
             }
-            let mut time = place.piece.zero();
-            let mut bracket = [place.piece.from, place.piece.from + place.piece.width];
+            let mut time = place.piece().zero();
+            let mut bracket = [place.piece().from, place.piece().from + place.piece().width];
             let mut peak = best;
             for _ in 0..MAX_STEPS {
                 let basis = self.motion.modes.basis(time);
                 let [value, slope, curve, third, fourth] = self.jet(quantity, &basis, time);
                 let wanted = third_order(slope, curve, third);
-                let rising = slope.gt(R::zero());
+                let rising = slope.gt(zero);
                 bracket = [
                     R::select(rising, time, bracket[0]),
                     R::select(rising, bracket[1], time),
                 ];
                 let next = time + wanted;
                 let inside = next.ge(bracket[0]) & next.le(bracket[1]);
-                let middle = R::splat(0.5) * (bracket[0] + bracket[1]);
+                let middle = (bracket[0] + bracket[1]) * 0.5;
                 let step = R::select(inside, wanted, middle - time);
-                let bend = R::splat(1.0 / 6.0) * third + step * R::splat(1.0 / 24.0) * fourth;
-                let found = value + step * (slope + step * (R::splat(0.5) * curve + step * bend));
+                let bend = third * (1.0 / 6.0) + step * (1.0 / 24.0) * fourth;
+                let found = value + step * (slope + step * (curve * 0.5 + step * bend));
                 time = R::select(open, time + step, time);
                 let higher = open & found.gt(best);
                 peak = R::select(open, R::select(higher, found, best), peak);
-                top = [time, curve, third].map_with(top, |new, old| R::select(higher, new, old));
-                open = open & !step.abs().lt(R::splat(SETTLED));
+                top = [time, curve, third].map_with(
+                    top,
+                    #[inline(always)]
+                    |new, old| R::select(higher, new, old),
+                );
+                open = open & !step.abs().lt(zero.like(SETTLED));
                 if !open.any() {
                     break;
                 }
@@ -110,12 +115,12 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
     /// Peaks that are wanted, duration and mean.
     #[inline(always)]
     pub fn peaks(&self) -> GroupPeaks<R> {
-        let zero = R::zero();
+        let zero = self.end.like(0.0);
         let searches = self.searches;
         let length = self.motion.modes.length;
         let first = self.space.head[0][1];
         let at_end = self.motion.compression(&self.at_end, self.end);
-        let mut acceleration = Known::nothing();
+        let mut acceleration = Known::nothing(zero);
         let mut top = [zero; 3];
         // A window needs its top.
         if searches.acceleration || searches.windows() {
@@ -126,13 +131,13 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
             acceleration = largest.known.over(length * length);
             top = largest.top;
         }
-        let mut compression = Known::nothing();
+        let mut compression = Known::nothing(zero);
         if searches.compression {
             let tops = &self.space.found.compression;
             let ends = [zero, at_end[0]];
             compression = self.largest(Quantity::Compression, tops, ends).known;
         }
-        let mut force = Known::nothing();
+        let mut force = Known::nothing(zero);
         if searches.force {
             let ends = [self.first_force(), self.motion.force(&at_end)[0]];
             let tops = &self.space.found.force;
@@ -150,7 +155,7 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
             compression,
             duration: known(R::select(
                 self.lasting,
-                R::splat(f64::INFINITY),
+                zero.like(f64::INFINITY),
                 self.end * length,
             )),
             mean: known(gained / (self.end * length * length)),
@@ -187,7 +192,7 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
 }
 
 /// The largest value of a quantity.
-struct Largest<R: Real> {
+struct Largest<R: Number> {
     known: Known<R>,
     /// Time, second and third derivative of the top that it is at, if it is one.
     top: [R; 3],

@@ -26,12 +26,12 @@ use apart::apart;
 use arithmetic::{Each, product, third_order};
 use known::{GroupPeaks, GroupRest, Known};
 use modes::{Basis, Motion, Wave};
-use numeric::lanes::{Mask, Real};
+use numeric::lanes::{Number, Truth};
 use pulp::Simd;
 use scan::{Place, touching};
-pub(crate) use side::{MOST_LANES, Side, Walk, usual};
+pub(crate) use side::{MOST_LANES, Rows, Side, Walk, usual};
 pub use space::Workspace;
-use space::{NODES, Node, Step};
+use space::{NODES, Node, Step, Walked};
 
 /// Newton steps after which a place is refused.
 const MAX_STEPS: usize = 12;
@@ -76,9 +76,9 @@ pub struct Group<R> {
 }
 
 /// A group with its motion and what the walk along it noted.
-pub struct Solved<'a, S, R: Real> {
+pub struct Solved<'a, S, R: Number> {
     simd: S,
-    motion: Motion<S, R>,
+    motion: &'a Motion<S, R>,
     /// `v_r`, in m per cell.
     manipulator_speed: R,
     /// Impact period, in cells; the horizon in lanes without a release before it.
@@ -88,7 +88,7 @@ pub struct Solved<'a, S, R: Real> {
     at_end: Basis<R>,
     /// Nodes before the end, at most.
     nodes: usize,
-    space: &'a mut Workspace<R>,
+    space: &'a mut Walked<R>,
     /// The largest acceleration at a node so far.
     highest: R,
     /// What the cubic over a cell may be wrong by, over that.
@@ -105,31 +105,44 @@ pub struct Solved<'a, S, R: Real> {
     accepted: R::Mask,
 }
 
-impl<R: Real> Group<R> {
+impl<R: Number> Group<R> {
     /// Walks along the motion until every impact has ended or is refused.
     #[inline(always)]
     pub fn solve<'a, S: Simd, const POWERS: bool>(
         &self,
-        simd: S,
-        space: &'a mut Workspace<R>,
+        space: &'a mut Workspace<S, R>,
         valid: R::Mask,
     ) -> Solved<'a, S, R> {
-        let (zero, one) = (R::zero(), R::splat(1.0));
+        let Workspace {
+            simd,
+            zero,
+            motion,
+            walked: space,
+        } = space;
+        let (simd, zero) = (*simd, *zero);
+        let one = zero.like(1.0);
+        let none = zero.truth(false);
         let square = (self.cell_angle / CELL_ANGLE) * (self.cell_angle / CELL_ANGLE);
         space.found.clear();
         let mut solved = Solved {
             simd,
-            motion: Motion::new(simd, &self.plant, self.closing_speed, self.cell_angle),
+            motion: Motion::fill(
+                motion,
+                simd,
+                &self.plant,
+                self.closing_speed,
+                self.cell_angle,
+            ),
             manipulator_speed: zero,
             end: zero,
-            lasting: R::Mask::none(),
+            lasting: none,
             at_end: [one, zero, one, zero],
             nodes: 0,
             space,
             highest: zero,
             flat: FLAT * (square * square),
-            ragged: R::Mask::none(),
-            shelf: R::Mask::none(),
+            ragged: none,
+            shelf: none,
             humps: self.humps,
             searches: self.searches,
             accepted: valid,
@@ -137,7 +150,7 @@ impl<R: Real> Group<R> {
         let length = solved.motion.modes.length;
         solved.manipulator_speed = self.manipulator_speed * length;
         solved.accepted = solved.accepted & solved.motion.accepted;
-        let horizon = R::splat(self.horizon) / length;
+        let horizon = zero.like(self.horizon) / length;
         let turn = solved.motion.modes.basis(one);
         let mut basis = [one, zero, one, zero];
         solved.reach::<POWERS>(0, &basis, zero);
@@ -147,10 +160,10 @@ impl<R: Real> Group<R> {
         solved.space.head[0] = first.head();
         // Also false for what is not a number.
         let mut alive = solved.accepted & turn[0].le(one);
-        let mut end = Place::none();
+        let mut end = Place::none(zero);
         for index in 1..NODES {
             basis = solved.motion.modes.turned(&basis, &turn);
-            let time = R::splat(index as f64);
+            let time = zero.like(index as f64);
             solved.reach::<POWERS>(index, &basis, time);
             solved.nodes = index;
             solved.space.head[index] = solved.space.pair[index % 2].head();
@@ -172,7 +185,7 @@ impl<R: Real> Group<R> {
     }
 }
 
-impl<S: Simd, R: Real> Solved<'_, S, R> {
+impl<S: Simd, R: Number> Solved<'_, S, R> {
     /// Puts what is at a node where the node before the last one was.
     #[inline(always)]
     fn reach<const POWERS: bool>(&mut self, index: usize, basis: &Basis<R>, time: R) {
@@ -192,8 +205,9 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         let third = motion.compression[3].at(basis);
         let slope = stiffness * rate + damping * second;
         let curve = stiffness * second + damping * third;
-        let (mut manipulator_power, mut foam_power) = ([R::zero(); 2], [R::zero(); 2]);
-        let mut velocity = R::zero();
+        let zero = time.like(0.0);
+        let (mut manipulator_power, mut foam_power) = ([zero; 2], [zero; 2]);
+        let mut velocity = zero;
         if POWERS {
             velocity = motion.head[0].at(basis);
         }
@@ -239,13 +253,16 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
 
     #[inline(always)]
     fn look_here<const POWERS: bool>(&mut self, inside: R::Mask, index: usize) {
-        let zero = R::zero();
-        let Workspace { pair, found, .. } = &mut *self.space;
+        let zero = self.highest.like(0.0);
+        let Walked { pair, found, .. } = &mut *self.space;
         let step = Step::ending(pair, index);
         let fall = step.piece(Node::fall);
-        let bend = step.piece(|node| [node.acceleration[1], node.acceleration[2]]);
+        let bend = step.piece(
+            #[inline(always)]
+            |node| [node.acceleration[1], node.acceleration[2]],
+        );
         self.highest = self.highest.max(fall.values[0]);
-        let slack = R::splat(self.flat) * self.highest;
+        let slack = self.highest * self.flat;
         let ([dips, _], _) = touching(inside, &fall, slack);
         self.accepted = self.accepted & !dips;
         let ([above, below], beyond) = touching(inside, &bend, zero);
@@ -255,34 +272,56 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
             let low = fall.values[0].min(fall.values[1]) - beyond * bend.width;
             self.accepted = self.accepted & !(wavers & low.le(zero));
         }
-        let [up, still_up] = bend.values.each(|value| value.gt(zero));
+        let [up, still_up] = bend.values.each(
+            #[inline(always)]
+            |value| value.gt(zero),
+        );
         let valley = inside & !up & still_up;
         if valley.any() {
             self.ragged = self.ragged | (valley & found.valley.found);
             found.valley.note(valley, bend);
         }
         if POWERS {
-            let [bent_up, still_bent_up] = bend.slopes.each(|slope| slope.gt(zero));
+            let [bent_up, still_bent_up] = bend.slopes.each(
+                #[inline(always)]
+                |slope| slope.gt(zero),
+            );
             let fall = !up & !still_up & bent_up & !still_bent_up;
             let rise = up & still_up & !bent_up & still_bent_up;
             self.shelf = self.shelf | (inside & (fall | rise));
         }
         found.acceleration.look(inside, &bend);
-        let closing = step.piece(|node| node.compression);
+        let closing = step.piece(
+            #[inline(always)]
+            |node| node.compression,
+        );
         if self.searches.force {
-            found.force.look(inside, &step.piece(|node| node.force));
+            found.force.look(
+                inside,
+                &step.piece(
+                    #[inline(always)]
+                    |node| node.force,
+                ),
+            );
         }
         if self.searches.compression {
             found.compression.look(inside, &closing);
         }
         if POWERS && self.searches.powers {
-            let power = step.piece(|node| node.manipulator_power);
+            let power = step.piece(
+                #[inline(always)]
+                |node| node.manipulator_power,
+            );
             found.manipulator_power.look(inside, &power);
             // A foam that expands takes no power.
             let inside = inside & closing.values[0].gt(zero);
-            found
-                .foam_power
-                .look(inside, &step.piece(|node| node.foam_power));
+            found.foam_power.look(
+                inside,
+                &step.piece(
+                    #[inline(always)]
+                    |node| node.foam_power,
+                ),
+            );
         }
     }
 
@@ -299,18 +338,19 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
 
     #[inline(always)]
     fn finish_here<const POWERS: bool>(&mut self, end: &Place<R>, horizon: R) {
-        let mut time = end.piece.zero();
+        let mut time = end.piece().zero();
         let mut open = self.accepted & end.found & !self.lasting;
-        let mut steep = R::Mask::none();
+        let zero = time.like(0.0);
+        let mut steep = zero.truth(false);
         self.at_end = self.motion.modes.basis(time);
         for _ in 0..MAX_STEPS {
             let [value, slope, curve] = Wave::values(&self.motion.head, 1, &self.at_end);
-            let step = R::select(open, third_order(value, slope, curve), R::zero());
+            let step = R::select(open, third_order(value, slope, curve), zero);
             time += step;
             // Else it may be a pair of zeros, or none.
-            let here = slope.abs().gt(R::splat(STEEP) * curve.abs());
+            let here = slope.abs().gt(curve.abs() * STEEP);
             steep = (steep & !open) | (here & open);
-            let near = step.abs().lt(R::splat(SETTLED_ZERO));
+            let near = step.abs().lt(zero.like(SETTLED_ZERO));
             // Where the step is as small as that, only rounding is lost.
             self.at_end = self.motion.modes.advanced(&self.at_end, step);
             open = open & !near;
@@ -322,10 +362,10 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
                 *function = R::select(open, anew, *function);
             }
         }
-        let past = time - end.piece.from;
-        let slack = R::splat(1e-9);
+        let past = time - end.piece().from;
+        let slack = zero.like(1e-9);
         let released =
-            !open & steep & past.ge(-slack) & past.le(end.piece.width + slack) & !self.lasting;
+            !open & steep & past.ge(-slack) & past.le(end.piece().width + slack) & !self.lasting;
         self.accepted = self.accepted & end.found & (released | self.lasting);
         self.lasting = self.accepted & (self.lasting | time.ge(horizon));
         if self.lasting.any() {
@@ -336,11 +376,11 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
             }
         }
         let slow = self.motion.modes.slow() * time * time;
-        self.accepted = self.accepted & slow.gt(R::splat(SLOWEST));
+        self.accepted = self.accepted & slow.gt(zero.like(SLOWEST));
         self.end = time;
-        let before = self.motion.modes.basis(end.piece.from);
+        let before = self.motion.modes.basis(end.piece().from);
         let at_end = self.at_end;
-        self.reach::<POWERS>(0, &before, end.piece.from);
+        self.reach::<POWERS>(0, &before, end.piece().from);
         self.reach::<POWERS>(1, &at_end, time);
         self.look::<POWERS>(self.accepted, 1);
     }
@@ -349,7 +389,8 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
     #[inline(always)]
     pub fn rest(&mut self, peaks: &GroupPeaks<R>) -> GroupRest<R> {
         let searches = self.searches;
-        let nothing = [Known::nothing(); 2];
+        let zero = self.end.like(0.0);
+        let nothing = [Known::nothing(zero); 2];
         let powers = if searches.powers {
             self.powers()
         } else {
@@ -361,10 +402,10 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         // The horizon cuts off what comes after it like a steep flank: together with one that flattens
         // before it that is a shelf.
         let [_, slope, curve] = Wave::values(&self.motion.head, 1, &self.at_end);
-        let cut = self.lasting & (slope.ge(R::zero()) | curve.gt(R::zero()));
+        let cut = self.lasting & (slope.ge(zero) | curve.gt(zero));
         self.shelf = self.shelf | cut;
         let put_off = if self.humps || !searches.windows() {
-            R::Mask::none()
+            zero.truth(false)
         } else {
             course & (found.valley.found | self.shelf)
         };
@@ -398,7 +439,7 @@ mod tests {
     fn a_map_of_foams_has_the_usual_shape() {
         let nodes = 60;
         let mut refused = 0;
-        let mut space = Workspace::new();
+        let mut space = Workspace::new(Scalar, 0.0);
         for row in 0..nodes * nodes {
             let system = System {
                 manipulator: MANIPULATOR_1,
@@ -419,7 +460,7 @@ mod tests {
                 humps: true,
                 searches: Searches::ALL,
             };
-            let mut solved = group.solve::<_, true>(Scalar, &mut space, true);
+            let mut solved = group.solve::<_, true>(&mut space, true);
             let peaks = solved.peaks();
             let rest = solved.rest(&peaks);
             let all = [rest.injury, rest.held, rest.powers];

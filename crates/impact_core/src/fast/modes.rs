@@ -11,12 +11,12 @@
 //! so equal roots within a pair need nothing special. Two pairs that come close do: such impacts
 //! are refused.
 
-use super::apart::apart;
+use super::apart::{apart, inlined};
 use super::arithmetic::{Each, MapWith};
 use super::factors::{Split, factors};
 use crate::series::Plant;
 use numeric::elementary::{cosine_and_sine, exponential};
-use numeric::lanes::{Mask, Real};
+use numeric::lanes::{Number, Truth};
 use pulp::Simd;
 
 /// Least resultant of the pairs over the fourth power of the fastest root's modulus; rounding
@@ -27,7 +27,7 @@ const NEARLY_EQUAL: f64 = 1e-5;
 
 /// Two pairs of roots, times in cells.
 #[derive(Clone, Copy)]
-pub struct Modes<S, R: Real> {
+pub struct Modes<S, R: Number> {
     /// Instructions that may be used.
     simd: S,
     /// Length of a cell, in s.
@@ -55,7 +55,7 @@ pub type Basis<R> = [R; 4];
 #[derive(Clone, Copy, Debug)]
 pub struct Wave<R>(pub [R; 4]);
 
-impl<R: Real> Wave<R> {
+impl<R: Number> Wave<R> {
     /// Its value.
     #[inline(always)]
     pub fn at(&self, basis: &Basis<R>) -> R {
@@ -67,7 +67,7 @@ impl<R: Real> Wave<R> {
     /// without the instructions of their caller.
     #[inline(always)]
     pub fn values<const N: usize>(waves: &[Self], first: usize, basis: &Basis<R>) -> [R; N] {
-        let mut values = [R::zero(); N];
+        let mut values = [basis[0]; N];
         for (value, wave) in values.iter_mut().zip(&waves[first..first + N]) {
             *value = wave.at(basis);
         }
@@ -88,7 +88,7 @@ impl<R: Real> Wave<R> {
     }
 }
 
-impl<S: Simd, R: Real> Modes<S, R> {
+impl<S: Simd, R: Number> Modes<S, R> {
     /// Squared modulus of the slower pair.
     #[inline(always)]
     pub fn slow(&self) -> R {
@@ -99,22 +99,28 @@ impl<S: Simd, R: Real> Modes<S, R> {
     /// are given: a wave again.
     #[inline(always)]
     pub fn growth(&self, wave: Wave<R>, by: &Basis<R>) -> Wave<R> {
-        wave.by_pairs(|pair, p, q| {
-            let (c, s) = (by[2 * pair], by[2 * pair + 1]);
-            [
-                (p * c + q * s) - p,
-                (q * c - p * (self.square[pair] * s)) - q,
-            ]
-        })
+        wave.by_pairs(
+            #[inline(always)]
+            |pair, p, q| {
+                let (c, s) = (by[2 * pair], by[2 * pair + 1]);
+                [
+                    (p * c + q * s) - p,
+                    (q * c - p * (self.square[pair] * s)) - q,
+                ]
+            },
+        )
     }
 
     /// Derivative of a wave.
     #[inline(always)]
     pub fn slope(&self, wave: Wave<R>) -> Wave<R> {
-        wave.by_pairs(|pair, p, q| {
-            let (decay, square) = (self.decay[pair], self.square[pair]);
-            [q - decay * p, -(square * p + decay * q)]
-        })
+        wave.by_pairs(
+            #[inline(always)]
+            |pair, p, q| {
+                let (decay, square) = (self.decay[pair], self.square[pair]);
+                [q - decay * p, -(square * p + decay * q)]
+            },
+        )
     }
 
     /// The functions a little later, to the second power of the step.
@@ -123,12 +129,15 @@ impl<S: Simd, R: Real> Modes<S, R> {
         let mut advanced = *basis;
         for pair in 0..2 {
             let (decay, square) = (self.decay[pair], self.square[pair]);
-            let slope = |[c, s]: [R; 2]| [-(decay * c + square * s), c - decay * s];
+            let slope = inlined(
+                #[inline(always)]
+                |[c, s]: [R; 2]| [-(decay * c + square * s), c - decay * s],
+            );
             let now = [basis[2 * pair], basis[2 * pair + 1]];
             let first = slope(now);
             let second = slope(first);
             for part in 0..2 {
-                let bend = R::splat(0.5) * step * second[part];
+                let bend = step * 0.5 * second[part];
                 advanced[2 * pair + part] = now[part] + step * (first[part] + bend);
             }
         }
@@ -152,11 +161,14 @@ impl<S: Simd, R: Real> Modes<S, R> {
     /// Integral of a wave that has no constant part.
     #[inline(always)]
     pub fn integral(&self, wave: Wave<R>) -> Wave<R> {
-        wave.by_pairs(|pair, p, q| {
-            let decay = self.decay[pair];
-            let integrated = -(q + decay * p) / self.modulus[pair];
-            [integrated, p + decay * integrated]
-        })
+        wave.by_pairs(
+            #[inline(always)]
+            |pair, p, q| {
+                let decay = self.decay[pair];
+                let integrated = -(q + decay * p) / self.modulus[pair];
+                [integrated, p + decay * integrated]
+            },
+        )
     }
 
     /// The four functions at a time.
@@ -171,19 +183,19 @@ impl<S: Simd, R: Real> Modes<S, R> {
 
     #[inline(always)]
     fn basis_here(&self, time: R) -> Basis<R> {
-        let mut basis = [R::zero(); 4];
+        let mut basis = [time; 4];
         for pair in 0..2 {
             let (real, frequency) = (self.real[pair], self.frequency[pair]);
             let decay = exponential(-(self.slower[pair] * time));
             let [cosine, sine] = cosine_and_sine(frequency * time);
             let mut scaled = [decay * cosine, decay * sine];
             if real.any() {
-                let half = R::splat(0.5);
                 let fast = exponential(-(self.faster[pair] * time));
-                scaled = [half * (decay + fast), half * (decay - fast)]
-                    .map_with(scaled, |real_roots, other| {
-                        R::select(real, real_roots, other)
-                    });
+                scaled = [(decay + fast) * 0.5, (decay - fast) * 0.5].map_with(
+                    scaled,
+                    #[inline(always)]
+                    |real_roots, other| R::select(real, real_roots, other),
+                );
             }
             basis[2 * pair] = scaled[0];
             basis[2 * pair + 1] = scaled[1] / frequency;
@@ -194,14 +206,17 @@ impl<S: Simd, R: Real> Modes<S, R> {
     /// The functions at a time, turned on by as much as they turn from first contact to another.
     #[inline(always)]
     pub fn turned(&self, basis: &Basis<R>, by: &Basis<R>) -> Basis<R> {
-        let turn = |pair: usize| {
-            let (c, s) = (basis[2 * pair], basis[2 * pair + 1]);
-            let (by_c, by_s) = (by[2 * pair], by[2 * pair + 1]);
-            [
-                c * by_c - s * (self.square[pair] * by_s),
-                s * by_c + c * by_s,
-            ]
-        };
+        let turn = inlined(
+            #[inline(always)]
+            |pair: usize| {
+                let (c, s) = (basis[2 * pair], basis[2 * pair + 1]);
+                let (by_c, by_s) = (by[2 * pair], by[2 * pair + 1]);
+                [
+                    c * by_c - s * (self.square[pair] * by_s),
+                    s * by_c + c * by_s,
+                ]
+            },
+        );
         let ([a, b], [c, d]) = (turn(0), turn(1));
         [a, b, c, d]
     }
@@ -209,7 +224,7 @@ impl<S: Simd, R: Real> Modes<S, R> {
 
 /// The motion of an impact, times in cells.
 #[derive(Clone, Copy)]
-pub struct Motion<S, R: Real> {
+pub struct Motion<S, R: Number> {
     /// Its roots.
     pub modes: Modes<S, R>,
     /// Velocity of the head against the torso up to a constant, and five derivatives.
@@ -228,14 +243,20 @@ pub struct Motion<S, R: Real> {
     pub accepted: R::Mask,
 }
 
-impl<S: Simd, R: Real> Motion<S, R> {
-    /// The motion of a plant with a closing speed, in m/s.
+impl<S: Simd, R: Number> Motion<S, R> {
+    /// The motion of a plant with a closing speed, in m/s, where there is room for it.
     #[inline(always)]
-    pub fn new(simd: S, plant: &Plant<R>, closing_speed: R, cell_angle: f64) -> Self {
+    pub fn fill<'a>(
+        room: &'a mut Option<Self>,
+        simd: S,
+        plant: &Plant<R>,
+        closing_speed: R,
+        cell_angle: f64,
+    ) -> &'a Self {
         apart(
             simd,
             #[inline(always)]
-            || Self::new_here(simd, plant, closing_speed, cell_angle),
+            || room.insert(Self::new_here(simd, plant, closing_speed, cell_angle)),
         )
     }
 
@@ -269,19 +290,25 @@ impl<S: Simd, R: Real> Motion<S, R> {
         let speed = closing_speed * length;
         let foam = [foam_stiffness, foam_damping / length];
         // (K_c + C_c s) v_c (s^2 + b1 s + b2) / M over the quartic, b of the other body.
-        let pushed = |inverse: R, damping: R, stiffness: R| {
-            let scale = inverse * length * length * speed;
-            let (b1, b2) = (damping * length, stiffness * length * length);
-            let (k, c) = (foam[0] * scale, foam[1] * scale);
-            let parts = split.of([c, k + c * b1, k * b1 + c * b2, k * b2]);
-            let wave = |[a, b]: [R; 2], decay: R| [a, b - a * decay];
-            let [p, q] = wave(parts[0], modes.decay[0]);
-            let [r, s] = wave(parts[1], modes.decay[1]);
-            Wave([p, q, r, s])
-        };
+        let pushed = inlined(
+            #[inline(always)]
+            |inverse: R, damping: R, stiffness: R| {
+                let scale = inverse * length * length * speed;
+                let (b1, b2) = (damping * length, stiffness * length * length);
+                let (k, c) = (foam[0] * scale, foam[1] * scale);
+                let parts = split.of([c, k + c * b1, k * b1 + c * b2, k * b2]);
+                let wave = inlined(
+                    #[inline(always)]
+                    |[a, b]: [R; 2], decay: R| [a, b - a * decay],
+                );
+                let [p, q] = wave(parts[0], modes.decay[0]);
+                let [r, s] = wave(parts[1], modes.decay[1]);
+                Wave([p, q, r, s])
+            },
+        );
         let head = pushed(head_inverse, arm_damping, arm_stiffness);
         let lag = pushed(arm_inverse, head_damping, head_stiffness);
-        let mut closing = Wave([R::zero(); 4]);
+        let mut closing = head;
         for (index, part) in closing.0.iter_mut().enumerate() {
             *part = -(head.0[index] + lag.0[index]);
         }
@@ -312,7 +339,7 @@ impl<S: Simd, R: Real> Motion<S, R> {
     /// Contact force and four derivatives from those of the compression.
     #[inline(always)]
     pub fn force(&self, compression: &[R; 6]) -> [R; 5] {
-        let mut force = [R::zero(); 5];
+        let mut force = [compression[0]; 5];
         for (order, value) in force.iter_mut().enumerate() {
             *value = self.foam[0] * compression[order] + self.foam[1] * compression[order + 1];
         }
@@ -322,46 +349,70 @@ impl<S: Simd, R: Real> Motion<S, R> {
 
 /// Roots of both factors in units of cells, the factors in these units, and lanes that hold.
 #[inline(always)]
-fn modes<S: Simd, R: Real>(
+fn modes<S: Simd, R: Number>(
     simd: S,
     split: &Split<R>,
     cell_angle: f64,
 ) -> (Modes<S, R>, Split<R>, R::Mask) {
-    let zero = R::zero();
-    let half = R::splat(0.5);
+    let zero = split.resultant.like(0.0);
     let mut fastest = zero;
     for [first, last] in split.factors {
-        let alpha = half * first;
+        let alpha = first * 0.5;
         let spread = (alpha * alpha - last).max(zero).sqrt();
         let real = alpha.ge(last.sqrt());
         fastest = fastest.max(R::select(real, alpha + spread, last.sqrt()));
     }
-    let length = R::splat(cell_angle) / fastest;
+    let length = zero.like(cell_angle) / fastest;
     let square_length = length * length;
-    let scaled = split
-        .factors
-        .each(|[first, last]| [first * length, last * square_length]);
-    let decay = scaled.each(|[first, _]| half * first);
-    let modulus = scaled.each(|[_, last]| last);
-    let square = [0, 1].each(|pair: usize| modulus[pair] - decay[pair] * decay[pair]);
-    let limit = R::splat(NEARLY_EQUAL);
-    let clear = |pair: usize| {
-        square[pair].gt(modulus[pair] * R::splat(1e-20)) | (-square[pair]).gt(limit * modulus[pair])
-    };
+    let scaled = split.factors.each(
+        #[inline(always)]
+        |[first, last]| [first * length, last * square_length],
+    );
+    let decay = scaled.each(
+        #[inline(always)]
+        |[first, _]| first * 0.5,
+    );
+    let modulus = scaled.each(
+        #[inline(always)]
+        |[_, last]| last,
+    );
+    let square = [0, 1].each(
+        #[inline(always)]
+        |pair: usize| modulus[pair] - decay[pair] * decay[pair],
+    );
+    let clear = inlined(
+        #[inline(always)]
+        |pair: usize| {
+            square[pair].gt(modulus[pair] * 1e-20)
+                | (-square[pair]).gt(modulus[pair] * NEARLY_EQUAL)
+        },
+    );
     let scaled = Split::new(scaled);
-    let fourth = R::splat(LEAST_RESULTANT) * modulus[0] * modulus[0];
+    let fourth = modulus[0] * LEAST_RESULTANT * modulus[0];
     let accepted = clear(0)
         & clear(1)
         & scaled.resultant.gt(fourth)
         & decay[0].ge(zero)
         & decay[1].ge(zero)
         & modulus[1].gt(zero);
-    let frequency = square.each(|value| value.abs().sqrt());
-    let real = square.each(|value| value.lt(zero));
-    let faster = decay.map_with(frequency, |decay, frequency| decay + frequency);
+    let frequency = square.each(
+        #[inline(always)]
+        |value| value.abs().sqrt(),
+    );
+    let real = square.each(
+        #[inline(always)]
+        |value| value.lt(zero),
+    );
+    let faster = decay.map_with(
+        frequency,
+        #[inline(always)]
+        |decay, frequency| decay + frequency,
+    );
     // The slower root is the product over the faster one.
-    let slower =
-        [0, 1].each(|pair: usize| R::select(real[pair], modulus[pair] / faster[pair], decay[pair]));
+    let slower = [0, 1].each(
+        #[inline(always)]
+        |pair: usize| R::select(real[pair], modulus[pair] / faster[pair], decay[pair]),
+    );
     let modes = Modes {
         simd,
         length,

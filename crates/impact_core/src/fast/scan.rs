@@ -1,7 +1,8 @@
 //! A walk along the response that notes where signs change.
 
+use super::apart::inlined;
 use super::arithmetic::Each;
-use numeric::lanes::{Mask, Real};
+use numeric::lanes::{Number, Truth};
 
 /// A piece of time with the values and slopes of a function at both of its ends.
 #[derive(Clone, Copy)]
@@ -16,10 +17,13 @@ pub struct Piece<R> {
     pub slopes: [R; 2],
 }
 
-impl<R: Real> Piece<R> {
+impl<R: Number> Piece<R> {
     #[inline(always)]
     fn select(mask: R::Mask, new: Self, old: Self) -> Self {
-        let pair = |[a, b]: [R; 2], [c, d]: [R; 2]| [R::select(mask, a, c), R::select(mask, b, d)];
+        let pair = inlined(
+            #[inline(always)]
+            |[a, b]: [R; 2], [c, d]: [R; 2]| [R::select(mask, a, c), R::select(mask, b, d)],
+        );
         Self {
             from: R::select(mask, new.from, old.from),
             width: R::select(mask, new.width, old.width),
@@ -32,9 +36,12 @@ impl<R: Real> Piece<R> {
     #[inline(always)]
     fn cubic(&self) -> [R; 4] {
         let [left, right] = self.values;
-        let [first, last] = self.slopes.each(|slope| slope * self.width);
+        let [first, last] = self.slopes.each(
+            #[inline(always)]
+            |slope| slope * self.width,
+        );
         let rise = right - left;
-        let bend = R::splat(3.0) * rise - first - first - last;
+        let bend = rise * 3.0 - first - first - last;
         [left, first, bend, first + last - rise - rise]
     }
 
@@ -42,11 +49,11 @@ impl<R: Real> Piece<R> {
     #[inline(always)]
     pub fn zero(&self) -> R {
         let [c0, c1, c2, c3] = self.cubic();
-        let (none, whole) = (R::zero(), R::splat(1.0));
+        let (none, whole) = (c0.like(0.0), c0.like(1.0));
         let mut x = self.values[0] / (self.values[0] - self.values[1]);
         for _ in 0..2 {
             let value = ((c3 * x + c2) * x + c1) * x + c0;
-            let slope = (R::splat(3.0) * c3 * x + c2 + c2) * x + c1;
+            let slope = (c3 * 3.0 * x + c2 + c2) * x + c1;
             x = (x - value / slope).max(none).min(whole);
         }
         self.from + x * self.width
@@ -56,56 +63,69 @@ impl<R: Real> Piece<R> {
     #[inline(always)]
     fn turn(&self) -> R {
         let [c0, c1, c2, c3] = self.cubic();
-        let zero = R::zero();
+        let zero = c0.like(0.0);
         // Where the slope c1 + 2 c2 x + 3 c3 x^2 changes sign the way that it does over the piece. Steps
         // from the secant may run out of a piece in which it bends.
         let rises = self.slopes[1].gt(zero);
-        let [a, b, c] = [c1, c2, c3].each(|number| R::select(rises, number, -number));
-        let triple = R::splat(3.0) * c;
+        let [a, b, c] = [c1, c2, c3].each(
+            #[inline(always)]
+            |number| R::select(rises, number, -number),
+        );
+        let triple = c * 3.0;
         let root = (b * b - a * triple).max(zero).sqrt();
         let early = b.ge(zero);
         let x = R::select(early, -a, root - b) / R::select(early, root + b, triple);
-        let x = x.max(zero).min(R::splat(1.0));
+        let x = x.max(zero).min(zero.like(1.0));
         ((c3 * x + c2) * x + c1) * x + c0
     }
 }
 
 /// A place where a function changes sign.
 #[derive(Clone, Copy)]
-pub struct Place<R: Real> {
+pub struct Place<R: Number> {
     /// Lanes that have one.
     pub found: R::Mask,
-    /// The piece that it is in.
-    pub piece: Piece<R>,
+    /// The piece that it is in, and what it was before the last note: written where it was read it would
+    /// be a store under a mask, which some processors have no fast one of.
+    pieces: [Piece<R>; 2],
+    latest: usize,
 }
 
-impl<R: Real> Place<R> {
-    /// No place yet.
+impl<R: Number> Place<R> {
+    /// No place yet, with lanes like those of zero.
     #[inline(always)]
-    pub fn none() -> Self {
-        let zero = R::zero();
+    pub fn none(zero: R) -> Self {
         Self {
-            found: R::Mask::none(),
-            piece: Piece {
+            found: zero.truth(false),
+            pieces: [Piece {
                 from: zero,
                 width: zero,
                 values: [zero; 2],
                 slopes: [zero; 2],
-            },
+            }; 2],
+            latest: 0,
         }
+    }
+
+    /// The piece that it is in.
+    #[inline(always)]
+    pub fn piece(&self) -> &Piece<R> {
+        &self.pieces[self.latest % 2]
     }
 
     /// Forgets the place.
     #[inline(always)]
     pub fn clear(&mut self) {
-        self.found = R::Mask::none();
+        self.found = self.piece().from.truth(false);
     }
 
     /// Notes a piece.
     #[inline(always)]
     pub fn note(&mut self, mask: R::Mask, piece: Piece<R>) {
         self.found = self.found | mask;
-        self.piece = Piece::select(mask, piece, self.piece);
+        let noted = Piece::select(mask, piece, *self.piece());
+        self.latest = 1 - self.latest % 2;
+        self.pieces[self.latest] = noted;
     }
 }
 
@@ -117,25 +137,31 @@ const CLEAR: f64 = 0.01;
 /// between them, so near to it that it may reach it, from above and from below, and how far it
 /// reaches beyond zero at most. The cubic may be wrong by `slack` beside that.
 #[inline(always)]
-pub fn touching<R: Real>(inside: R::Mask, piece: &Piece<R>, slack: R) -> ([R::Mask; 2], R) {
-    let zero = R::zero();
-    let [up, still_up] = piece.values.each(|value| value.gt(zero));
-    let [bent_up, still_bent_up] = piece.slopes.each(|slope| slope.gt(zero));
+pub fn touching<R: Number>(inside: R::Mask, piece: &Piece<R>, slack: R) -> ([R::Mask; 2], R) {
+    let zero = slack.like(0.0);
+    let [up, still_up] = piece.values.each(
+        #[inline(always)]
+        |value| value.gt(zero),
+    );
+    let [bent_up, still_bent_up] = piece.slopes.each(
+        #[inline(always)]
+        |slope| slope.gt(zero),
+    );
     let from_above = inside & up & still_up & !bent_up & still_bent_up;
     let from_below = inside & !(up | still_up) & bent_up & !still_bent_up;
     if !(from_above | from_below).any() {
-        return ([R::Mask::none(); 2], zero);
+        return ([zero.truth(false); 2], zero);
     }
     // The cubic stays on one side of its control points: most pieces need no look at its extremum.
-    let third = R::splat(1.0 / 3.0) * piece.width;
+    let third = piece.width * (1.0 / 3.0);
     let difference = ((piece.slopes[0] - piece.slopes[1]) * piece.width).abs();
-    let clear = R::splat(CLEAR) * difference + slack;
+    let clear = difference * CLEAR + slack;
     let first = piece.values[0] + third * piece.slopes[0];
     let last = piece.values[1] - third * piece.slopes[1];
     let from_above = from_above & first.min(last).le(clear);
     let from_below = from_below & (-first.max(last)).le(clear);
     if !(from_above | from_below).any() {
-        return ([R::Mask::none(); 2], zero);
+        return ([zero.truth(false); 2], zero);
     }
     let turn = piece.turn();
     let beyond = R::select(from_above, clear - turn, clear + turn);
@@ -145,7 +171,7 @@ pub fn touching<R: Real>(inside: R::Mask, piece: &Piece<R>, slack: R) -> ([R::Ma
 
 /// Tops of a function, from the signs of its slope along the way.
 #[derive(Clone, Copy)]
-pub struct Tops<R: Real> {
+pub struct Tops<R: Number> {
     /// Up to two tops.
     pub places: [Place<R>; 2],
     /// A piece that may hide a top: the function is not above its value at this time by more than
@@ -155,14 +181,14 @@ pub struct Tops<R: Real> {
     pub odd: R::Mask,
 }
 
-impl<R: Real> Tops<R> {
-    /// No top yet.
+impl<R: Number> Tops<R> {
+    /// No top yet, with lanes like those of zero.
     #[inline(always)]
-    pub fn new() -> Self {
+    pub fn new(zero: R) -> Self {
         Self {
-            places: [Place::none(); 2],
-            hidden: (R::Mask::none(), R::zero(), R::zero()),
-            odd: R::Mask::none(),
+            places: [Place::none(zero); 2],
+            hidden: (zero.truth(false), zero, zero),
+            odd: zero.truth(false),
         }
     }
 
@@ -172,15 +198,19 @@ impl<R: Real> Tops<R> {
         for place in &mut self.places {
             place.clear();
         }
-        self.hidden.0 = R::Mask::none();
-        self.odd = R::Mask::none();
+        let none = self.hidden.1.truth(false);
+        self.hidden.0 = none;
+        self.odd = none;
     }
 
     /// Looks at a piece of the slope.
     #[inline(always)]
     pub fn look(&mut self, inside: R::Mask, piece: &Piece<R>) {
-        let zero = R::zero();
-        let [up, still_up] = piece.values.each(|value| value.gt(zero));
+        let zero = piece.from.like(0.0);
+        let [up, still_up] = piece.values.each(
+            #[inline(always)]
+            |value| value.gt(zero),
+        );
         let top = inside & up & !still_up;
         let ([from_above, from_below], beyond) = touching(inside, piece, zero);
         let touches = from_above | from_below;
@@ -222,7 +252,7 @@ mod tests {
             slopes: [0.0155, -0.1669],
         };
         assert!((piece.turn() - 0.005_019_4).abs() < 1e-6);
-        let mut tops = Tops::<f64>::new();
+        let mut tops = Tops::<f64>::new(0.0);
         tops.look(true, &piece);
         let (hidden, time, excess) = tops.hidden;
         assert!(hidden && time == 4.0 && excess > 0.005, "{excess}");

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::apart::inlined;
 use super::{CELL_ANGLE, FINE_CELL_ANGLE, Group, GroupPeaks, GroupRest, Known, Workspace};
 use crate::columns::{Column, Columns, HeadColumns};
 use crate::metrics::{
@@ -9,7 +10,7 @@ use crate::metrics::{
 };
 use crate::parameters::{System, Target};
 use crate::series::Plant;
-use numeric::lanes::{Mask, Real};
+use numeric::lanes::{Number, Truth};
 use pulp::{Scalar, Simd};
 
 /// Most rows side by side.
@@ -29,33 +30,57 @@ pub struct Walk {
 }
 
 /// Metrics of rows side by side.
-pub struct Side<R: Real> {
+pub struct Side<R: Number> {
     peaks: GroupPeaks<R>,
     rest: Option<GroupRest<R>>,
     /// Lanes whose compression stays in the linear range.
     within: R::Mask,
 }
 
-/// Gathers a column for rows side by side.
-#[inline(always)]
-fn gather<R: Real>(column: &Column<'_>, row: impl Fn(usize) -> usize) -> R {
-    match column {
-        Column::Value(value) => R::splat(*value),
-        Column::Array(values) => R::from_fn(|lane| values[row(lane)]),
+/// Rows side by side.
+#[derive(Clone, Copy)]
+pub enum Rows {
+    /// One after the other.
+    From(usize),
+    /// One for each lane.
+    Each([usize; MOST_LANES]),
+}
+
+impl Rows {
+    /// Numbers of a column.
+    #[inline(always)]
+    fn gather<R: Number>(self, zero: R, column: &Column<'_>) -> R {
+        match (column, self) {
+            (Column::Value(value), _) => zero.like(*value),
+            (Column::Array(values), Self::From(first)) => {
+                let values = &values[first..first + R::WIDTH];
+                zero.like_each(
+                    #[inline(always)]
+                    |lane| values[lane],
+                )
+            }
+            (Column::Array(values), Self::Each(rows)) => zero.like_each(
+                #[inline(always)]
+                |lane| values[rows[lane]],
+            ),
+        }
     }
 }
 
-impl<R: Real> Side<R> {
+impl<R: Number> Side<R> {
     /// Solves rows side by side.
     #[inline(always)]
     pub fn of<S: Simd, const ALL: bool>(
-        simd: S,
-        space: &mut Workspace<R>,
+        space: &mut Workspace<S, R>,
         columns: &Columns<'_>,
         walk: Walk,
-        row: impl Fn(usize) -> usize,
+        rows: Rows,
     ) -> Self {
-        let one = |column: &Column<'_>| gather::<R>(column, &row);
+        let zero = space.zero;
+        let one = inlined(
+            #[inline(always)]
+            |column: &Column<'_>| rows.gather(zero, column),
+        );
         let arm = [
             one(&columns.manipulator_mass),
             one(&columns.manipulator_damping),
@@ -68,7 +93,7 @@ impl<R: Real> Side<R> {
                 damping,
                 stiffness,
             } => [one(mass), one(damping), one(stiffness)],
-            HeadColumns::Constrained => [R::splat(f64::INFINITY); 3],
+            HeadColumns::Constrained => [zero.like(f64::INFINITY); 3],
         };
         let range = one(&columns.linear_range);
         let closing_speed = one(&columns.closing_speed);
@@ -76,7 +101,7 @@ impl<R: Real> Side<R> {
             .manipulator_speed
             .as_ref()
             .map_or(closing_speed, one);
-        let (zero, largest) = (R::zero(), R::splat(f64::MAX));
+        let largest = zero.like(f64::MAX);
         let mut valid = manipulator_speed.abs().le(largest);
         for value in [arm[0], head[0], range, closing_speed] {
             valid = valid & value.gt(zero) & value.le(largest);
@@ -84,10 +109,13 @@ impl<R: Real> Side<R> {
         for value in [arm[1], arm[2], head[1], head[2], foam[0], foam[1]] {
             valid = valid & value.ge(zero) & value.le(largest);
         }
-        let over = |[mass, damping, stiffness]: [R; 3]| {
-            let inverse = R::splat(1.0) / mass;
-            [inverse, damping * inverse, stiffness * inverse]
-        };
+        let over = inlined(
+            #[inline(always)]
+            |[mass, damping, stiffness]: [R; 3]| {
+                let inverse = mass.like(1.0) / mass;
+                [inverse, damping * inverse, stiffness * inverse]
+            },
+        );
         let group = Group {
             plant: Plant {
                 manipulator: over(arm),
@@ -101,9 +129,9 @@ impl<R: Real> Side<R> {
             humps: walk.humps,
             searches: walk.searches,
         };
-        let mut solved = group.solve::<S, ALL>(simd, space, valid);
+        let mut solved = group.solve::<S, ALL>(space, valid);
         let peaks = solved.peaks();
-        let rest = ALL.then(|| solved.rest(&peaks));
+        let rest = if ALL { Some(solved.rest(&peaks)) } else { None };
         Self {
             within: peaks.compression.value.le(range),
             peaks,
@@ -122,8 +150,9 @@ impl<R: Real> Side<R> {
     /// The criteria; NaN where they were not asked for.
     #[inline(always)]
     fn loads(&self, gravity: f64) -> Loads<Known<R>> {
-        let (peaks, per_g) = (&self.peaks, R::splat(gravity));
-        let nothing = Known::nothing();
+        let peaks = &self.peaks;
+        let per_g = peaks.mean.value.like(gravity);
+        let nothing = Known::nothing(per_g);
         let loads = Loads {
             peak_head_acceleration: peaks.head_acceleration,
             peak_head_acceleration_g: peaks.head_acceleration.over(per_g),
@@ -142,7 +171,7 @@ impl<R: Real> Side<R> {
             return loads;
         };
         // T mean^2.5 with the mean in g.
-        let scale = R::splat(gravity * gravity * gravity.sqrt());
+        let scale = per_g.like(gravity * gravity * gravity.sqrt());
         Loads {
             hic15: rest.injury[0].over(scale),
             hic36: rest.injury[1].over(scale),
@@ -160,22 +189,27 @@ impl<R: Real> Side<R> {
         self.peaks.duration.holds & self.peaks.compression.holds
     }
 
-    /// What the row of a lane means.
+    /// What the row of each lane means.
     #[inline(always)]
-    pub fn status(&self, lane: usize) -> Status {
-        if self.peaks.duration.value.lane(lane) == f64::INFINITY {
-            Status::NoRelease
-        } else if self.within.lane(lane) {
-            Status::Released
-        } else {
-            Status::BeyondLinearRange
+    pub fn status(&self) -> [Status; MOST_LANES] {
+        let duration = self.peaks.duration.value;
+        let lasting = duration.ge(duration.like(f64::INFINITY)).bits();
+        let within = self.within.bits();
+        let mut status = [Status::BeyondLinearRange; MOST_LANES];
+        for (lane, status) in status.iter_mut().enumerate().take(R::WIDTH) {
+            if lasting >> lane & 1 == 1 {
+                *status = Status::NoRelease;
+            } else if within >> lane & 1 == 1 {
+                *status = Status::Released;
+            }
         }
+        status
     }
 
     /// Lanes in which something of what is missing does not hold.
     #[inline(always)]
     pub fn lacking(&self, missing: Missing) -> R::Mask {
-        let mut holds = R::Mask::splat(true);
+        let mut holds = self.peaks.mean.value.truth(true);
         for (place, criterion) in self.loads(1.0).into_array().into_iter().enumerate() {
             if missing.has(place) {
                 holds = holds & criterion.holds;
@@ -206,12 +240,15 @@ impl<R: Real> Side<R> {
     /// Writes the first lanes into the columns that are there, beginning with a row.
     #[inline(always)]
     pub fn store(&self, columns: Loads<&mut [f64]>, rows: Range<usize>, gravity: f64) {
-        columns.each_with(self.loads(gravity), |column, known| {
-            let cells = column.get_mut(rows.clone()).into_iter().flatten();
-            for (lane, cell) in cells.enumerate() {
-                *cell = known.value.lane(lane);
-            }
-        });
+        columns.each_with(
+            self.loads(gravity),
+            #[inline(always)]
+            |column, known| {
+                if let Some(cells) = column.get_mut(rows.clone()) {
+                    known.value.write(cells);
+                }
+            },
+        );
     }
 
     /// Metrics of a lane.
@@ -219,7 +256,7 @@ impl<R: Real> Side<R> {
     pub fn lane(&self, lane: usize, gravity: f64) -> Metrics {
         Metrics {
             loads: self.loads(gravity).map(|known| known.value.lane(lane)),
-            status: self.status(lane),
+            status: self.status()[lane],
         }
     }
 }
@@ -273,7 +310,7 @@ pub(crate) fn usual(
 /// Metrics of the first row in cells of some length, and which of them hold.
 #[inline(never)]
 fn one(columns: &Columns<'_>, walk: Walk, gravity: f64) -> (Metrics, Missing) {
-    let mut space = Workspace::new();
-    let found = Side::<f64>::of::<_, true>(Scalar, &mut space, columns, walk, |_| 0);
+    let mut space = Workspace::new(Scalar, 0.0);
+    let found = Side::of::<_, true>(&mut space, columns, walk, Rows::From(0));
     (found.lane(0, gravity), found.known(gravity)[0])
 }

@@ -1,13 +1,39 @@
 //! Space for the walk along a response: nodes, pieces between them, what was found in them.
 
+use super::modes::Motion;
 use super::scan::{Piece, Place, Tops};
-use numeric::lanes::Real;
+use numeric::lanes::Number;
 
 /// Nodes after which an impact is refused.
 pub(super) const NODES: usize = 129;
 
-/// Space for the nodes of a group and what is found between them.
-pub struct Workspace<R: Real> {
+/// Space for one group after the other.
+pub struct Workspace<S, R: Number> {
+    /// Instructions that may be used.
+    pub simd: S,
+    /// Zero in every lane.
+    pub zero: R,
+    /// The motion; what is this large is not moved.
+    pub(super) motion: Option<Motion<S, R>>,
+    pub(super) walked: Walked<R>,
+}
+
+impl<S, R: Number> Workspace<S, R> {
+    /// Space for groups with lanes like those of zero.
+    #[inline(always)]
+    #[must_use]
+    pub fn new(simd: S, zero: R) -> Self {
+        Self {
+            simd,
+            zero,
+            motion: None,
+            walked: Walked::new(zero),
+        }
+    }
+}
+
+/// The nodes of a group and what is found between them.
+pub(super) struct Walked<R: Number> {
     /// Velocity of the head, up to a constant, and its acceleration.
     pub(super) head: [[R; 2]; NODES],
     /// Time, velocity and acceleration in the nodes before the end of the impact and there.
@@ -21,7 +47,7 @@ pub struct Workspace<R: Real> {
 }
 
 /// Tops of all quantities that have a maximum, and a valley of the acceleration.
-pub(super) struct Found<R: Real> {
+pub(super) struct Found<R: Number> {
     pub(super) acceleration: Tops<R>,
     pub(super) force: Tops<R>,
     pub(super) compression: Tops<R>,
@@ -30,15 +56,16 @@ pub(super) struct Found<R: Real> {
     pub(super) valley: Place<R>,
 }
 
-impl<R: Real> Found<R> {
-    fn new() -> Self {
+impl<R: Number> Found<R> {
+    #[inline(always)]
+    fn new(zero: R) -> Self {
         Self {
-            acceleration: Tops::new(),
-            force: Tops::new(),
-            compression: Tops::new(),
-            manipulator_power: Tops::new(),
-            foam_power: Tops::new(),
-            valley: Place::none(),
+            acceleration: Tops::new(zero),
+            force: Tops::new(zero),
+            compression: Tops::new(zero),
+            manipulator_power: Tops::new(zero),
+            foam_power: Tops::new(zero),
+            valley: Place::none(zero),
         }
     }
 
@@ -54,23 +81,16 @@ impl<R: Real> Found<R> {
     }
 }
 
-impl<R: Real> Workspace<R> {
-    /// Space for one group after the other.
-    #[must_use]
-    pub fn new() -> Self {
+impl<R: Number> Walked<R> {
+    #[inline(always)]
+    fn new(zero: R) -> Self {
         Self {
-            head: [[R::zero(); 2]; NODES],
+            head: [[zero; 2]; NODES],
             clipped: Vec::new(),
             signs: [Vec::new(), Vec::new()],
-            pair: [Node::at_rest(); 2],
-            found: Found::new(),
+            pair: [Node::at_rest(zero); 2],
+            found: Found::new(zero),
         }
-    }
-}
-
-impl<R: Real> Default for Workspace<R> {
-    fn default() -> Self {
-        Self::new()
     }
 }
 
@@ -86,7 +106,7 @@ pub(super) struct Node<R> {
     pub(super) foam_power: [R; 2],
 }
 
-impl<R: Real> Node<R> {
+impl<R: Number> Node<R> {
     /// Velocity and acceleration of the head.
     #[inline(always)]
     pub(super) fn head(&self) -> [R; 2] {
@@ -99,8 +119,8 @@ impl<R: Real> Node<R> {
         [self.acceleration[0], self.acceleration[1]]
     }
 
-    pub(super) fn at_rest() -> Self {
-        let zero = R::zero();
+    #[inline(always)]
+    pub(super) fn at_rest(zero: R) -> Self {
         Self {
             time: zero,
             velocity: zero,
@@ -119,7 +139,7 @@ pub(super) struct Step<'a, R> {
     right: &'a Node<R>,
 }
 
-impl<'a, R: Real> Step<'a, R> {
+impl<'a, R: Number> Step<'a, R> {
     /// The piece that ends with a node.
     #[inline(always)]
     pub(super) fn ending([even, odd]: &'a [Node<R>; 2], index: usize) -> Self {

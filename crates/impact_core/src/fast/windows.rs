@@ -5,7 +5,7 @@ use super::arithmetic::{Each, MapWith, third_order};
 use super::modes::{Basis, Wave};
 use super::{Known, MAX_STEPS, Solved};
 use crate::metrics::{HELD_WINDOW, INJURY_WINDOWS};
-use numeric::lanes::{Mask, Real};
+use numeric::lanes::{Number, Truth};
 use pulp::Simd;
 
 /// Last step of a window, in cells; its third power is what its place, and with it a level held
@@ -17,7 +17,7 @@ pub(super) const SETTLED_MEAN: f64 = 1e-3;
 
 /// What a window gives, for `V` and accelerations per cell.
 #[derive(Clone, Copy)]
-pub(super) struct Window<R: Real> {
+pub(super) struct Window<R: Number> {
     pub(super) start: R,
     pub(super) rise: R,
     /// Smaller acceleration at its ends.
@@ -28,7 +28,7 @@ pub(super) struct Window<R: Real> {
     pub(super) restless: R::Mask,
 }
 
-impl<R: Real> Window<R> {
+impl<R: Number> Window<R> {
     /// Level held through a window that a valley may lie in, of which time and value are given.
     #[inline(always)]
     pub(super) fn level_with(&self, width: R, [time, value]: [R; 2]) -> R {
@@ -37,7 +37,7 @@ impl<R: Real> Window<R> {
     }
 }
 
-impl<S: Simd, R: Real> Solved<'_, S, R> {
+impl<S: Simd, R: Number> Solved<'_, S, R> {
     /// Velocity, acceleration and two derivatives of the head.
     #[inline(always)]
     pub(super) fn head(&self, time: R) -> [R; 4] {
@@ -62,8 +62,7 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
 
     #[inline(always)]
     fn full_here(&self, mask: R::Mask, width: R, guess: R, settled: f64) -> Window<R> {
-        let zero = R::zero();
-        let half = R::splat(0.5);
+        let zero = width.like(0.0);
         let room = self.end - width;
         let mut start = guess.min(room).max(zero);
         let mut open = mask;
@@ -72,30 +71,36 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
             rise: zero,
             edge: zero,
             level: zero,
-            restless: R::Mask::none(),
+            restless: zero.truth(false),
         };
         let over_the_width = self.motion.modes.basis(width);
         for _ in 0..MAX_STEPS {
             let at_start = self.motion.modes.basis(start);
             let at_end = self.motion.modes.turned(&at_start, &over_the_width);
             let [left, right] = [self.head_at(&at_start), self.head_at(&at_end)];
-            let [rise, gain, bend, third] = right.map_with(left, |right, left| right - left);
+            let [rise, gain, bend, third] = right.map_with(
+                left,
+                #[inline(always)]
+                |right, left| right - left,
+            );
             // Towards the better side where the mean is not concave.
-            let uphill = R::select(gain.lt(zero), -start, half * width);
+            let uphill = R::select(gain.lt(zero), -start, width * 0.5);
             let concave = bend.lt(zero);
             let wanted = R::select(concave, third_order(gain, bend, third), uphill);
             let next = (start + wanted).min(room).max(zero);
             let step = next - start;
-            let bent = half * bend + step * R::splat(1.0 / 6.0) * third;
+            let bent = bend * 0.5 + step * (1.0 / 6.0) * third;
             let rise = rise + step * (gain + step * bent);
-            let [low, high] = [left, right]
-                .each(|[_, value, slope, curve]| value + step * (slope + half * step * curve));
+            let [low, high] = [left, right].each(
+                #[inline(always)]
+                |[_, value, slope, curve]| value + step * (slope + step * 0.5 * curve),
+            );
             found.rise = R::select(open, rise, found.rise);
             found.level = R::select(open, low.min(high), found.level);
             // At the end of the room the mean would have to grow still.
             let stuck = next.ge(room) & gain.lt(zero) & !start.le(zero);
             start = R::select(open, next, start);
-            open = open & (stuck | !step.abs().lt(R::splat(settled)));
+            open = open & (stuck | !step.abs().lt(zero.like(settled)));
             if !open.any() {
                 break;
             }
@@ -110,12 +115,12 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
     #[inline(always)]
     pub(super) fn held(&self, mask: R::Mask, [time, curve, third]: &[R; 3]) -> [Known<R>; 2] {
         let length = self.motion.modes.length;
-        let width = R::splat(HELD_WINDOW) / length;
+        let width = length.like(HELD_WINDOW) / length;
         let exists = width.le(self.end);
         // The first terms of the acceleration around its top.
-        let half = R::splat(0.5) * width;
-        let skew = half * half * *third / (*curve * R::splat(6.0));
-        let skew = R::select(skew.abs().lt(half), skew, R::zero());
+        let half = width * 0.5;
+        let skew = half * half * *third / (*curve * 6.0);
+        let skew = R::select(skew.abs().lt(half), skew, half.like(0.0));
         let humps = self.space.found.valley.found;
         let plain = mask & exists & !humps;
         let mut window = self.full(plain, width, *time - half - skew, SETTLED);
@@ -127,15 +132,18 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
             window.level = R::select(humps, other.level, window.level);
             window.restless = window.restless | other.restless | missed;
         }
-        let nan = R::splat(f64::NAN);
+        let nan = width.like(f64::NAN);
         [
-            window.rise / (length * R::splat(HELD_WINDOW)),
+            window.rise / (length * HELD_WINDOW),
             window.level / (length * length),
         ]
-        .each(|value| Known {
-            value: R::select(exists, value, nan),
-            holds: mask & !window.restless,
-        })
+        .each(
+            #[inline(always)]
+            |value| Known {
+                value: R::select(exists, value, nan),
+                holds: mask & !window.restless,
+            },
+        )
     }
 
     /// Injury criteria in lanes of a mask: the window with free ends where it is not too wide, else
@@ -145,7 +153,7 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         let length = self.motion.modes.length;
         let humps = self.space.found.valley.found | self.shelf;
         let plain = mask & !humps;
-        let free = self.free_window(plain, self.half_level(), R::Mask::none());
+        let free = self.free_window(plain, self.half_level(), length.truth(false));
         let [start, end] = free.ends;
         let cut = self.lasting & end.ge(self.end);
         let plain = plain & free.settled & free.concave & !cut;
@@ -156,7 +164,7 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
         }; 2];
         let asked = self.searches.injury;
         for ((known, width), asked) in found.iter_mut().zip(INJURY_WINDOWS).zip(asked) {
-            let width = R::splat(width) / length;
+            let width = length.like(width) / length;
             let wide = plain & free_width.gt(width);
             if !asked || !wide.any() {
                 continue;
@@ -164,8 +172,8 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
             // Both ends towards each other, each as its slope tells.
             let [first, last] = free.slopes;
             let share = last / (last - first);
-            let possible = share.gt(R::zero()) & share.lt(R::splat(1.0));
-            let share = R::select(possible, share, R::splat(0.5));
+            let possible = share.gt(share.like(0.0)) & share.lt(share.like(1.0));
+            let share = R::select(possible, share, share.like(0.5));
             let guess = start + share * (free_width - width);
             let window = self.full(wide, width, guess, SETTLED_MEAN);
             known.value = R::select(wide, criterion(window.rise, width, length), free.value);
@@ -191,49 +199,53 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
 
     #[inline(always)]
     fn free_window_here(&self, mask: R::Mask, guess: [R; 2], held: R::Mask) -> FreeWindow<R> {
-        let zero = R::zero();
-        let half = R::splat(0.5);
         let length = self.motion.modes.length;
+        let zero = length.like(0.0);
         let [mut start, mut end] = guess;
         let mut open = mask;
         let mut found = FreeWindow {
             ends: [zero; 2],
             slopes: [zero; 2],
             value: zero,
-            settled: R::Mask::none(),
-            concave: R::Mask::none(),
+            settled: zero.truth(false),
+            concave: zero.truth(false),
         };
-        let mut best = R::Mask::none();
+        let mut best = zero.truth(false);
         for _ in 0..MAX_STEPS {
             let [v1, a1, d1, c1] = self.head(start);
             let [v2, a2, d2, c2] = self.head(end);
             let (rise, width) = (v2 - v1, end - start);
-            let per_rise = R::splat(1.0) / rise;
+            let per_rise = rise.like(1.0) / rise;
             let (u1, u2) = (a1 * per_rise, a2 * per_rise);
-            let over = R::splat(1.5) / width;
-            let factor = R::splat(2.5);
-            let (g1, g2) = (over - factor * u1, factor * u2 - over);
+            let over = width.like(1.5) / width;
+            let (g1, g2) = (over - u1 * 2.5, u2 * 2.5 - over);
             let curve = over / width;
-            let h11 = curve - factor * (d1 * per_rise + u1 * u1);
-            let h22 = curve + factor * (d2 * per_rise - u2 * u2);
-            let h12 = factor * u1 * u2 - curve;
+            let h11 = curve - (d1 * per_rise + u1 * u1) * 2.5;
+            let h22 = curve + (d2 * per_rise - u2 * u2) * 2.5;
+            let h12 = u1 * 2.5 * u2 - curve;
             let determinant = h11 * h22 - h12 * h12;
             let pinned = held | (start.le(zero) & g1.le(zero));
             let s1 = R::select(pinned, zero, (h12 * g2 - h22 * g1) / determinant);
             let s2 = R::select(pinned, -g2 / h22, (h12 * g1 - h11 * g2) / determinant);
             let next = [(start + s1).max(zero), (end + s2).min(self.end)];
             let (s1, s2) = (next[0] - start, next[1] - end);
-            let [v1, v2] = [(v1, a1, d1, c1, s1), (v2, a2, d2, c2, s2)]
-                .each(|(v, a, d, c, s)| v + s * (a + s * (half * d + s * R::splat(1.0 / 6.0) * c)));
+            let [v1, v2] = [(v1, a1, d1, c1, s1), (v2, a2, d2, c2, s2)].each(
+                #[inline(always)]
+                |(v, a, d, c, s)| v + s * (a + s * (d * 0.5 + s * (1.0 / 6.0) * c)),
+            );
             let value = criterion(v2 - v1, next[1] - next[0], length);
             found.value = R::select(open, value, found.value);
-            found.slopes = [d1, d2].map_with(found.slopes, |new, old| R::select(open, new, old));
+            found.slopes = [d1, d2].map_with(
+                found.slopes,
+                #[inline(always)]
+                |new, old| R::select(open, new, old),
+            );
             start = R::select(open, next[0], start);
             end = R::select(open, next[1], end);
             let moved = s1.abs() + s2.abs();
             let concave = h22.lt(zero) & (pinned | (h11.lt(zero) & determinant.gt(zero)));
             best = (best & !open) | (concave & open);
-            open = open & !moved.lt(R::splat(SETTLED_MEAN));
+            open = open & !moved.lt(zero.like(SETTLED_MEAN));
             if !open.any() {
                 break;
             }
@@ -247,23 +259,26 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
     /// Where the acceleration crosses half its peak at the nodes, in cells.
     #[inline(always)]
     fn half_level(&self) -> [R; 2] {
-        let (mut start, mut end) = (R::zero(), self.end);
+        let (mut start, mut end) = (self.end.like(0.0), self.end);
         let mut peak = self.space.head[0][1];
         for index in 1..=self.nodes {
             let value = self.space.head[index][1];
             // Nodes behind the end depend on what is beside.
-            let inside = R::splat(index as f64).lt(self.end);
+            let inside = end.like(index as f64).lt(self.end);
             peak = R::select(inside & value.gt(peak), value, peak);
         }
-        let half = R::splat(0.5) * peak;
+        let half = peak * 0.5;
         for index in 0..self.nodes {
-            let [left, right] = [index, index + 1].each(|node: usize| self.space.head[node][1]);
+            let [left, right] = [index, index + 1].each(
+                #[inline(always)]
+                |node: usize| self.space.head[node][1],
+            );
             let rises = left.lt(half) & right.ge(half);
             let falls = left.ge(half) & right.lt(half);
             if !(rises | falls).any() {
                 continue;
             }
-            let place = R::splat(index as f64) + (half - left) / (right - left);
+            let place = (half - left) / (right - left) + index as f64;
             let inside = place.lt(self.end);
             let (rises, falls) = (inside & rises, inside & falls);
             start = R::select(rises, place, start);
@@ -275,7 +290,7 @@ impl<S: Simd, R: Real> Solved<'_, S, R> {
 
 /// A window with free ends.
 #[derive(Clone, Copy)]
-pub(super) struct FreeWindow<R: Real> {
+pub(super) struct FreeWindow<R: Number> {
     pub(super) ends: [R; 2],
     /// Slopes of the acceleration there.
     slopes: [R; 2],
@@ -289,12 +304,9 @@ pub(super) struct FreeWindow<R: Real> {
 
 /// `T^-1.5 rise^2.5` from a rise in m per cell and a width in cells.
 #[inline(always)]
-pub(super) fn criterion<R: Real>(rise: R, width: R, length: R) -> R {
+pub(super) fn criterion<R: Number>(rise: R, width: R, length: R) -> R {
     let duration = width * length;
     let mean = rise / (length * duration);
-    R::select(
-        rise.gt(R::zero()),
-        duration * mean * mean * mean.sqrt(),
-        R::zero(),
-    )
+    let zero = rise.like(0.0);
+    R::select(rise.gt(zero), duration * mean * mean * mean.sqrt(), zero)
 }

@@ -9,40 +9,45 @@ use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub
 
 mod planar;
 mod scalar;
+mod vector;
 mod vectors;
 mod wide;
 
 pub use nalgebra::Vector2;
 pub use num_traits::{One, Zero};
 pub use planar::{Planar, widened};
-pub use vectors::{Vectors, vectors};
+pub use vector::{Vector, VectorMask};
+pub use vectors::{Eight, Vectors, eight, vectors};
 pub use wide::Wide;
 
-/// Outcome of a comparison, lane by lane.
-pub trait Mask:
+/// Truths side by side, made from others.
+pub trait Truth:
     Copy
     + Debug
     + Send
     + Sync
     + 'static
-    + PartialEq
     + BitAnd<Output = Self>
     + BitOr<Output = Self>
     + Not<Output = Self>
 {
-    /// The same truth in every lane.
-    fn splat(value: bool) -> Self;
     /// Whether any lane is true.
     fn any(self) -> bool;
     /// Truth of one lane.
     fn lane(self, index: usize) -> bool;
+    /// Truths as bits, that of the first lane lowest.
+    fn bits(self) -> u32;
+}
+
+/// Outcome of a comparison, lane by lane.
+pub trait Mask: Truth + PartialEq {
+    /// The same truth in every lane.
+    fn splat(value: bool) -> Self;
     /// The mask with one lane made false.
     #[must_use]
     fn without(self, index: usize) -> Self;
     /// Makes one lane true, where the mask is in memory.
     fn set(&mut self, index: usize);
-    /// Truths as bits, that of the first lane lowest.
-    fn bits(self) -> u32;
 
     /// No lane is true.
     #[inline(always)]
@@ -52,16 +57,14 @@ pub trait Mask:
     }
 }
 
-/// A real number, or several side by side.
-pub trait Real:
+/// A real number, or several side by side, made from others: what needs no constant but beside a number
+/// it has already. Vectors of the processor are such numbers, which exist only where it has them.
+pub trait Number:
     Copy
     + Debug
     + Send
     + Sync
     + 'static
-    + PartialEq
-    + Zero
-    + One
     + Add<Output = Self>
     + AddAssign
     + Sub<Output = Self>
@@ -70,74 +73,36 @@ pub trait Real:
     + MulAssign
     + Div<Output = Self>
     + Neg<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
 {
     /// What a comparison gives.
-    type Mask: Mask;
+    type Mask: Truth;
     /// Number of lanes.
     const WIDTH: usize;
 
-    /// The same value in every lane.
-    fn splat(value: f64) -> Self;
-    /// A value for each lane.
-    fn from_fn(value: impl FnMut(usize) -> f64) -> Self;
+    /// A number with the same value in every lane.
+    #[must_use]
+    fn like(self, value: f64) -> Self;
+    /// A number with a value for each lane.
+    #[must_use]
+    fn like_each(self, value: impl FnMut(usize) -> f64) -> Self;
+    /// The same truth in every lane.
+    fn truth(self, value: bool) -> Self::Mask;
     /// Value of one lane.
     fn lane(self, index: usize) -> f64;
-    /// Value of one lane, where the number is in memory: no copy of the other lanes is made.
-    #[inline(always)]
-    fn at(&self, index: usize) -> f64 {
-        self.lane(index)
-    }
-    /// The number with one lane replaced.
-    #[must_use]
-    fn replace(self, index: usize, value: f64) -> Self;
-    /// Changes one lane, where the number is in memory.
-    #[inline(always)]
-    fn set(&mut self, index: usize, value: f64) {
-        *self = self.replace(index, value);
-    }
+    /// Writes the first lanes.
+    fn write(self, to: &mut [f64]);
     /// Square root.
     #[must_use]
     fn sqrt(self) -> Self;
     /// Absolute value.
     #[must_use]
     fn abs(self) -> Self;
-    /// Magnitude of `self` with the sign of `sign`.
-    #[must_use]
-    fn copysign(self, sign: Self) -> Self;
     /// `2^k` of an integer `k` between -1022 and 1023 that is given as `1.5 * 2^52 + k`.
-    #[inline(always)]
     #[must_use]
-    fn power_of_two(self) -> Self {
-        // The last bits hold `k`; with the bias of exponents they are moved to their place.
-        Self::from_fn(|lane| f64::from_bits((self.lane(lane).to_bits().wrapping_add(1023)) << 52))
-    }
-    /// `m` from `sqrt(1/2)` to `sqrt(2)` and an integer `k` with `self = m 2^k`, of a positive number of full precision.
-    #[inline(always)]
-    #[must_use]
-    fn mantissa_and_exponent(self) -> [Self; 2] {
-        // Exponents are counted from the bits of `sqrt(1/2)`; 1024 more of them keep the difference above zero.
-        const SQRT_HALF: u64 = std::f64::consts::FRAC_1_SQRT_2.to_bits();
-        const MORE: u64 = 1024 << 52;
-        const WHOLE: f64 = 4_503_599_627_370_496.0;
-        let above = |lane: usize| {
-            self.lane(lane)
-                .to_bits()
-                .wrapping_sub(SQRT_HALF)
-                .wrapping_add(MORE)
-        };
-        let mantissa = Self::from_fn(|lane| {
-            let power = above(lane) >> 52 << 52;
-            f64::from_bits(
-                self.lane(lane)
-                    .to_bits()
-                    .wrapping_add(MORE)
-                    .wrapping_sub(power),
-            )
-        });
-        // The last bits of a number from 2^52 on hold an integer.
-        let whole = Self::from_fn(|lane| f64::from_bits(above(lane) >> 52 | WHOLE.to_bits()));
-        [mantissa, whole - Self::splat(WHOLE + 1024.0)]
-    }
+    fn power_of_two(self) -> Self;
     /// Whether `self < other`.
     fn lt(self, other: Self) -> Self::Mask;
     /// Whether `self <= other`.
@@ -167,6 +132,57 @@ pub trait Real:
     #[inline(always)]
     fn ge(self, other: Self) -> Self::Mask {
         other.le(self)
+    }
+}
+
+/// A real number, or several side by side, that need no processor of a kind.
+pub trait Real: Number<Mask: Mask> + PartialEq + Zero + One {
+    /// The same value in every lane.
+    fn splat(value: f64) -> Self;
+    /// A value for each lane.
+    fn from_fn(value: impl FnMut(usize) -> f64) -> Self;
+    /// Value of one lane, where the number is in memory: no copy of the other lanes is made.
+    #[inline(always)]
+    fn at(&self, index: usize) -> f64 {
+        self.lane(index)
+    }
+    /// The number with one lane replaced.
+    #[must_use]
+    fn replace(self, index: usize, value: f64) -> Self;
+    /// Changes one lane, where the number is in memory.
+    #[inline(always)]
+    fn set(&mut self, index: usize, value: f64) {
+        *self = self.replace(index, value);
+    }
+    /// Magnitude of `self` with the sign of `sign`.
+    #[must_use]
+    fn copysign(self, sign: Self) -> Self;
+    /// `m` from `sqrt(1/2)` to `sqrt(2)` and an integer `k` with `self = m 2^k`, of a positive number of full precision.
+    #[inline(always)]
+    #[must_use]
+    fn mantissa_and_exponent(self) -> [Self; 2] {
+        // Exponents are counted from the bits of `sqrt(1/2)`; 1024 more of them keep the difference above zero.
+        const SQRT_HALF: u64 = std::f64::consts::FRAC_1_SQRT_2.to_bits();
+        const MORE: u64 = 1024 << 52;
+        const WHOLE: f64 = 4_503_599_627_370_496.0;
+        let above = |lane: usize| {
+            self.lane(lane)
+                .to_bits()
+                .wrapping_sub(SQRT_HALF)
+                .wrapping_add(MORE)
+        };
+        let mantissa = Self::from_fn(|lane| {
+            let power = above(lane) >> 52 << 52;
+            f64::from_bits(
+                self.lane(lane)
+                    .to_bits()
+                    .wrapping_add(MORE)
+                    .wrapping_sub(power),
+            )
+        });
+        // The last bits of a number from 2^52 on hold an integer.
+        let whole = Self::from_fn(|lane| f64::from_bits(above(lane) >> 52 | WHOLE.to_bits()));
+        [mantissa, whole - Self::splat(WHOLE + 1024.0)]
     }
     /// +1 where `self >= 0`, -1 elsewhere.
     #[inline(always)]
@@ -214,6 +230,21 @@ lane_operator!(Add, add);
 lane_operator!(Sub, sub);
 lane_operator!(Mul, mul);
 lane_operator!(Div, div);
+
+macro_rules! constant_operator {
+    ($operator:ident, $method:ident) => {
+        impl<const N: usize> $operator<f64> for Lanes<N> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: f64) -> Self {
+                self.$method(Self::splat(other))
+            }
+        }
+    };
+}
+constant_operator!(Add, add);
+constant_operator!(Sub, sub);
+constant_operator!(Mul, mul);
 
 macro_rules! lane_assignment {
     ($operator:ident, $method:ident, $plain:ident) => {
@@ -283,11 +314,7 @@ impl<const N: usize> Not for LaneMask<N> {
     }
 }
 
-impl<const N: usize> Mask for LaneMask<N> {
-    #[inline(always)]
-    fn splat(value: bool) -> Self {
-        Self([if value { u64::MAX } else { 0 }; N])
-    }
+impl<const N: usize> Truth for LaneMask<N> {
     #[inline(always)]
     fn any(self) -> bool {
         let mut joined = 0;
@@ -301,6 +328,21 @@ impl<const N: usize> Mask for LaneMask<N> {
         self.0[index] != 0
     }
     #[inline(always)]
+    fn bits(self) -> u32 {
+        let mut bits = 0;
+        for (lane, a) in self.0.into_iter().enumerate() {
+            bits |= u32::from(a != 0) << lane;
+        }
+        bits
+    }
+}
+
+impl<const N: usize> Mask for LaneMask<N> {
+    #[inline(always)]
+    fn splat(value: bool) -> Self {
+        Self([if value { u64::MAX } else { 0 }; N])
+    }
+    #[inline(always)]
     fn without(mut self, index: usize) -> Self {
         self.0[index] = 0;
         self
@@ -308,14 +350,6 @@ impl<const N: usize> Mask for LaneMask<N> {
     #[inline(always)]
     fn set(&mut self, index: usize) {
         self.0[index] = u64::MAX;
-    }
-    #[inline(always)]
-    fn bits(self) -> u32 {
-        let mut bits = 0;
-        for (lane, a) in self.0.into_iter().enumerate() {
-            bits |= u32::from(a != 0) << lane;
-        }
-        bits
     }
 }
 
@@ -337,34 +371,29 @@ impl<const N: usize> Lanes<N> {
     }
 }
 
-impl<const N: usize> Real for Lanes<N> {
+impl<const N: usize> Number for Lanes<N> {
     type Mask = LaneMask<N>;
     const WIDTH: usize = N;
 
     #[inline(always)]
-    fn splat(value: f64) -> Self {
-        Self([value; N])
+    fn like(self, value: f64) -> Self {
+        Self::splat(value)
     }
     #[inline(always)]
-    fn from_fn(value: impl FnMut(usize) -> f64) -> Self {
-        Self(std::array::from_fn(value))
+    fn like_each(self, value: impl FnMut(usize) -> f64) -> Self {
+        Self::from_fn(value)
+    }
+    #[inline(always)]
+    fn write(self, to: &mut [f64]) {
+        to.copy_from_slice(&self.0[..to.len()]);
+    }
+    #[inline(always)]
+    fn truth(self, value: bool) -> LaneMask<N> {
+        LaneMask::splat(value)
     }
     #[inline(always)]
     fn lane(self, index: usize) -> f64 {
         self.0[index]
-    }
-    #[inline(always)]
-    fn at(&self, index: usize) -> f64 {
-        self.0[index]
-    }
-    #[inline(always)]
-    fn replace(mut self, index: usize, value: f64) -> Self {
-        self.0[index] = value;
-        self
-    }
-    #[inline(always)]
-    fn set(&mut self, index: usize, value: f64) {
-        self.0[index] = value;
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -375,11 +404,8 @@ impl<const N: usize> Real for Lanes<N> {
         self.map(f64::abs)
     }
     #[inline(always)]
-    fn copysign(mut self, sign: Self) -> Self {
-        for (a, s) in self.0.iter_mut().zip(sign.0) {
-            *a = a.copysign(s);
-        }
-        self
+    fn power_of_two(self) -> Self {
+        self.map(Number::power_of_two)
     }
     #[inline(always)]
     fn min(mut self, other: Self) -> Self {
@@ -409,6 +435,37 @@ impl<const N: usize> Real for Lanes<N> {
             *a = f64::from_bits((a.to_bits() & m) | (b.to_bits() & !m));
         }
         then
+    }
+}
+
+impl<const N: usize> Real for Lanes<N> {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self([value; N])
+    }
+    #[inline(always)]
+    fn from_fn(value: impl FnMut(usize) -> f64) -> Self {
+        Self(std::array::from_fn(value))
+    }
+    #[inline(always)]
+    fn at(&self, index: usize) -> f64 {
+        self.0[index]
+    }
+    #[inline(always)]
+    fn replace(mut self, index: usize, value: f64) -> Self {
+        self.0[index] = value;
+        self
+    }
+    #[inline(always)]
+    fn set(&mut self, index: usize, value: f64) {
+        self.0[index] = value;
+    }
+    #[inline(always)]
+    fn copysign(mut self, sign: Self) -> Self {
+        for (a, s) in self.0.iter_mut().zip(sign.0) {
+            *a = a.copysign(s);
+        }
+        self
     }
 }
 

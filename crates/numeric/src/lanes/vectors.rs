@@ -16,3 +16,23 @@ pub fn vectors() -> Option<Vectors> {
     #[cfg(not(target_arch = "x86_64"))]
     return Some(pulp::Scalar);
 }
+
+/// Eight numbers side by side, in vectors.
+#[cfg(target_arch = "x86_64")]
+pub type Eight = super::Vector<pulp::x86::V3_512b>;
+/// Eight numbers side by side.
+#[cfg(not(target_arch = "x86_64"))]
+pub type Eight = super::Lanes<8>;
+
+/// Eight times the same number.
+#[inline(always)]
+#[must_use]
+pub fn eight(vectors: Vectors, value: f64) -> Eight {
+    #[cfg(target_arch = "x86_64")]
+    return super::Vector::splat(pulp::x86::V3_512b(vectors), value);
+    #[cfg(not(target_arch = "x86_64"))]
+    {
+        let pulp::Scalar = vectors;
+        return super::Real::splat(value);
+    }
+}

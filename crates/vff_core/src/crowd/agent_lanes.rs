@@ -4,7 +4,7 @@ use crate::crowd::agent::SHORTEST;
 use crate::crowd::divergence::is_finite;
 use crate::crowd::neighbors::others::parted;
 pub(super) use crate::crowd::neighbors::pairs::{Each, WIDTH};
-use crate::lanes::{LaneMask, Mask, Planar, Real, Vector2, Zero};
+use crate::lanes::{LaneMask, Mask, Number, Planar, Real, Truth, Vector2, Zero};
 
 /// Most people and robots who are compared with each other without lists.
 pub(super) const FEW: usize = 12;

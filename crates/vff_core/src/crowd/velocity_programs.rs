@@ -2,7 +2,7 @@
 //! the linear program of [`half_planes`](crate::laws::planning::half_planes), lane by lane with the same bits.
 
 use crate::crowd::agent_lanes::{Each, FEW, Vectors, WIDTH};
-use crate::lanes::{LaneMask, Mask, Planar, Real, Vector2, Zero};
+use crate::lanes::{LaneMask, Mask, Number, Planar, Real, Truth, Vector2, Zero};
 use crate::laws::planning::half_planes::{HalfPlane, PARALLEL, Solver};
 
 /// The constraint on the velocity of one person of each world by another one.

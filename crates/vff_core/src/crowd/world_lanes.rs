@@ -11,7 +11,7 @@ use crate::crowd::people::{PersonState, Presence};
 use crate::crowd::simulation::Simulation;
 use crate::crowd::velocity_programs::VelocityPrograms;
 use crate::crowd::world::{CrowdWorld, PersonSetup};
-use crate::lanes::{LaneMask, Mask, Real, Vector2, vectors};
+use crate::lanes::{LaneMask, Real, Truth, Vector2, vectors};
 
 /// Fewest worlds that are worth the lanes.
 const WORTH: usize = 3;

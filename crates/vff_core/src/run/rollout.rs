@@ -1,7 +1,7 @@
 //! The time loop: one kernel for one robot and for robots side by side.
 
 use crate::error::{Failure, Result};
-use crate::lanes::{Mask, Real, Vector2};
+use crate::lanes::{Real, Truth, Vector2};
 use crate::laws::{Command, Law, Situation, Stop};
 use crate::run::Interrupted;
 use crate::run::options::{Clock, Integrator, Options};

@@ -1,6 +1,6 @@
 //! Contacts with maps: what stands counts whether or not it is an obstacle of the scenario.
 
-use crate::lanes::{Mask, Planar, Real, Vector2};
+use crate::lanes::{Planar, Real, Truth, Vector2};
 use crate::sensing::SensorOptions;
 use crate::world::map::StaticMap;
 use crate::world::scenario::Scenario;

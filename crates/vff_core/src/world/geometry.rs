@@ -1,6 +1,6 @@
 //! One obstacle as the force field sees it from the robot.
 
-use crate::lanes::{Mask, Planar, Real, Vector2, Wide, widened};
+use crate::lanes::{Mask, Planar, Real, Truth, Vector2, Wide, widened};
 use crate::world::motion::BodyState;
 use crate::world::obstacle::Regions;
 use crate::world::shape::{Shape, into_axes, out_of_axes};

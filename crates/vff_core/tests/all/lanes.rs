@@ -4,7 +4,7 @@ use crate::bitwise::computed;
 use numeric::angle::unsigned_angle;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use vff_core::lanes::{LaneMask, Lanes, Mask, Planar, Real, Vector2};
+use vff_core::lanes::{LaneMask, Lanes, Mask, Number, Planar, Real, Truth, Vector2};
 
 /// Where an operation changes its kind of answer.
 const SPECIAL: [f64; 16] = [
@@ -27,7 +27,7 @@ const SPECIAL: [f64; 16] = [
 ];
 
 /// Numbers of one lane from three inputs: what is computed, what is moved as it is, what is true.
-type Answers<R> = (Vec<R>, Vec<R>, Vec<<R as Real>::Mask>);
+type Answers<R> = (Vec<R>, Vec<R>, Vec<<R as Number>::Mask>);
 
 /// Every operation of [`Real`], [`Mask`] and [`Vector2`], and the angle.
 fn operations<R: Real>(a: R, b: R, c: R) -> Answers<R> {

@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use crate::bitwise::computed;
 use crate::configurations::{crossing, gains, law, limits, obstacles};
-use vff_core::lanes::{Lanes, Real};
+use vff_core::lanes::{Lanes, Number};
 use vff_core::laws::VirtualForceField;
 use vff_core::laws::field::gains::{GainLanes, Gains};
 use vff_core::laws::field::side::SideRules;

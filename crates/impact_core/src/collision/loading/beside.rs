@@ -1,6 +1,6 @@
 //! Steps of collisions side by side.
 
-use numeric::lanes::{Lanes, Mask, Real, vectors};
+use numeric::lanes::{Lanes, Real, Truth, vectors};
 use pulp::{Simd, WithSimd};
 
 use super::Loading;

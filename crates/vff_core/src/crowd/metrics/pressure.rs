@@ -3,7 +3,7 @@
 use crate::crowd::agent::SHORTEST;
 use crate::crowd::models::moussaid::Moussaid;
 use crate::crowd::neighbors::pairs::{Each, WIDTH};
-use crate::lanes::{Planar, Real, Vector2};
+use crate::lanes::{Number, Planar, Real, Vector2};
 
 type Vector = Vector2<f64>;
 

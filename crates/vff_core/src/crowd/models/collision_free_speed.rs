@@ -6,7 +6,7 @@ use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::neighbors::others::Each;
 use crate::crowd::pedestrian::{Around, Body, Pedestrian, Room, Walker};
 use crate::crowd::walls::pushes;
-use crate::lanes::{Planar, Real, Vector2, Zero};
+use crate::lanes::{Number, Planar, Real, Vector2, Zero};
 use numeric::elementary::exp;
 
 type Vector = Vector2<f64>;

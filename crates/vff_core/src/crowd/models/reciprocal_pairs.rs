@@ -6,7 +6,7 @@ use crate::crowd::neighbors::mutual::Known;
 use crate::crowd::neighbors::pairs::Each;
 use crate::crowd::pedestrian::{Around, Decision, Room, Walker, awareness_of, deciding};
 use crate::crowd::velocity_programs::{Objective, VelocityPrograms};
-use crate::lanes::{Mask, Planar, Real, Vector2};
+use crate::lanes::{Number, Planar, Real, Truth, Vector2};
 use crate::laws::planning::half_planes::HalfPlane;
 
 /// Change of the velocity of one of two, and the direction of the line of permitted velocities.
@@ -100,10 +100,10 @@ impl ReciprocalPeople {
             let discs = DiscPair {
                 way: -away(pair.offset, pair.distance, |_| true),
                 relative: pair.relative,
-                touch: first + second + Real::splat(2.0 * self.margin),
+                touch: first + second + 2.0 * self.margin,
             };
             let sides = self.sides(&discs, pair.weight, step);
-            let distance = Real::select(pair.near, pair.distance, Real::splat(f64::INFINITY));
+            let distance = Each::select(pair.near, pair.distance, Each::splat(f64::INFINITY));
             let [mine, theirs] = sides;
             programs.constrain(places.0, mine, (distance, pair.near));
             programs.constrain(places.1, theirs, (distance, pair.near));

@@ -7,7 +7,7 @@ use crate::crowd::agent::SHORTEST;
 use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::neighbors::others::{Each, WIDTH, apart};
 use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker};
-use crate::lanes::{Mask, Planar, Real, Vector2};
+use crate::lanes::{Planar, Real, Truth, Vector2};
 use crate::laws::planning::half_planes::HalfPlane;
 
 type Vector = Vector2<f64>;

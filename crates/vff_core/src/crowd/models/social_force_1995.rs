@@ -11,7 +11,7 @@ use crate::crowd::pedestrian::{
     Around, Decision, Pedestrian, Room, Walker, awareness_of, deciding, drive, drives,
 };
 use crate::crowd::walls::pushes;
-use crate::lanes::{Mask, Planar, Real, Vector2};
+use crate::lanes::{Planar, Real, Truth, Vector2};
 use numeric::elementary::decay;
 
 type Vector = Vector2<f64>;
@@ -164,7 +164,7 @@ impl SocialForce1995 {
         ways.clear();
         for agent in &agents.all {
             let speed = Planar::<_>::length(agent.velocity);
-            ways.push(agent.direction * (speed * Real::splat(self.step_time)));
+            ways.push(agent.direction * (speed * self.step_time));
         }
         agents.accelerations(
             (self.relaxation_time, self.cutoff),

@@ -8,7 +8,7 @@ use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::neighbors::others::Each;
 use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker, drive};
 use crate::crowd::walls::pushes;
-use crate::lanes::{Mask, Planar, Real, Vector2, Zero};
+use crate::lanes::{Number, Planar, Real, Truth, Vector2, Zero};
 use numeric::elementary::exp;
 
 type Vector = Vector2<f64>;

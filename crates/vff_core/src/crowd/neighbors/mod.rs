@@ -170,7 +170,7 @@ impl<'a> Iterator for Near<'a> {
 mod tests {
     use super::*;
     use crate::crowd::agent::SHORTEST;
-    use crate::lanes::{Planar, Vector2};
+    use crate::lanes::{Number, Planar, Vector2};
 
     type Vector = Vector2<f64>;
 

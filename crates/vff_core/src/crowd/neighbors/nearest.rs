@@ -2,7 +2,7 @@
 
 use crate::crowd::neighbors::Near;
 use crate::crowd::neighbors::others::{Each, WIDTH};
-use crate::lanes::{Lanes, Real, Zero};
+use crate::lanes::{Lanes, Number, Real, Zero};
 
 /// Up to so many are ranked by comparing everybody with everybody.
 const MOST_RANKED: usize = 48;

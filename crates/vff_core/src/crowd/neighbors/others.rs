@@ -2,7 +2,7 @@
 
 use crate::crowd::agent::{Agent, SHORTEST};
 use crate::crowd::neighbors::grid::Period;
-use crate::lanes::{LaneMask, Lanes, Mask, Planar, Real, Vector2};
+use crate::lanes::{LaneMask, Lanes, Number, Planar, Real, Truth, Vector2};
 
 type Vector = Vector2<f64>;
 

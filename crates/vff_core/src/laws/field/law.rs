@@ -1,7 +1,7 @@
 //! Virtual force field with a stabilizing force: attraction, repulsion, detour and braking.
 
 use crate::error::{Failure, Given, Result, not_negative};
-use crate::lanes::{Mask, Planar, Real, Vector2, Wide};
+use crate::lanes::{Mask, Planar, Real, Truth, Vector2, Wide};
 use crate::laws::field::attractive::attractive_force;
 use crate::laws::field::detour::Turning;
 use crate::laws::field::gains::{GainLanes, Gains};

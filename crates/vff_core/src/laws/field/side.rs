@@ -1,6 +1,6 @@
 //! On which side the detour leads around an obstacle: the rules of Zeng (2011), 5.4.
 
-use crate::lanes::{Mask, Real, Vector2, Wide, widened};
+use crate::lanes::{Real, Truth, Vector2, Wide, widened};
 use crate::world::geometry::{Approach, Body, COLLINEAR_ANGLE, RobotState, separation};
 use crate::world::obstacle::Shape;
 

@@ -1,7 +1,7 @@
 //! Stabilizing force: what makes the Lyapunov function descend.
 
 use crate::error::{Failure, Given, Result, not_negative};
-use crate::lanes::{Mask, Planar, Real, Vector2, Wide, widened};
+use crate::lanes::{Planar, Real, Truth, Vector2, Wide, widened};
 use crate::laws::field::detour::Turning;
 use crate::laws::field::gains::GainLanes;
 use crate::laws::field::repulsive::Repulsion;

@@ -5,7 +5,7 @@ mod family;
 
 pub use family::{Pairwise, PairwiseFamily};
 
-use crate::lanes::{Mask, Planar, Real, Vector2, Wide};
+use crate::lanes::{Mask, Planar, Real, Truth, Vector2, Wide};
 use crate::laws::{Command, FieldTerms, Law, ObstacleTerms, SceneLaw, Situation};
 use crate::world::geometry::{Body, Offset, RobotState};
 use crate::world::scenario::{PlacedObstacle, Scenario};

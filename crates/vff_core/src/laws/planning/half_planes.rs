@@ -4,7 +4,7 @@
 //! al. (2011), section 5.3, for programs without a solution: the velocity that violates the
 //! half-planes least.
 
-use crate::lanes::{Mask, Planar, Real, Vector2};
+use crate::lanes::{Number, Planar, Real, Truth, Vector2};
 
 type Vector = Vector2<f64>;
 
@@ -165,9 +165,9 @@ fn on_line(earlier: &[HalfPlane], plane: &HalfPlane, max_speed: f64, wish: Wish)
         }
         let crossing = offset / sine;
         if sine > 0.0 {
-            high = Real::min(high, crossing);
+            high = Number::min(high, crossing);
         } else {
-            low = Real::max(low, crossing);
+            low = Number::max(low, crossing);
         }
         if low > high {
             return None;
@@ -183,7 +183,7 @@ fn on_line(earlier: &[HalfPlane], plane: &HalfPlane, max_speed: f64, wish: Wish)
         }
         Wish::Near(wanted) => {
             let share = direction.dot(&(wanted - point));
-            Real::min(Real::max(share, low), high)
+            Number::min(Number::max(share, low), high)
         }
     };
     Some(point + direction * share)

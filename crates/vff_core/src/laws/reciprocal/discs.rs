@@ -1,7 +1,7 @@
 //! What needs no outline, for robots in lanes: discs, boundary points, the way to the goal.
 
 use super::ReciprocalPlanner;
-use crate::lanes::{Mask, Planar, Real, Vector2};
+use crate::lanes::{Planar, Real, Truth, Vector2};
 use crate::laws::planning::half_planes::HalfPlane;
 use crate::laws::planning::outline::Legs;
 

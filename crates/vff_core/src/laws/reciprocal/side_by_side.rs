@@ -2,7 +2,7 @@
 //! for each robot whose wanted velocity one of them forbids.
 
 use super::{ReciprocalPlanner, avoiding, pass_disc};
-use crate::lanes::{Mask, Planar, Real, Vector2, Wide, widened};
+use crate::lanes::{Mask, Planar, Real, Truth, Vector2, Wide, widened};
 use crate::laws::Situation;
 use crate::laws::planning::half_planes::{HalfPlane, not_faster};
 use crate::laws::planning::outline::Outline;

@@ -4,7 +4,7 @@ use super::cover::Covers;
 use super::lines::{BESIDE, Cap, Line, Reachable};
 use super::remaining::Remaining;
 use super::{Selection, Situation, Vector, VelocityObstaclePlanner, cones};
-use crate::lanes::{Lanes, Mask, Planar, Real, Vector2};
+use crate::lanes::{Lanes, Number, Planar, Real, Truth, Vector2};
 use numeric::order::sort_pairs;
 
 /// Numbers of the candidates of a line by itself; its crossings follow.

@@ -2,7 +2,7 @@
 
 use super::Vector;
 use super::lines::Cap;
-use crate::lanes::{Lanes, Mask, Planar, Real, Vector2, Zero};
+use crate::lanes::{Lanes, Mask, Number, Planar, Real, Truth, Vector2, Zero};
 use crate::laws::planning::outline::Legs;
 
 /// Discs that are looked at side by side.
@@ -233,7 +233,7 @@ impl pulp::NullaryFnOnce for Sorting<'_> {
     #[inline(always)]
     fn call(self) {
         for (place, group) in self.legs.iter().enumerate() {
-            let mut near = [<Group as Real>::Mask::none(); 3];
+            let mut near = [<Group as Number>::Mask::none(); 3];
             for cap in self.caps {
                 // Also where a number is not one.
                 let [left, right] = group.within(cap.center);
@@ -242,7 +242,7 @@ impl pulp::NullaryFnOnce for Sorting<'_> {
                 let within = [left.gt(reach), right.gt(reach)];
                 near[0] = near[0] | !(beside[0] | beside[1]);
                 let behind = if self.whole {
-                    [<Group as Real>::Mask::none(); 2]
+                    [<Group as Number>::Mask::none(); 2]
                 } else {
                     group.along(cap.center).map(|along| along.lt(-reach))
                 };

@@ -1,7 +1,7 @@
 //! Parts of lines that one obstacle forbids all by itself.
 
 use super::{Cone, ConeBase, Vector};
-use crate::lanes::{Lanes, Mask, Planar, Real, Vector2};
+use crate::lanes::{Lanes, Planar, Real, Truth, Vector2};
 
 /// How far within a cone a velocity is at least, relative to 1 m/s and the magnitudes: well above all
 /// roundings.

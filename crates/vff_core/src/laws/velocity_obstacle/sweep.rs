@@ -7,7 +7,7 @@ use super::cones::{GROUP, Group, LegGroup};
 use super::lines::Cap;
 use super::parts::{Part, beyond_legs};
 use super::remaining::Segment;
-use crate::lanes::{Mask, Real, Vector2};
+use crate::lanes::{Mask, Number, Real, Vector2};
 
 /// A leg along the bottom up to this sine of an angle bounds nothing.
 const FLAT: f64 = 1e-3;
@@ -143,7 +143,7 @@ impl Segment {
         let (beyond, _) = beyond_legs([group.left, group.right], group.tip, number(size));
         let far = number(FAR * self.half);
         let (mut begin, mut end) = ([-far; 2], [far; 2]);
-        let mut sound = <Group as Real>::Mask::splat(true);
+        let mut sound = <Group as Number>::Mask::splat(true);
         for (inward, least) in beyond {
             let (slope, rise) = (inward.dot(&across), inward.dot(&aim));
             let least = least - inward.dot(&center);

@@ -7,7 +7,7 @@
 mod conflict;
 
 use crate::error::{Result, not_negative, positive};
-use crate::lanes::{Lanes, Mask, Planar, Real, Vector2};
+use crate::lanes::{Lanes, Mask, Number, Planar, Real, Truth, Vector2};
 use crate::laws::shield::{Limits, Walls};
 use crate::world::geometry::RobotState;
 use conflict::{Conflict, Crowd, Nearest, Stretch};
@@ -397,7 +397,8 @@ impl<F: FnMut(Vector2<f64>) -> bool> pulp::NullaryFnOnce for Choice<'_, F> {
                 continue;
             }
             // Whom they have still to meet only adds to the price, too.
-            let useless = |time| !(aims + yielder.haste(time)).lt(Lanes::splat(best)).any();
+            let useless =
+                |time: Lanes<WIDTH>| !(aims + yielder.haste(time)).lt(Lanes::splat(best)).any();
             let Some(conflict) = yielder.conflict_unless(outlook, &crowd, candidates, useless)
             else {
                 continue;
@@ -431,7 +432,7 @@ impl<F: FnMut(Vector2<f64>) -> bool> pulp::NullaryFnOnce for Choice<'_, F> {
 
 /// The lane of the least price among some lanes.
 #[inline(always)]
-fn cheapest(prices: Lanes<WIDTH>, among: <Lanes<WIDTH> as Real>::Mask) -> Option<usize> {
+fn cheapest(prices: Lanes<WIDTH>, among: <Lanes<WIDTH> as Number>::Mask) -> Option<usize> {
     (0..WIDTH)
         .filter(|lane| among.lane(*lane))
         .min_by(|a, b| prices.lane(*a).total_cmp(&prices.lane(*b)))

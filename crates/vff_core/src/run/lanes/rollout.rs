@@ -2,7 +2,7 @@
 //! takes the next scene, so that none is idle. Every run has the bits of the kernel of one scene.
 
 use crate::error::{Failure, Result};
-use crate::lanes::{Mask, Real, Vector2, Wide};
+use crate::lanes::{Mask, Real, Truth, Vector2, Wide};
 use crate::laws::{SceneLaw, Situation, Stop};
 use crate::run::Interrupted;
 use crate::run::lanes::scenes::{FeltObstacles, LaneObstacle, LaneScenes};

@@ -1,6 +1,6 @@
 //! Scenes of robots side by side, one a lane: where the obstacles of each are.
 
-use crate::lanes::{Mask, Real, Vector2, Wide};
+use crate::lanes::{Mask, Real, Truth, Vector2, Wide};
 use crate::run::scene::World;
 use crate::world::geometry::Body;
 use crate::world::motion::{BodyState, Piece};
@@ -313,7 +313,7 @@ const ALWAYS: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::{Lanes, Zero};
+    use crate::lanes::{Lanes, Number, Zero};
 
     /// An obstacle at (place, 0) in some lanes, felt within 1 m.
     fn body(place: f64, lanes: &[usize]) -> Body<Lanes<8>> {

@@ -1,7 +1,7 @@
 //! What is counted of a motion step: arrival, contacts, least distances, energy, path.
 
 use super::{BOUND_MARGIN, Runs};
-use crate::lanes::{Mask, Planar, Real, Vector2, Wide};
+use crate::lanes::{Mask, Planar, Real, Truth, Vector2, Wide};
 use crate::run::options::Clock;
 use crate::run::outcome::CONTACT_SPEED;
 use crate::run::scene::{World, body_at};

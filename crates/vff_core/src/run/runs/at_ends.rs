@@ -4,7 +4,7 @@
 use super::bounds::Bounds;
 use super::means::Means;
 use super::path::Path;
-use crate::lanes::{Mask, Real, Vector2};
+use crate::lanes::{Number, Real, Truth, Vector2};
 use crate::run::options::Clock;
 use crate::world::scenario::{GROUP, Group, ObstacleGroup};
 
@@ -89,7 +89,7 @@ impl<R: Real> AtEnds<'_, R> {
 
     /// Counts all steps of some lanes, whose least distances are known.
     #[inline(always)]
-    fn count(&mut self, first: usize, known: <Group as Real>::Mask, squared: Group) {
+    fn count(&mut self, first: usize, known: <Group as Number>::Mask, squared: Group) {
         let end = self.path.last() + 1;
         let lanes = self.since[first..].iter_mut().zip(&mut self.least[first..]);
         for (lane, (since, least)) in lanes.take(GROUP).enumerate() {

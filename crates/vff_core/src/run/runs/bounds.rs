@@ -2,7 +2,7 @@
 //! from the start to the end.
 
 use super::BOUND_MARGIN;
-use crate::lanes::{Mask, Real, Vector2};
+use crate::lanes::{Number, Real, Truth, Vector2};
 use crate::run::options::Clock;
 use crate::world::scenario::{GROUP, Group, ObstacleGroup, Scenario};
 

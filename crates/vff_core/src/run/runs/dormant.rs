@@ -10,7 +10,7 @@ use super::at_ends::AtEnds;
 use super::bounds::{Bounds, FEWEST_PERIODS, FirstLook, without_alarm};
 use super::path::{Passage, Path};
 use super::relevant::Relevant;
-use crate::lanes::{Mask, Planar, Real};
+use crate::lanes::{Planar, Real, Truth};
 use crate::run::options::Clock;
 use crate::run::scene::{Scene, body_at};
 use crate::world::scenario::{PlacedObstacle, Scenario};

@@ -2,7 +2,7 @@
 
 use super::{BOUND_MARGIN, Runs};
 use crate::error::{Failure, Result};
-use crate::lanes::{Mask, Real, Vector2, Wide};
+use crate::lanes::{Mask, Real, Truth, Vector2, Wide};
 use crate::run::scene::World;
 use crate::world::geometry::Body;
 

@@ -1,7 +1,7 @@
 //! The obstacles that a law is told of which feels them from anywhere: all of them, or those that matter for
 //! the velocities that it may choose.
 
-use crate::lanes::{Mask, Real};
+use crate::lanes::{Real, Truth};
 use crate::laws::outlook::{Attention, Discs, Outlook};
 use crate::run::scene::body_at;
 use crate::world::geometry::Body;

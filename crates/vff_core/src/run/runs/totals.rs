@@ -1,7 +1,7 @@
 //! What is left of a run once it has ended.
 
 use super::Runs;
-use crate::lanes::{Mask, Real};
+use crate::lanes::{Real, Truth};
 use crate::run::outcome::{CONTACT_SPEED, Contact, Outcome, RunSummary, RunTotals};
 use crate::run::record::Recorder;
 use crate::run::scene::World;

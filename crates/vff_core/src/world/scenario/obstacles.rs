@@ -3,7 +3,7 @@
 use std::ops::Deref;
 
 use super::PlacedObstacle;
-use crate::lanes::{Lanes, Real, Vector2};
+use crate::lanes::{Lanes, Number, Real, Vector2};
 use crate::world::motion::Piece;
 
 /// Obstacles that are looked at side by side.

@@ -1,0 +1,257 @@
+//! Numbers in vectors of the processor, where it has them.
+
+use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub, SubAssign};
+
+use pulp::{Simd, bytemuck};
+
+use super::{Number, Truth};
+
+/// Numbers side by side in vectors of the processor, eight with [`super::Eight`].
+///
+/// Arrays leave it to the compiler what becomes a vector, and of comparisons little does. A number
+/// of this kind exists only where the processor has the vectors: it carries the proof of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Vector<S: Simd> {
+    simd: S,
+    numbers: S::f64s,
+}
+
+/// Truths side by side in vectors of the processor.
+#[derive(Clone, Copy, Debug)]
+pub struct VectorMask<S: Simd> {
+    simd: S,
+    truths: S::m64s,
+}
+
+impl<S: Simd> Vector<S> {
+    /// The same value in every lane.
+    #[inline(always)]
+    pub fn splat(simd: S, value: f64) -> Self {
+        Self {
+            simd,
+            numbers: simd.splat_f64s(value),
+        }
+    }
+}
+
+#[inline(always)]
+fn lanes<S: Simd>(numbers: &S::f64s) -> &[f64] {
+    bytemuck::cast_slice(std::slice::from_ref(numbers))
+}
+
+#[inline(always)]
+fn lanes_mut<S: Simd>(numbers: &mut S::f64s) -> &mut [f64] {
+    bytemuck::cast_slice_mut(std::slice::from_mut(numbers))
+}
+
+// Operations of the processor are written out: a function passed to another one is not compiled into it,
+// nor for the instructions of its caller.
+macro_rules! operator {
+    ($operator:ident, $method:ident, $assignment:ident, $assign:ident, $of_simd:ident) => {
+        impl<S: Simd> $operator for Vector<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self {
+                    numbers: self.simd.$of_simd(self.numbers, other.numbers),
+                    ..self
+                }
+            }
+        }
+        impl<S: Simd> $operator<f64> for Vector<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: f64) -> Self {
+                self.$method(self.like(other))
+            }
+        }
+        impl<S: Simd> $assignment for Vector<S> {
+            #[inline(always)]
+            fn $assign(&mut self, other: Self) {
+                *self = self.$method(other);
+            }
+        }
+    };
+}
+operator!(Add, add, AddAssign, add_assign, add_f64s);
+operator!(Sub, sub, SubAssign, sub_assign, sub_f64s);
+operator!(Mul, mul, MulAssign, mul_assign, mul_f64s);
+
+impl<S: Simd> Div for Vector<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        Self {
+            numbers: self.simd.div_f64s(self.numbers, other.numbers),
+            ..self
+        }
+    }
+}
+
+impl<S: Simd> Neg for Vector<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self {
+            numbers: self.simd.neg_f64s(self.numbers),
+            ..self
+        }
+    }
+}
+
+impl<S: Simd> Number for Vector<S> {
+    type Mask = VectorMask<S>;
+    const WIDTH: usize = S::F64_LANES;
+
+    #[inline(always)]
+    fn like(self, value: f64) -> Self {
+        Self::splat(self.simd, value)
+    }
+    #[inline(always)]
+    fn like_each(mut self, mut value: impl FnMut(usize) -> f64) -> Self {
+        for (lane, number) in lanes_mut::<S>(&mut self.numbers).iter_mut().enumerate() {
+            *number = value(lane);
+        }
+        self
+    }
+    #[inline(always)]
+    fn write(self, to: &mut [f64]) {
+        let lanes = lanes::<S>(&self.numbers);
+        if to.len() == lanes.len() {
+            to.copy_from_slice(lanes);
+        } else {
+            to.copy_from_slice(&lanes[..to.len()]);
+        }
+    }
+    #[inline(always)]
+    fn truth(self, value: bool) -> VectorMask<S> {
+        // Also where masks are bits.
+        let other = if value { 2.0 } else { 0.0 };
+        self.like(1.0).lt(self.like(other))
+    }
+    #[inline(always)]
+    fn lane(self, index: usize) -> f64 {
+        lanes::<S>(&self.numbers)[index]
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self {
+            numbers: self.simd.sqrt_f64s(self.numbers),
+            ..self
+        }
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self {
+            numbers: self.simd.abs_f64s(self.numbers),
+            ..self
+        }
+    }
+    #[inline(always)]
+    fn power_of_two(mut self) -> Self {
+        for number in lanes_mut::<S>(&mut self.numbers) {
+            *number = number.power_of_two();
+        }
+        self
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> VectorMask<S> {
+        VectorMask {
+            simd: self.simd,
+            truths: self.simd.less_than_f64s(self.numbers, other.numbers),
+        }
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> VectorMask<S> {
+        VectorMask {
+            simd: self.simd,
+            truths: self
+                .simd
+                .less_than_or_equal_f64s(self.numbers, other.numbers),
+        }
+    }
+    #[inline(always)]
+    fn select(mask: VectorMask<S>, then: Self, otherwise: Self) -> Self {
+        Self {
+            numbers: then
+                .simd
+                .select_f64s(mask.truths, then.numbers, otherwise.numbers),
+            ..then
+        }
+    }
+}
+
+macro_rules! mask_operator {
+    ($operator:ident, $method:ident, $of_simd:ident) => {
+        impl<S: Simd> $operator for VectorMask<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self {
+                    truths: self.simd.$of_simd(self.truths, other.truths),
+                    ..self
+                }
+            }
+        }
+    };
+}
+mask_operator!(BitAnd, bitand, and_m64s);
+mask_operator!(BitOr, bitor, or_m64s);
+
+impl<S: Simd> Not for VectorMask<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self {
+            truths: self.simd.not_m64s(self.truths),
+            ..self
+        }
+    }
+}
+
+impl<S: Simd> VectorMask<S> {
+    /// Whether a truth takes as much room as a number, all ones or all zeros; else it takes a bit.
+    const WIDE: bool = size_of::<S::m64s>() == size_of::<S::u64s>();
+
+    /// Truths as numbers; only where they are that wide.
+    #[inline(always)]
+    fn numbers(&self) -> &[u64] {
+        bytemuck::cast_slice(bytemuck::bytes_of(&self.truths))
+    }
+}
+
+impl<S: Simd> Truth for VectorMask<S> {
+    #[inline(always)]
+    fn any(self) -> bool {
+        if !Self::WIDE {
+            return self.bits() != 0;
+        }
+        let mut joined = 0;
+        for &truth in self.numbers() {
+            joined |= truth;
+        }
+        joined != 0
+    }
+    #[inline(always)]
+    fn lane(self, index: usize) -> bool {
+        if Self::WIDE {
+            self.numbers()[index] != 0
+        } else {
+            self.bits() >> index & 1 == 1
+        }
+    }
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        let mut bits = 0;
+        if Self::WIDE {
+            for (lane, &truth) in self.numbers().iter().enumerate() {
+                bits |= ((truth >> 63) as u32) << lane;
+            }
+        } else {
+            for (place, &byte) in bytemuck::bytes_of(&self.truths).iter().enumerate() {
+                bits |= u32::from(byte) << (8 * place);
+            }
+        }
+        bits
+    }
+}
