@@ -6,8 +6,8 @@ use crate::criteria::Impact;
 use crate::fast::apart::apart;
 use crate::fast::{CELL_ANGLE, FINE_CELL_ANGLE, MOST_LANES, Rows, Side, Walk, Workspace};
 use crate::metrics::{FREE_HORIZON, Metrics, Missing, Status};
-use numeric::lanes::{Number, Truth, Vectors, eight, vectors};
-use pulp::{Scalar, Simd, WithSimd};
+use numeric::lanes::{Number, OnEight, Truth, on_eight};
+use pulp::{Scalar, Simd};
 
 /// A row by its place in a block, and what it misses.
 type Open = (usize, Missing);
@@ -20,39 +20,32 @@ pub(super) fn fill(columns: &Columns<'_>, options: &BatchOptions, block: &mut Bl
         }
         return;
     }
-    let side_by_side = match options.width {
-        Some(Width::One) => None,
-        Some(Width::Eight) | None => vectors(),
+    let rows = SideBySide {
+        columns,
+        options,
+        block,
     };
-    match side_by_side {
-        Some(vectors) => Simd::vectorize(
-            vectors,
-            SideBySide {
-                vectors,
-                columns,
-                options,
-                block,
-            },
-        ),
-        None => by_width(Scalar, 0.0, columns, options, block),
+    let alone = match options.width {
+        Some(Width::One) => Err(rows),
+        Some(Width::Eight) | None => on_eight(rows),
+    };
+    if let Err(rows) = alone {
+        rows.on_eight(Scalar, 0.0);
     }
 }
 
-/// Eight rows side by side, compiled for the vectors of the processor. The arithmetic is the same as that
-/// of one row, bit for bit.
+/// Rows side by side, or one after the other. The arithmetic is the same, bit for bit.
 struct SideBySide<'a, 'b> {
-    vectors: Vectors,
     columns: &'a Columns<'a>,
     options: &'a BatchOptions,
     block: &'a mut Block<'b>,
 }
 
-impl WithSimd for SideBySide<'_, '_> {
+impl OnEight for SideBySide<'_, '_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let zero = eight(self.vectors, 0.0);
+    fn on_eight<S: Simd, R: Number>(self, simd: S, zero: R) {
         by_width(simd, zero, self.columns, self.options, self.block);
     }
 }

@@ -97,10 +97,10 @@ impl<R: Number> Side<R> {
         };
         let range = one(&columns.linear_range);
         let closing_speed = one(&columns.closing_speed);
-        let manipulator_speed = columns
-            .manipulator_speed
-            .as_ref()
-            .map_or(closing_speed, one);
+        let manipulator_speed = match &columns.manipulator_speed {
+            Some(speed) => one(speed),
+            None => closing_speed,
+        };
         let largest = zero.like(f64::MAX);
         let mut valid = manipulator_speed.abs().le(largest);
         for value in [arm[0], head[0], range, closing_speed] {

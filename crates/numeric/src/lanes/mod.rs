@@ -17,7 +17,7 @@ pub use nalgebra::Vector2;
 pub use num_traits::{One, Zero};
 pub use planar::{Planar, widened};
 pub use vector::{Vector, VectorMask};
-pub use vectors::{Eight, Vectors, eight, vectors};
+pub use vectors::{OnEight, Vectors, on_eight, vectors};
 pub use wide::Wide;
 
 /// Truths side by side, made from others.

@@ -6,7 +6,7 @@ use pulp::{Simd, bytemuck};
 
 use super::{Number, Truth};
 
-/// Numbers side by side in vectors of the processor, eight with [`super::Eight`].
+/// Numbers side by side in vectors of the processor.
 ///
 /// Arrays leave it to the compiler what becomes a vector, and of comparisons little does. A number
 /// of this kind exists only where the processor has the vectors: it carries the proof of it.

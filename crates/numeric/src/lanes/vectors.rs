@@ -1,5 +1,9 @@
 //! Vectors of the processor, which is asked at run time.
 
+use pulp::Simd;
+
+use super::Number;
+
 /// Vectors with which lanes pay. Without them lanes would take another copy of every kernel for x86
 /// processors that are rare: there work is done one after the other, with the same bits.
 #[cfg(target_arch = "x86_64")]
@@ -17,22 +21,55 @@ pub fn vectors() -> Option<Vectors> {
     return Some(pulp::Scalar);
 }
 
-/// Eight numbers side by side, in vectors.
-#[cfg(target_arch = "x86_64")]
-pub type Eight = super::Vector<pulp::x86::V3_512b>;
-/// Eight numbers side by side.
-#[cfg(not(target_arch = "x86_64"))]
-pub type Eight = super::Lanes<8>;
+/// Work on eight numbers side by side.
+pub trait OnEight {
+    /// What it gives.
+    type Output;
+    /// Does it, with instructions that may be used and zero in every lane.
+    fn on_eight<S: Simd, R: Number>(self, simd: S, zero: R) -> Self::Output;
+}
 
-/// Eight times the same number.
-#[inline(always)]
-#[must_use]
-pub fn eight(vectors: Vectors, value: f64) -> Eight {
-    #[cfg(target_arch = "x86_64")]
-    return super::Vector::splat(pulp::x86::V3_512b(vectors), value);
-    #[cfg(not(target_arch = "x86_64"))]
-    {
-        let pulp::Scalar = vectors;
-        return super::Real::splat(value);
+/// Does work compiled for the widest vectors of the processor, or returns it where lanes do not pay.
+///
+/// # Errors
+/// The processor has no vectors with which lanes pay.
+#[cfg(target_arch = "x86_64")]
+pub fn on_eight<W: OnEight>(work: W) -> Result<W::Output, W> {
+    use pulp::x86::{V3_512b, V4};
+    if let Some(simd) = V4::try_new() {
+        return Ok(Simd::vectorize(simd, In { simd, work }));
+    }
+    let Some(vectors) = vectors() else {
+        return Err(work);
+    };
+    let simd = V3_512b(vectors);
+    Ok(simd.vectorize(In { simd, work }))
+}
+
+/// Does work on eight numbers.
+///
+/// # Errors
+/// None here: what every processor of the family has is enough.
+#[cfg(not(target_arch = "x86_64"))]
+pub fn on_eight<W: OnEight>(work: W) -> Result<W::Output, W> {
+    let zero: super::Lanes<8> = super::Zero::zero();
+    Ok(work.on_eight(pulp::Scalar, zero))
+}
+
+/// Work with vectors that hold eight numbers.
+#[cfg(target_arch = "x86_64")]
+struct In<S, W> {
+    simd: S,
+    work: W,
+}
+
+#[cfg(target_arch = "x86_64")]
+impl<V: Simd, W: OnEight> pulp::WithSimd for In<V, W> {
+    type Output = W::Output;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _same: S) -> W::Output {
+        self.work
+            .on_eight(self.simd, super::Vector::splat(self.simd, 0.0))
     }
 }
