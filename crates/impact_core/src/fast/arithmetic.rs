@@ -44,9 +44,10 @@ impl<R: Copy, const N: usize> MapWith<R> for [R; N] {
 /// Step to a zero from value, slope and curvature near it, of third order.
 #[inline(always)]
 pub(super) fn third_order<R: Number>(value: R, slope: R, curve: R) -> R {
-    let newton = value / slope;
     let one = slope.like(1.0);
-    let bend = newton * 0.5 * curve / slope;
+    let inverse = one / slope;
+    let newton = value * inverse;
+    let bend = newton * 0.5 * curve * inverse;
     let mild = bend.abs().lt(slope.like(0.5));
     -(newton / R::select(mild, one - bend, one))
 }

@@ -182,8 +182,8 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
 
     #[inline(always)]
     fn injuries_of_humps_here(&mut self, humps: R::Mask, known: &mut [Known<R>; 2]) {
-        let length = self.motion.modes.length;
-        let zero = length.like(0.0);
+        let rate = self.motion.modes.rate;
+        let zero = rate.like(0.0);
         let mut best = [zero; 2];
         let mut shrinks = [zero.truth(false); 2];
         let mut holds = [humps; 2];
@@ -192,11 +192,11 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
         // No level is wanted that a valley would limit.
         let nowhere = [zero.like(-1.0), zero];
         for (index, width) in INJURY_WINDOWS.into_iter().enumerate() {
-            let width = length.like(width) / length;
+            let width = rate * width;
             let full = humps & width.lt(self.end);
             if asked[index] && full.any() {
                 let window = self.full_of_humps(full, width, nowhere);
-                let value = criterion(window.rise, width, length);
+                let value = criterion(window.rise, width, rate);
                 best[index] = R::select(full & !window.restless, value, zero);
                 holds[index] = holds[index] & !window.restless;
                 // A shorter window nearby is better, so one with free ends has to be found.
@@ -238,7 +238,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
         }
         for seed in &seeds {
             // One that is far below what is known already needs no steps.
-            let value = seed.square.sqrt() / (length * length * length * length);
+            let value = seed.square.sqrt() * (rate * rate * rate * rate);
             let good = (value * NEAR).gt(full[0]);
             let mask = humps & seed.found & good & !refused;
             if mask.any() {
@@ -261,9 +261,9 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
         let lasting = humps & self.lasting;
         if lasting.any() {
             for (index, width) in INJURY_WINDOWS.into_iter().enumerate() {
-                let width = length.like(width) / length;
+                let width = rate * width;
                 let steepest = self.steepest_after(self.end - width) * BETWEEN;
-                let bound = criterion(steepest * width, width, length);
+                let bound = criterion(steepest * width, width, rate);
                 holds[index] = holds[index] & !(lasting & bound.gt(best[index]));
             }
         }

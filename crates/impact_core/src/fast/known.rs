@@ -21,6 +21,15 @@ impl<R: Number> Known<R> {
         }
     }
 
+    /// The number times another one.
+    #[inline(always)]
+    pub fn times(self, factor: R) -> Self {
+        Self {
+            value: self.value * factor,
+            ..self
+        }
+    }
+
     /// The number over another one.
     #[inline(always)]
     pub fn over(self, divisor: R) -> Self {

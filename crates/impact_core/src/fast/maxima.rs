@@ -117,7 +117,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
     pub fn peaks(&self) -> GroupPeaks<R> {
         let zero = self.end.like(0.0);
         let searches = self.searches;
-        let length = self.motion.modes.length;
+        let (length, rate) = (self.motion.modes.length, self.motion.modes.rate);
         let first = self.space.head[0][1];
         let at_end = self.motion.compression(&self.at_end, self.end);
         let mut acceleration = Known::nothing(zero);
@@ -128,7 +128,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
             let last = self.motion.head[1].at(&self.at_end);
             let last = R::select(self.lasting, last, zero);
             let largest = self.largest(Quantity::Acceleration, tops, [first, last]);
-            acceleration = largest.known.over(length * length);
+            acceleration = largest.known.times(rate * rate);
             top = largest.top;
         }
         let mut compression = Known::nothing(zero);
@@ -158,7 +158,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
                 zero.like(f64::INFINITY),
                 self.end * length,
             )),
-            mean: known(gained / (self.end * length * length)),
+            mean: known(gained / self.end * rate * rate),
             top,
         }
     }
@@ -178,7 +178,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
     /// Largest powers from the manipulator and of compression, in W.
     #[inline(always)]
     pub(super) fn powers(&self) -> [Known<R>; 2] {
-        let length = self.motion.modes.length;
+        let rate = self.motion.modes.rate;
         let at_end = self.motion.compression(&self.at_end, self.end);
         let force = self.motion.force(&at_end)[0];
         let [speed, ..] = self.manipulator::<1>(&self.at_end);
@@ -187,7 +187,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
         let manipulator = self.largest(Quantity::ManipulatorPower, tops, ends);
         let ends = [self.first_force() * self.first_rate(), force * at_end[1]];
         let foam = self.largest(Quantity::FoamPower, &self.space.found.foam_power, ends);
-        [manipulator.known.over(length), foam.known.over(length)]
+        [manipulator.known.times(rate), foam.known.times(rate)]
     }
 }
 

@@ -147,10 +147,10 @@ impl<R: Number> Group<R> {
             searches: self.searches,
             accepted: valid,
         };
-        let length = solved.motion.modes.length;
+        let (length, rate) = (solved.motion.modes.length, solved.motion.modes.rate);
         solved.manipulator_speed = self.manipulator_speed * length;
         solved.accepted = solved.accepted & solved.motion.accepted;
-        let horizon = zero.like(self.horizon) / length;
+        let horizon = rate * self.horizon;
         let turn = solved.motion.modes.basis(one);
         let mut basis = [one, zero, one, zero];
         solved.reach::<POWERS>(0, &basis, zero);

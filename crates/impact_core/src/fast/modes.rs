@@ -32,14 +32,20 @@ pub struct Modes<S, R: Number> {
     simd: S,
     /// Length of a cell, in s.
     pub length: R,
+    /// Cells per second.
+    pub rate: R,
     /// `alpha` of both pairs.
     decay: [R; 2],
     /// `beta`.
     modulus: [R; 2],
+    /// One over it.
+    per_modulus: [R; 2],
     /// `delta`.
     square: [R; 2],
     /// Root of its absolute value.
     frequency: [R; 2],
+    /// One over it.
+    period: [R; 2],
     /// Pairs of real roots.
     real: [R::Mask; 2],
     /// Faster one of real roots.
@@ -165,7 +171,7 @@ impl<S: Simd, R: Number> Modes<S, R> {
             #[inline(always)]
             |pair, p, q| {
                 let decay = self.decay[pair];
-                let integrated = -(q + decay * p) / self.modulus[pair];
+                let integrated = -(q + decay * p) * self.per_modulus[pair];
                 [integrated, p + decay * integrated]
             },
         )
@@ -198,7 +204,7 @@ impl<S: Simd, R: Number> Modes<S, R> {
                 );
             }
             basis[2 * pair] = scaled[0];
-            basis[2 * pair + 1] = scaled[1] / frequency;
+            basis[2 * pair + 1] = scaled[1] * self.period[pair];
         }
         basis
     }
@@ -288,7 +294,7 @@ impl<S: Simd, R: Number> Motion<S, R> {
         let (modes, split, accepted) = modes(simd, &split, cell_angle);
         let length = modes.length;
         let speed = closing_speed * length;
-        let foam = [foam_stiffness, foam_damping / length];
+        let foam = [foam_stiffness, foam_damping * modes.rate];
         // (K_c + C_c s) v_c (s^2 + b1 s + b2) / M over the quartic, b of the other body.
         let pushed = inlined(
             #[inline(always)]
@@ -363,6 +369,7 @@ fn modes<S: Simd, R: Number>(
         fastest = fastest.max(R::select(real, alpha + spread, last.sqrt()));
     }
     let length = zero.like(cell_angle) / fastest;
+    let rate = fastest * (1.0 / cell_angle);
     let square_length = length * length;
     let scaled = split.factors.each(
         #[inline(always)]
@@ -375,6 +382,10 @@ fn modes<S: Simd, R: Number>(
     let modulus = scaled.each(
         #[inline(always)]
         |[_, last]| last,
+    );
+    let per_modulus = modulus.each(
+        #[inline(always)]
+        |modulus| zero.like(1.0) / modulus,
     );
     let square = [0, 1].each(
         #[inline(always)]
@@ -399,6 +410,10 @@ fn modes<S: Simd, R: Number>(
         #[inline(always)]
         |value| value.abs().sqrt(),
     );
+    let period = frequency.each(
+        #[inline(always)]
+        |frequency| zero.like(1.0) / frequency,
+    );
     let real = square.each(
         #[inline(always)]
         |value| value.lt(zero),
@@ -416,10 +431,13 @@ fn modes<S: Simd, R: Number>(
     let modes = Modes {
         simd,
         length,
+        rate,
         decay,
         modulus,
+        per_modulus,
         square,
         frequency,
+        period,
         real,
         faster,
         slower,

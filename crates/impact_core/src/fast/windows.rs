@@ -114,8 +114,8 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
     /// Largest 3 ms mean and largest level held for 3 ms, in m/s^2, in lanes of a mask.
     #[inline(always)]
     pub(super) fn held(&self, mask: R::Mask, [time, curve, third]: &[R; 3]) -> [Known<R>; 2] {
-        let length = self.motion.modes.length;
-        let width = length.like(HELD_WINDOW) / length;
+        let rate = self.motion.modes.rate;
+        let width = rate * HELD_WINDOW;
         let exists = width.le(self.end);
         // The first terms of the acceleration around its top.
         let half = width * 0.5;
@@ -134,8 +134,8 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
         }
         let nan = width.like(f64::NAN);
         [
-            window.rise / (length * HELD_WINDOW),
-            window.level / (length * length),
+            window.rise * rate * (1.0 / HELD_WINDOW),
+            window.level * rate * rate,
         ]
         .each(
             #[inline(always)]
@@ -150,10 +150,10 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
     /// the full one.
     #[inline(always)]
     pub(super) fn injuries(&mut self, mask: R::Mask) -> [Known<R>; 2] {
-        let length = self.motion.modes.length;
+        let rate = self.motion.modes.rate;
         let humps = self.space.found.valley.found | self.shelf;
         let plain = mask & !humps;
-        let free = self.free_window(plain, self.half_level(), length.truth(false));
+        let free = self.free_window(plain, self.half_level(), rate.truth(false));
         let [start, end] = free.ends;
         let cut = self.lasting & end.ge(self.end);
         let plain = plain & free.settled & free.concave & !cut;
@@ -164,7 +164,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
         }; 2];
         let asked = self.searches.injury;
         for ((known, width), asked) in found.iter_mut().zip(INJURY_WINDOWS).zip(asked) {
-            let width = length.like(width) / length;
+            let width = rate * width;
             let wide = plain & free_width.gt(width);
             if !asked || !wide.any() {
                 continue;
@@ -176,7 +176,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
             let share = R::select(possible, share, share.like(0.5));
             let guess = start + share * (free_width - width);
             let window = self.full(wide, width, guess, SETTLED_MEAN);
-            known.value = R::select(wide, criterion(window.rise, width, length), free.value);
+            known.value = R::select(wide, criterion(window.rise, width, rate), free.value);
             known.holds = plain & !window.restless;
         }
         let humps = mask & humps;
@@ -199,8 +199,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
 
     #[inline(always)]
     fn free_window_here(&self, mask: R::Mask, guess: [R; 2], held: R::Mask) -> FreeWindow<R> {
-        let length = self.motion.modes.length;
-        let zero = length.like(0.0);
+        let zero = self.end.like(0.0);
         let [mut start, mut end] = guess;
         let mut open = mask;
         let mut found = FreeWindow {
@@ -211,30 +210,32 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
             concave: zero.truth(false),
         };
         let mut best = zero.truth(false);
+        let mut rise = zero;
         for _ in 0..MAX_STEPS {
             let [v1, a1, d1, c1] = self.head(start);
             let [v2, a2, d2, c2] = self.head(end);
-            let (rise, width) = (v2 - v1, end - start);
-            let per_rise = rise.like(1.0) / rise;
+            let width = end - start;
+            let per_rise = zero.like(1.0) / (v2 - v1);
             let (u1, u2) = (a1 * per_rise, a2 * per_rise);
-            let over = width.like(1.5) / width;
+            let per_width = width.like(1.0) / width;
+            let over = per_width * 1.5;
             let (g1, g2) = (over - u1 * 2.5, u2 * 2.5 - over);
-            let curve = over / width;
+            let curve = over * per_width;
             let h11 = curve - (d1 * per_rise + u1 * u1) * 2.5;
             let h22 = curve + (d2 * per_rise - u2 * u2) * 2.5;
             let h12 = u1 * 2.5 * u2 - curve;
             let determinant = h11 * h22 - h12 * h12;
             let pinned = held | (start.le(zero) & g1.le(zero));
-            let s1 = R::select(pinned, zero, (h12 * g2 - h22 * g1) / determinant);
-            let s2 = R::select(pinned, -g2 / h22, (h12 * g1 - h11 * g2) / determinant);
+            let inverse = zero.like(1.0) / R::select(pinned, h22, determinant);
+            let s1 = R::select(pinned, zero, (h12 * g2 - h22 * g1) * inverse);
+            let s2 = R::select(pinned, -g2, h12 * g1 - h11 * g2) * inverse;
             let next = [(start + s1).max(zero), (end + s2).min(self.end)];
             let (s1, s2) = (next[0] - start, next[1] - end);
             let [v1, v2] = [(v1, a1, d1, c1, s1), (v2, a2, d2, c2, s2)].each(
                 #[inline(always)]
                 |(v, a, d, c, s)| v + s * (a + s * (d * 0.5 + s * (1.0 / 6.0) * c)),
             );
-            let value = criterion(v2 - v1, next[1] - next[0], length);
-            found.value = R::select(open, value, found.value);
+            rise = R::select(open, v2 - v1, rise);
             found.slopes = [d1, d2].map_with(
                 found.slopes,
                 #[inline(always)]
@@ -251,6 +252,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
             }
         }
         found.ends = [start, end];
+        found.value = criterion(rise, end - start, self.motion.modes.rate);
         found.settled = !open & start.lt(end);
         found.concave = best;
         found
@@ -302,11 +304,11 @@ pub(super) struct FreeWindow<R: Number> {
     pub(super) concave: R::Mask,
 }
 
-/// `T^-1.5 rise^2.5` from a rise in m per cell and a width in cells.
+/// `T mean^2.5` from a rise in m per cell, a width in cells and the cells per second.
 #[inline(always)]
-pub(super) fn criterion<R: Number>(rise: R, width: R, length: R) -> R {
-    let duration = width * length;
-    let mean = rise / (length * duration);
+pub(super) fn criterion<R: Number>(rise: R, width: R, rate: R) -> R {
+    let gained = rise * rate;
+    let mean = gained * (rate / width);
     let zero = rise.like(0.0);
-    R::select(rise.gt(zero), duration * mean * mean * mean.sqrt(), zero)
+    R::select(rise.gt(zero), gained * mean * mean.sqrt(), zero)
 }
