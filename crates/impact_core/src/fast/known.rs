@@ -40,7 +40,7 @@ impl<R: Number> Known<R> {
     }
 }
 
-/// Peaks, duration and mean, accelerations in m/s^2.
+/// Peaks, duration, mean and powers, accelerations in m/s^2.
 pub struct GroupPeaks<R: Number> {
     /// Acceleration of the head.
     pub head_acceleration: Known<R>,
@@ -52,6 +52,8 @@ pub struct GroupPeaks<R: Number> {
     pub duration: Known<R>,
     /// Mean acceleration.
     pub mean: Known<R>,
+    /// Power from the manipulator and power of compression, in W.
+    pub powers: [Known<R>; 2],
     /// Time of the peak acceleration and two derivatives after it.
     pub(super) top: [R; 3],
 }
@@ -62,8 +64,6 @@ pub struct GroupRest<R: Number> {
     pub injury: [Known<R>; 2],
     /// Largest 3 ms mean and largest level held for 3 ms.
     pub held: [Known<R>; 2],
-    /// Power from the manipulator and power of compression, in W.
-    pub powers: [Known<R>; 2],
     /// Deferred lanes.
     pub put_off: R::Mask,
 }

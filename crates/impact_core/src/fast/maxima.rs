@@ -1,6 +1,6 @@
 //! Maxima of quantities over the impact, impacts side by side.
 
-use super::apart::apart;
+use super::apart::{apart, inlined};
 use super::arithmetic::{MapWith, product, third_order};
 use super::modes::{Basis, Wave};
 use super::scan::Tops;
@@ -42,158 +42,221 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
         }
     }
 
-    /// Largest value of a quantity, at its tops or at the ends.
+    /// Largest values of quantities, at their tops or at the ends. They are looked for side by side: a step
+    /// of one waits for its own numbers only.
     #[inline(always)]
-    fn largest(&self, quantity: Quantity, tops: &Tops<R>, ends: [R; 2]) -> Largest<R> {
+    fn climb(&self, climbs: &mut [Option<Climb<'_, R>>]) {
         apart(
             self.simd,
             #[inline(always)]
-            || self.largest_here(quantity, tops, ends),
-        )
+            || self.climb_here(climbs),
+        );
     }
 
     #[inline(always)]
-    fn largest_here(&self, quantity: Quantity, tops: &Tops<R>, ends: [R; 2]) -> Largest<R> {
-        let mut accepted = self.accepted & !tops.odd;
-        let mut best = R::select(ends[0].gt(ends[1]), ends[0], ends[1]);
-        let zero = best.like(0.0);
-        let mut top = [zero; 3];
-        for place in &tops.places {
-            let mut open = accepted & place.found;
-            if !open.any() {
-                break;
+    fn climb_here(&self, climbs: &mut [Option<Climb<'_, R>>]) {
+        let modes = &self.motion.modes;
+        for place in 0..2 {
+            for climb in climbs.iter_mut().flatten() {
+                climb.start(place, self.accepted);
             }
-            let mut time = place.piece().zero();
-            let mut bracket = [place.piece().from, place.piece().from + place.piece().width];
-            let mut peak = best;
             for _ in 0..MAX_STEPS {
-                let basis = self.motion.modes.basis(time);
-                let [value, slope, curve, third, fourth] = self.jet(quantity, &basis, time);
-                let wanted = third_order(slope, curve, third);
-                let rising = slope.gt(zero);
-                bracket = [
-                    R::select(rising, time, bracket[0]),
-                    R::select(rising, bracket[1], time),
-                ];
-                let next = time + wanted;
-                let inside = next.ge(bracket[0]) & next.le(bracket[1]);
-                let middle = (bracket[0] + bracket[1]) * 0.5;
-                let step = R::select(inside, wanted, middle - time);
-                let bend = third * (1.0 / 6.0) + step * (1.0 / 24.0) * fourth;
-                let found = value + step * (slope + step * (curve * 0.5 + step * bend));
-                time = R::select(open, time + step, time);
-                let higher = open & found.gt(best);
-                peak = R::select(open, R::select(higher, found, best), peak);
-                top = [time, curve, third].map_with(
-                    top,
-                    #[inline(always)]
-                    |new, old| R::select(higher, new, old),
-                );
-                open = open & !step.abs().lt(zero.like(SETTLED));
-                if !open.any() {
+                for climb in climbs.iter_mut().flatten() {
+                    if climb.open.any() {
+                        climb.basis = modes.basis(climb.time);
+                    }
+                }
+                let mut open = false;
+                for climb in climbs.iter_mut().flatten() {
+                    if climb.open.any() {
+                        climb.step(self.jet(climb.quantity, &climb.basis, climb.time));
+                        open = open || climb.open.any();
+                    }
+                }
+                if !open {
                     break;
                 }
             }
-            accepted = accepted & !open;
-            best = peak;
+            for climb in climbs.iter_mut().flatten() {
+                climb.settle();
+            }
         }
-        let (hidden, time, excess) = tops.hidden;
-        if (hidden & accepted).any() {
-            let basis = self.motion.modes.basis(time);
-            let [near, ..] = self.jet(quantity, &basis, time);
-            accepted = accepted & !(hidden & (near + excess).ge(best));
-        }
-        Largest {
-            known: Known {
-                value: best,
-                holds: accepted,
-            },
-            top,
+        for climb in climbs.iter_mut().flatten() {
+            let (hidden, time, excess) = climb.tops.hidden;
+            let hidden = hidden & self.accepted & !climb.lost;
+            if hidden.any() {
+                let [near, ..] = self.jet(climb.quantity, &modes.basis(time), time);
+                climb.lost = climb.lost | (hidden & (near + excess).ge(climb.best));
+            }
         }
     }
 
-    /// Peaks that are wanted, duration and mean.
+    /// Peaks that are wanted, duration and mean, powers.
     #[inline(always)]
     pub fn peaks(&self) -> GroupPeaks<R> {
         let zero = self.end.like(0.0);
         let searches = self.searches;
         let (length, rate) = (self.motion.modes.length, self.motion.modes.rate);
-        let first = self.space.head[0][1];
-        let at_end = self.motion.compression(&self.at_end, self.end);
-        let mut acceleration = Known::nothing(zero);
-        let mut top = [zero; 3];
-        // A window needs its top.
-        if searches.acceleration || searches.windows() {
-            let tops = &self.space.found.acceleration;
-            let last = self.motion.head[1].at(&self.at_end);
-            let last = R::select(self.lasting, last, zero);
-            let largest = self.largest(Quantity::Acceleration, tops, [first, last]);
-            acceleration = largest.known.times(rate * rate);
-            top = largest.top;
-        }
-        let mut compression = Known::nothing(zero);
-        if searches.compression {
-            let tops = &self.space.found.compression;
-            let ends = [zero, at_end[0]];
-            compression = self.largest(Quantity::Compression, tops, ends).known;
-        }
-        let mut force = Known::nothing(zero);
-        if searches.force {
-            let ends = [self.first_force(), self.motion.force(&at_end)[0]];
-            let tops = &self.space.found.force;
-            force = self.largest(Quantity::Force, tops, ends).known;
-        }
+        let found = &self.space.found;
         let velocity = self.motion.head[0];
-        let gained = velocity.at(&self.at_end) - velocity.at_contact();
-        let known = |value: R| Known {
-            value,
-            holds: self.accepted,
-        };
-        GroupPeaks {
-            head_acceleration: acceleration,
-            contact_force: force,
-            compression,
-            duration: known(R::select(
-                self.lasting,
-                zero.like(f64::INFINITY),
-                self.end * length,
-            )),
-            mean: known(gained / self.end * rate * rate),
-            top,
-        }
-    }
-
-    /// Force at first contact.
-    #[inline(always)]
-    fn first_force(&self) -> R {
-        self.motion.foam[1] * self.first_rate()
-    }
-
-    /// Rate of compression at first contact.
-    #[inline(always)]
-    fn first_rate(&self) -> R {
-        self.motion.compression[1].at_contact() + self.motion.ramp[1]
-    }
-
-    /// Largest powers from the manipulator and of compression, in W.
-    #[inline(always)]
-    pub(super) fn powers(&self) -> [Known<R>; 2] {
-        let rate = self.motion.modes.rate;
-        let at_end = self.motion.compression(&self.at_end, self.end);
-        let force = self.motion.force(&at_end)[0];
+        let compression = self.motion.compression(&self.at_end, self.end);
+        let force = self.motion.force(&compression)[0];
+        let last = self.motion.head[1].at(&self.at_end);
+        let accelerations = [self.space.head[0][1], R::select(self.lasting, last, zero)];
+        let first_rate = self.motion.compression[1].at_contact() + self.motion.ramp[1];
+        let first_force = self.motion.foam[1] * first_rate;
         let [speed, ..] = self.manipulator::<1>(&self.at_end);
-        let ends = [self.first_force() * self.manipulator_speed, force * speed];
-        let tops = &self.space.found.manipulator_power;
-        let manipulator = self.largest(Quantity::ManipulatorPower, tops, ends);
-        let ends = [self.first_force() * self.first_rate(), force * at_end[1]];
-        let foam = self.largest(Quantity::FoamPower, &self.space.found.foam_power, ends);
-        [manipulator.known.times(rate), foam.known.times(rate)]
+        let at_contact = first_force * self.manipulator_speed;
+        let climb = inlined(
+            #[inline(always)]
+            |asked: bool, quantity, tops, ends| asked.then_some(Climb::new(quantity, tops, ends)),
+        );
+        let mut climbs = [
+            // A window needs its top.
+            climb(
+                searches.acceleration || searches.windows(),
+                Quantity::Acceleration,
+                &found.acceleration,
+                accelerations,
+            ),
+            climb(
+                searches.compression,
+                Quantity::Compression,
+                &found.compression,
+                [zero, compression[0]],
+            ),
+            climb(
+                searches.force,
+                Quantity::Force,
+                &found.force,
+                [first_force, force],
+            ),
+            climb(
+                searches.powers,
+                Quantity::ManipulatorPower,
+                &found.manipulator_power,
+                [at_contact, force * speed],
+            ),
+            climb(
+                searches.powers,
+                Quantity::FoamPower,
+                &found.foam_power,
+                [first_force * first_rate, force * compression[1]],
+            ),
+        ];
+        self.climb(&mut climbs);
+        let known = inlined(
+            #[inline(always)]
+            |value: R| Known {
+                value,
+                holds: self.accepted,
+            },
+        );
+        let largest = inlined(
+            #[inline(always)]
+            |index: usize| match &climbs[index] {
+                Some(climb) => Known {
+                    value: climb.best,
+                    holds: self.accepted & !climb.lost,
+                },
+                None => Known::nothing(zero),
+            },
+        );
+        let gained = velocity.at(&self.at_end) - velocity.at_contact();
+        let duration = R::select(self.lasting, zero.like(f64::INFINITY), self.end * length);
+        GroupPeaks {
+            head_acceleration: largest(0).times(rate * rate),
+            contact_force: largest(2),
+            compression: largest(1),
+            duration: known(duration),
+            mean: known(gained / self.end * rate * rate),
+            powers: [largest(3).times(rate), largest(4).times(rate)],
+            top: climbs[0].as_ref().map_or([zero; 3], |climb| climb.top),
+        }
     }
 }
 
-/// The largest value of a quantity.
-struct Largest<R: Number> {
-    known: Known<R>,
+/// The search for the largest value of a quantity.
+struct Climb<'a, R: Number> {
+    quantity: Quantity,
+    tops: &'a Tops<R>,
+    /// The largest value so far.
+    best: R,
     /// Time, second and third derivative of the top that it is at, if it is one.
     top: [R; 3],
+    /// Lanes in which it was not found.
+    lost: R::Mask,
+    /// Lanes whose steps to a top have not come to rest.
+    open: R::Mask,
+    time: R,
+    basis: Basis<R>,
+    bracket: [R; 2],
+    /// The best so far with what the last step gives.
+    peak: R,
+}
+
+impl<'a, R: Number> Climb<'a, R> {
+    #[inline(always)]
+    fn new(quantity: Quantity, tops: &'a Tops<R>, ends: [R; 2]) -> Self {
+        let zero = ends[0].like(0.0);
+        let best = R::select(ends[0].gt(ends[1]), ends[0], ends[1]);
+        Self {
+            quantity,
+            tops,
+            best,
+            top: [zero; 3],
+            lost: tops.odd,
+            open: zero.truth(false),
+            time: zero,
+            basis: [zero; 4],
+            bracket: [zero; 2],
+            peak: best,
+        }
+    }
+
+    /// Begins with a top.
+    #[inline(always)]
+    fn start(&mut self, place: usize, accepted: R::Mask) {
+        let place = &self.tops.places[place];
+        self.open = accepted & !self.lost & place.found;
+        if self.open.any() {
+            let piece = place.piece();
+            self.time = piece.zero();
+            self.bracket = [piece.from, piece.from + piece.width];
+        }
+    }
+
+    /// Takes a step from the quantity with four derivatives.
+    #[inline(always)]
+    fn step(&mut self, [value, slope, curve, third, fourth]: [R; 5]) {
+        let (time, open) = (self.time, self.open);
+        let wanted = third_order(slope, curve, third);
+        let rising = slope.gt(time.like(0.0));
+        self.bracket = [
+            R::select(rising, time, self.bracket[0]),
+            R::select(rising, self.bracket[1], time),
+        ];
+        let next = time + wanted;
+        let inside = next.ge(self.bracket[0]) & next.le(self.bracket[1]);
+        let middle = (self.bracket[0] + self.bracket[1]) * 0.5;
+        let step = R::select(inside, wanted, middle - time);
+        let bend = third * (1.0 / 6.0) + step * (1.0 / 24.0) * fourth;
+        let found = value + step * (slope + step * (curve * 0.5 + step * bend));
+        self.time = R::select(open, time + step, time);
+        let higher = open & found.gt(self.best);
+        self.peak = R::select(open, R::select(higher, found, self.best), self.peak);
+        self.top = [self.time, curve, third].map_with(
+            self.top,
+            #[inline(always)]
+            |new, old| R::select(higher, new, old),
+        );
+        self.open = open & !step.abs().lt(time.like(SETTLED));
+    }
+
+    /// Ends with a top.
+    #[inline(always)]
+    fn settle(&mut self) {
+        self.lost = self.lost | self.open;
+        self.best = self.peak;
+    }
 }

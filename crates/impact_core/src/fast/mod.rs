@@ -391,11 +391,6 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
         let searches = self.searches;
         let zero = self.end.like(0.0);
         let nothing = [Known::nothing(zero); 2];
-        let powers = if searches.powers {
-            self.powers()
-        } else {
-            nothing
-        };
         let found = &self.space.found;
         let hidden = found.acceleration.hidden.0;
         let course = peaks.head_acceleration.holds & !hidden;
@@ -423,7 +418,6 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
         GroupRest {
             injury,
             held,
-            powers,
             put_off,
         }
     }
@@ -463,7 +457,7 @@ mod tests {
             let mut solved = group.solve::<_, true>(&mut space, true);
             let peaks = solved.peaks();
             let rest = solved.rest(&peaks);
-            let all = [rest.injury, rest.held, rest.powers];
+            let all = [rest.injury, rest.held, peaks.powers];
             refused += i32::from(!all.iter().flatten().all(|known| known.holds));
         }
         // One in a hundred costs about as much as all the others.

@@ -164,8 +164,8 @@ impl<R: Number> Side<R> {
             hic36: nothing,
             average_3ms_g: nothing,
             clip_3ms_g: nothing,
-            peak_power_manipulator: nothing,
-            peak_power_foam: nothing,
+            peak_power_manipulator: peaks.powers[0],
+            peak_power_foam: peaks.powers[1],
         };
         let Some(rest) = &self.rest else {
             return loads;
@@ -177,8 +177,6 @@ impl<R: Number> Side<R> {
             hic36: rest.injury[1].over(scale),
             average_3ms_g: rest.held[0].over(per_g),
             clip_3ms_g: rest.held[1].over(per_g),
-            peak_power_manipulator: rest.powers[0],
-            peak_power_foam: rest.powers[1],
             ..loads
         }
     }
