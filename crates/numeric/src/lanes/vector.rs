@@ -255,3 +255,129 @@ impl<S: Simd> Truth for VectorMask<S> {
         bits
     }
 }
+
+#[cfg(all(test, target_arch = "x86_64"))]
+mod tests {
+    use super::*;
+    use crate::elementary::{cosine_and_sine, exponential};
+    use pulp::x86::{V3, V3_512b, V4};
+
+    /// Two sets of eight numbers: of any kind, and of moderate size.
+    fn numbers(round: u64) -> [[f64; 8]; 2] {
+        let mut state = round + 1;
+        let mut next = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            state
+        };
+        let any = std::array::from_fn(|lane| match next() >> 60 {
+            0 => f64::NAN,
+            1 => [f64::INFINITY, f64::NEG_INFINITY, 0.0, -0.0][lane % 4],
+            _ => f64::from_bits(next()),
+        });
+        let moderate = std::array::from_fn(|_| (next() >> 11) as f64 / (1_u64 << 46) as f64 - 64.0);
+        [any, moderate]
+    }
+
+    fn same(found: f64, expected: f64) -> bool {
+        found.to_bits() == expected.to_bits() || found.is_nan() && expected.is_nan()
+    }
+
+    fn lanes_equal_plain_numbers<S: Simd>(simd: S) {
+        type Both = fn(f64, f64) -> f64;
+        let zero = Vector::splat(simd, 0.0);
+        for round in 0..400 {
+            let [[a, b], [c, _]] = [numbers(round), numbers(round + 1000)];
+            for (a, b) in [(a, b), (b, c), (a, a), (c, a)] {
+                let [x, y] = [a, b].map(|values| zero.like_each(|lane| values[lane]));
+                let found = [
+                    x + y,
+                    x - y,
+                    x * y,
+                    x / y,
+                    x.min(y),
+                    x.max(y),
+                    x + 0.5,
+                    x - 0.5,
+                    x * 0.5,
+                ];
+                let expected: [Both; 9] = [
+                    |a, b| a + b,
+                    |a, b| a - b,
+                    |a, b| a * b,
+                    |a, b| a / b,
+                    Number::min,
+                    Number::max,
+                    |a, _| a + 0.5,
+                    |a, _| a - 0.5,
+                    |a, _| a * 0.5,
+                ];
+                let single = [-x, x.sqrt(), x.abs(), Vector::select(x.lt(y), x, y)];
+                let plain: [Both; 4] = [
+                    |a, _| -a,
+                    |a, _| a.sqrt(),
+                    |a, _| a.abs(),
+                    |a, b| if a < b { a } else { b },
+                ];
+                let masks = [
+                    x.lt(y),
+                    x.le(y),
+                    x.gt(y),
+                    x.ge(y),
+                    !(x.lt(y) | x.ge(y)),
+                    x.le(y) & x.ge(y),
+                ];
+                for lane in 0..8 {
+                    let (a, b) = (a[lane], b[lane]);
+                    for (index, (found, expected)) in found.iter().zip(expected).enumerate() {
+                        assert!(same(found.lane(lane), expected(a, b)), "{index}: {a} {b}");
+                    }
+                    for (index, (found, expected)) in single.iter().zip(plain).enumerate() {
+                        assert!(same(found.lane(lane), expected(a, b)), "{index}: {a} {b}");
+                    }
+                    let truths = [a < b, a <= b, a > b, a >= b, !(a < b || a >= b), a == b];
+                    for (mask, truth) in masks.into_iter().zip(truths) {
+                        assert_eq!(mask.lane(lane), truth, "{a} {b}");
+                        assert_eq!(mask.bits() >> lane & 1 == 1, truth);
+                    }
+                }
+                for mask in masks {
+                    assert_eq!(mask.any(), mask.bits() != 0);
+                    assert!(mask.bits() < 256);
+                }
+            }
+            let [_, b] = numbers(round);
+            let x = zero.like_each(|lane| b[lane]);
+            let ([cosine, sine], growth) = (cosine_and_sine(x), exponential(x));
+            let mut written = [0.0; 5];
+            growth.write(&mut written);
+            for lane in 0..8 {
+                let [c, s] = cosine_and_sine(b[lane]);
+                assert_eq!([cosine.lane(lane), sine.lane(lane)], [c, s]);
+                assert_eq!(growth.lane(lane), exponential(b[lane]));
+                assert!(lane > 4 || written[lane] == growth.lane(lane));
+            }
+        }
+        let [yes, no] = [zero.truth(true), zero.truth(false)];
+        assert_eq!(
+            (yes.bits(), no.bits(), yes.any(), no.any()),
+            (255, 0, true, false)
+        );
+        assert_eq!(zero.like(2.5).lane(7), 2.5);
+    }
+
+    #[test]
+    fn pairs_of_256_bits_equal_plain_numbers() {
+        if let Some(simd) = V3::try_new() {
+            lanes_equal_plain_numbers(V3_512b(simd));
+        }
+    }
+
+    #[test]
+    fn vectors_of_512_bits_equal_plain_numbers() {
+        if let Some(simd) = V4::try_new() {
+            lanes_equal_plain_numbers(simd);
+        }
+    }
+}

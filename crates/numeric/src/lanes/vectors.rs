@@ -37,13 +37,12 @@ pub trait OnEight {
 pub fn on_eight<W: OnEight>(work: W) -> Result<W::Output, W> {
     use pulp::x86::{V3_512b, V4};
     if let Some(simd) = V4::try_new() {
-        return Ok(Simd::vectorize(simd, In { simd, work }));
+        return Ok(with_vectors(simd, work));
     }
-    let Some(vectors) = vectors() else {
-        return Err(work);
-    };
-    let simd = V3_512b(vectors);
-    Ok(simd.vectorize(In { simd, work }))
+    match vectors() {
+        Some(simd) => Ok(with_vectors(V3_512b(simd), work)),
+        None => Err(work),
+    }
 }
 
 /// Does work on eight numbers.
@@ -56,20 +55,19 @@ pub fn on_eight<W: OnEight>(work: W) -> Result<W::Output, W> {
     Ok(work.on_eight(pulp::Scalar, zero))
 }
 
-/// Work with vectors that hold eight numbers.
+/// Does work with vectors that hold eight numbers.
 #[cfg(target_arch = "x86_64")]
-struct In<S, W> {
-    simd: S,
-    work: W,
-}
+pub fn with_vectors<S: Simd, W: OnEight>(simd: S, work: W) -> W::Output {
+    struct In<S, W>(S, W);
+    impl<V: Simd, W: OnEight> pulp::WithSimd for In<V, W> {
+        type Output = W::Output;
 
-#[cfg(target_arch = "x86_64")]
-impl<V: Simd, W: OnEight> pulp::WithSimd for In<V, W> {
-    type Output = W::Output;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _same: S) -> W::Output {
-        self.work
-            .on_eight(self.simd, super::Vector::splat(self.simd, 0.0))
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, _same: S) -> W::Output {
+            let Self(simd, work) = self;
+            work.on_eight(simd, super::Vector::splat(simd, 0.0))
+        }
     }
+    const { assert!(S::F64_LANES == 8) };
+    simd.vectorize(In(simd, work))
 }
