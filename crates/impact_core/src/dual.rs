@@ -151,6 +151,9 @@ impl<const N: usize> Number for Dual<N> {
     fn write(self, to: &mut [f64]) {
         to.copy_from_slice(&[self.value][..to.len()]);
     }
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        self * factor + addend
+    }
     fn truth(self, value: bool) -> bool {
         value
     }

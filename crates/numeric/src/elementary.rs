@@ -1,5 +1,5 @@
 //! Exponential, sine and cosine of numbers side by side, from basic operations only, so that their
-//! bits do not depend on the width.
+//! bits do not depend on the width. Fused operations are basic, too, but slow on a processor without vectors.
 
 use crate::lanes::{Number, Real};
 
@@ -65,9 +65,24 @@ fn polynomial<R: Number, const N: usize>(coefficients: &[f64; N], x: R) -> R {
     parts[0] + x * parts[1]
 }
 
+/// The same with products and sums rounded together.
+#[inline(always)]
+fn fused_polynomial<R: Number, const N: usize>(coefficients: &[f64; N], x: R) -> R {
+    let square = x * x;
+    let mut parts = [x; 2];
+    parts[N % 2] = x.like(coefficients[N - 2]);
+    parts[1 - N % 2] = x.like(coefficients[N - 1]);
+    for (power, &coefficient) in coefficients.iter().enumerate().take(N - 2).rev() {
+        let part = &mut parts[power % 2];
+        *part = part.mul_add(square, x.like(coefficient));
+    }
+    let [even, odd] = parts;
+    odd.mul_add(x, even)
+}
+
 /// `exp(x)` of a number that is not far above zero.
 #[inline(always)]
-pub fn exponential<R: Number>(x: R) -> R {
+fn exponential<R: Number>(x: R) -> R {
     within_range(x.max(x.like(LOWEST)))
 }
 
@@ -78,6 +93,16 @@ fn within_range<R: Number>(x: R) -> R {
     let whole = shifted - ROUNDER;
     let rest = x - whole * LN_2[0] - whole * LN_2[1];
     polynomial(&EXPONENTIAL, rest) * shifted.power_of_two()
+}
+
+/// `exp(x)` of a number that is not far above zero, products and sums rounded together.
+#[inline(always)]
+pub fn fused_exponential<R: Number>(x: R) -> R {
+    let x = x.max(x.like(LOWEST));
+    let shifted = x.mul_add(x.like(std::f64::consts::LOG2_E), x.like(ROUNDER));
+    let whole = shifted - ROUNDER;
+    let rest = whole.mul_add(x.like(-LN_2[1]), whole.mul_add(x.like(-LN_2[0]), x));
+    fused_polynomial(&EXPONENTIAL, rest) * shifted.power_of_two()
 }
 
 /// `exp(x)` of any number: infinite beyond 709, zero below -700, NaN of NaN.
@@ -120,19 +145,20 @@ pub fn logarithm<R: Real>(x: R) -> R {
 }
 
 /// Cosine and sine of a number of moderate size: those of a quarter of what is left of it beside
-/// full turns, doubled twice.
+/// full turns, doubled twice. Products and sums are rounded together.
 #[inline(always)]
 pub fn cosine_and_sine<R: Number>(x: R) -> [R; 2] {
     let one = x.like(1.0);
-    let whole = x * (0.5 * std::f64::consts::FRAC_1_PI) + ROUNDER - ROUNDER;
-    let rest = x - whole * TURN[0] - whole * TURN[1];
+    let per_turn = x.like(0.5 * std::f64::consts::FRAC_1_PI);
+    let whole = x.mul_add(per_turn, x.like(ROUNDER)) - ROUNDER;
+    let rest = whole.mul_add(x.like(-TURN[1]), whole.mul_add(x.like(-TURN[0]), x));
     let quarter = rest * 0.25;
     let square = quarter * quarter;
-    let mut cosine = polynomial(&COSINE, square);
-    let mut sine = polynomial(&SINE, square) * quarter;
+    let mut cosine = fused_polynomial(&COSINE, square);
+    let mut sine = fused_polynomial(&SINE, square) * quarter;
     for _ in 0..2 {
         let double = sine + sine;
-        (cosine, sine) = (one - double * sine, double * cosine);
+        (cosine, sine) = ((-double).mul_add(sine, one), double * cosine);
     }
     [cosine, sine]
 }
@@ -206,8 +232,10 @@ mod tests {
     fn they_agree_with_the_library() {
         for index in -4000..=200 {
             let x = f64::from(index) * 0.01;
-            let error = exponential(x) / x.exp() - 1.0;
-            assert!(error.abs() < 1e-15, "{x}: {error:e}");
+            for found in [exponential(x), fused_exponential(x)] {
+                let error = found / x.exp() - 1.0;
+                assert!(error.abs() < 1e-15, "{x}: {error:e}");
+            }
         }
         for index in -7000..=7090 {
             let x = f64::from(index) * 0.1;

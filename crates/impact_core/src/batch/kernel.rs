@@ -6,7 +6,7 @@ use crate::criteria::Impact;
 use crate::fast::apart::apart;
 use crate::fast::{CELL_ANGLE, FINE_CELL_ANGLE, MOST_LANES, Rows, Side, Walk, Workspace};
 use crate::metrics::{FREE_HORIZON, Metrics, Missing, Status};
-use numeric::lanes::{Number, OnEight, Truth, on_eight};
+use numeric::lanes::{Number, OnEight, Truth, on_eight, vectors};
 use pulp::{Scalar, Simd};
 
 /// A row by its place in a block, and what it misses.
@@ -30,7 +30,11 @@ pub(super) fn fill(columns: &Columns<'_>, options: &BatchOptions, block: &mut Bl
         Some(Width::Eight) | None => on_eight(rows),
     };
     if let Err(rows) = alone {
-        rows.on_eight(Scalar, 0.0);
+        // Vectors come with fused products and sums, which single numbers use, too.
+        match vectors() {
+            Some(vectors) => rows.on_eight(vectors, 0.0),
+            None => rows.on_eight(Scalar, 0.0),
+        }
     }
 }
 

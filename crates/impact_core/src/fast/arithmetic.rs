@@ -67,7 +67,7 @@ pub(super) fn product<R: Number, const N: usize>(f: [R; N], g: [R; N]) -> [R; N]
     let mut derivatives = [f[0].like(0.0); N];
     for (order, (derivative, row)) in derivatives.iter_mut().zip(BINOMIAL).enumerate() {
         for (left, factor) in row.into_iter().enumerate().take(order + 1) {
-            *derivative += f[left] * factor * g[order - left];
+            *derivative = (f[left] * factor).mul_add(g[order - left], *derivative);
         }
     }
     derivatives

@@ -24,7 +24,7 @@ impl<R: Number> Split<R> {
     pub(super) fn new(factors: [Factor<R>; 2]) -> Self {
         let [[a, b], [c, d]] = factors;
         let (p, q) = (c - a, d - b);
-        let resultant = q * (q - p * a) + p * p * b;
+        let resultant = q.mul_add((-p).mul_add(a, q), p * p * b);
         Self {
             factors,
             resultant,
@@ -37,22 +37,22 @@ impl<R: Number> Split<R> {
     pub(super) fn of(&self, [p3, p2, p1, p0]: [R; 4]) -> [[R; 2]; 2] {
         let [[a, b], [c, d]] = self.factors;
         let (p, q) = (c - a, d - b);
-        let slope = q - p * a;
+        let slope = (-p).mul_add(a, q);
         // What is left by the division by the first factor.
-        let lead = p2 - p3 * a;
-        let r1 = p1 - p3 * b - lead * a;
-        let r0 = p0 - lead * b;
+        let lead = (-p3).mul_add(a, p2);
+        let r1 = (-lead).mul_add(a, (-p3).mul_add(b, p1));
+        let r0 = (-lead).mul_add(b, p0);
         let first = [
-            (q * r1 - p * r0) * self.over,
-            (slope * r0 + p * b * r1) * self.over,
+            q.mul_add(r1, -(p * r0)) * self.over,
+            slope.mul_add(r0, p * b * r1) * self.over,
         ];
         // And by the second one.
-        let lead = p2 - p3 * c;
-        let r1 = p1 - p3 * d - lead * c;
-        let r0 = p0 - lead * d;
+        let lead = (-p3).mul_add(c, p2);
+        let r1 = (-lead).mul_add(c, (-p3).mul_add(d, p1));
+        let r0 = (-lead).mul_add(d, p0);
         let second = [
-            (p * r0 - q * r1) * self.over,
-            ((p * c - q) * r0 - p * d * r1) * self.over,
+            p.mul_add(r0, -(q * r1)) * self.over,
+            p.mul_add(c, -q).mul_add(r0, -(p * d * r1)) * self.over,
         ];
         [first, second]
     }
@@ -65,27 +65,27 @@ impl<R: Number> Split<R> {
 pub(super) fn factors<R: Number>([q1, q2, q3, q4]: [R; 4]) -> (Split<R>, R::Mask) {
     // The sum of the last coefficients is the largest root of a cubic, from above which Newton
     // steps fall without fail; at q2 the cubic is the determinant of Routh and Hurwitz.
-    let linear = q1 * q3 - q4 * 4.0;
-    let constant = q2 * 4.0 * q4 - q3 * q3 - q1 * q1 * q4;
+    let linear = q1.mul_add(q3, q4 * -4.0);
+    let constant = (q2 * 4.0).mul_add(q4, -(q3 * q3)) - q1 * q1 * q4;
     let mut sum = q2;
     for _ in 0..RESOLVENT_STEPS {
-        let value = ((sum - q2) * sum + linear) * sum + constant;
-        let slope = (sum * 3.0 - q2 - q2) * sum + linear;
+        let value = (sum - q2).mul_add(sum, linear).mul_add(sum, constant);
+        let slope = (sum * 3.0 - q2 - q2).mul_add(sum, linear);
         sum -= value / slope;
     }
-    let difference = (sum * sum - q4 * 4.0).max(sum.like(0.0)).sqrt();
+    let difference = sum.mul_add(sum, q4 * -4.0).max(sum.like(0.0)).sqrt();
     let b = (sum + difference) * 0.5;
     let d = q4 / b;
-    let c = (q3 - q1 * d) / (b - d);
+    let c = (-q1).mul_add(d, q3) / (b - d);
     let mut split = Split::new([[q1 - c, b], [c, d]]);
     let mut settled = sum.truth(false);
     for _ in 0..FACTOR_STEPS {
         let [[a, b], [c, d]] = split.factors;
         let missing = [
             q1 - (a + c),
-            q2 - (b + a * c + d),
-            q3 - (a * d + b * c),
-            q4 - b * d,
+            q2 - (a.mul_add(c, b) + d),
+            q3 - a.mul_add(d, b * c),
+            (-b).mul_add(d, q4),
         ];
         let [[da, db], [dc, dd]] = split.of(missing);
         let limit = sum.like(SETTLED_FACTOR);

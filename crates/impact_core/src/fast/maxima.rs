@@ -240,8 +240,9 @@ impl<'a, R: Number> Climb<'a, R> {
         let inside = next.ge(self.bracket[0]) & next.le(self.bracket[1]);
         let middle = (self.bracket[0] + self.bracket[1]) * 0.5;
         let step = R::select(inside, wanted, middle - time);
-        let bend = third * (1.0 / 6.0) + step * (1.0 / 24.0) * fourth;
-        let found = value + step * (slope + step * (curve * 0.5 + step * bend));
+        let bend = (step * (1.0 / 24.0)).mul_add(fourth, third * (1.0 / 6.0));
+        let rise = step.mul_add(step.mul_add(bend, curve * 0.5), slope);
+        let found = step.mul_add(rise, value);
         self.time = R::select(open, time + step, time);
         let higher = open & found.gt(self.best);
         self.peak = R::select(open, R::select(higher, found, self.best), self.peak);

@@ -203,8 +203,8 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
         let rate = motion.compression[1].at(basis) + motion.ramp[1];
         let second = motion.compression[2].at(basis);
         let third = motion.compression[3].at(basis);
-        let slope = stiffness * rate + damping * second;
-        let curve = stiffness * second + damping * third;
+        let slope = stiffness.mul_add(rate, damping * second);
+        let curve = stiffness.mul_add(second, damping * third);
         let zero = time.like(0.0);
         let (mut manipulator_power, mut foam_power) = ([zero; 2], [zero; 2]);
         let mut velocity = zero;
@@ -212,8 +212,9 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
             velocity = motion.head[0].at(basis);
         }
         if POWERS && self.searches.powers {
-            let value = motion.compression[0].at(basis) + (motion.ramp[0] + motion.ramp[1] * time);
-            let force = [stiffness * value + damping * rate, slope, curve];
+            let value =
+                motion.compression[0].at(basis) + motion.ramp[1].mul_add(time, motion.ramp[0]);
+            let force = [stiffness.mul_add(value, damping * rate), slope, curve];
             let [_, slope, curve] = product(force, self.manipulator(basis));
             manipulator_power = [slope, curve];
             let [_, slope, curve] = product(force, [rate, second, third]);

@@ -15,7 +15,7 @@ use super::apart::{apart, inlined};
 use super::arithmetic::{Each, MapWith};
 use super::factors::{Split, factors};
 use crate::series::Plant;
-use numeric::elementary::{cosine_and_sine, exponential};
+use numeric::elementary::{cosine_and_sine, fused_exponential};
 use numeric::lanes::{Number, Truth};
 use pulp::Simd;
 
@@ -65,8 +65,9 @@ impl<R: Number> Wave<R> {
     /// Its value.
     #[inline(always)]
     pub fn at(&self, basis: &Basis<R>) -> R {
-        (self.0[0] * basis[0] + self.0[1] * basis[1])
-            + (self.0[2] * basis[2] + self.0[3] * basis[3])
+        let [p, q, r, s] = self.0;
+        let first = p.mul_add(basis[0], q * basis[1]);
+        r.mul_add(basis[2], s.mul_add(basis[3], first))
     }
 
     /// Values of waves from one of them on. A loop: closures would become functions of their own,
@@ -110,8 +111,8 @@ impl<S: Simd, R: Number> Modes<S, R> {
             |pair, p, q| {
                 let (c, s) = (by[2 * pair], by[2 * pair + 1]);
                 [
-                    (p * c + q * s) - p,
-                    (q * c - p * (self.square[pair] * s)) - q,
+                    p.mul_add(c, q * s) - p,
+                    q.mul_add(c, -(p * (self.square[pair] * s))) - q,
                 ]
             },
         )
@@ -124,7 +125,7 @@ impl<S: Simd, R: Number> Modes<S, R> {
             #[inline(always)]
             |pair, p, q| {
                 let (decay, square) = (self.decay[pair], self.square[pair]);
-                [q - decay * p, -(square * p + decay * q)]
+                [(-decay).mul_add(p, q), -square.mul_add(p, decay * q)]
             },
         )
     }
@@ -137,14 +138,14 @@ impl<S: Simd, R: Number> Modes<S, R> {
             let (decay, square) = (self.decay[pair], self.square[pair]);
             let slope = inlined(
                 #[inline(always)]
-                |[c, s]: [R; 2]| [-(decay * c + square * s), c - decay * s],
+                |[c, s]: [R; 2]| [-decay.mul_add(c, square * s), (-decay).mul_add(s, c)],
             );
             let now = [basis[2 * pair], basis[2 * pair + 1]];
             let first = slope(now);
             let second = slope(first);
             for part in 0..2 {
-                let bend = step * 0.5 * second[part];
-                advanced[2 * pair + part] = now[part] + step * (first[part] + bend);
+                let mean = (step * 0.5).mul_add(second[part], first[part]);
+                advanced[2 * pair + part] = step.mul_add(mean, now[part]);
             }
         }
         advanced
@@ -171,8 +172,8 @@ impl<S: Simd, R: Number> Modes<S, R> {
             #[inline(always)]
             |pair, p, q| {
                 let decay = self.decay[pair];
-                let integrated = -(q + decay * p) * self.per_modulus[pair];
-                [integrated, p + decay * integrated]
+                let integrated = -decay.mul_add(p, q) * self.per_modulus[pair];
+                [integrated, decay.mul_add(integrated, p)]
             },
         )
     }
@@ -192,11 +193,11 @@ impl<S: Simd, R: Number> Modes<S, R> {
         let mut basis = [time; 4];
         for pair in 0..2 {
             let (real, frequency) = (self.real[pair], self.frequency[pair]);
-            let decay = exponential(-(self.slower[pair] * time));
+            let decay = fused_exponential(-(self.slower[pair] * time));
             let [cosine, sine] = cosine_and_sine(frequency * time);
             let mut scaled = [decay * cosine, decay * sine];
             if real.any() {
-                let fast = exponential(-(self.faster[pair] * time));
+                let fast = fused_exponential(-(self.faster[pair] * time));
                 scaled = [(decay + fast) * 0.5, (decay - fast) * 0.5].map_with(
                     scaled,
                     #[inline(always)]
@@ -218,8 +219,8 @@ impl<S: Simd, R: Number> Modes<S, R> {
                 let (c, s) = (basis[2 * pair], basis[2 * pair + 1]);
                 let (by_c, by_s) = (by[2 * pair], by[2 * pair + 1]);
                 [
-                    c * by_c - s * (self.square[pair] * by_s),
-                    s * by_c + c * by_s,
+                    c.mul_add(by_c, -(s * (self.square[pair] * by_s))),
+                    s.mul_add(by_c, c * by_s),
                 ]
             },
         );
@@ -347,7 +348,8 @@ impl<S: Simd, R: Number> Motion<S, R> {
     pub fn force(&self, compression: &[R; 6]) -> [R; 5] {
         let mut force = [compression[0]; 5];
         for (order, value) in force.iter_mut().enumerate() {
-            *value = self.foam[0] * compression[order] + self.foam[1] * compression[order + 1];
+            *value =
+                self.foam[0].mul_add(compression[order], self.foam[1] * compression[order + 1]);
         }
         force
     }

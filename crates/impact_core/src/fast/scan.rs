@@ -41,7 +41,7 @@ impl<R: Number> Piece<R> {
             |slope| slope * self.width,
         );
         let rise = right - left;
-        let bend = rise * 3.0 - first - first - last;
+        let bend = rise.mul_add(rise.like(3.0), -first) - first - last;
         [left, first, bend, first + last - rise - rise]
     }
 
@@ -52,11 +52,11 @@ impl<R: Number> Piece<R> {
         let (none, whole) = (c0.like(0.0), c0.like(1.0));
         let mut x = self.values[0] / (self.values[0] - self.values[1]);
         for _ in 0..2 {
-            let value = ((c3 * x + c2) * x + c1) * x + c0;
-            let slope = (c3 * 3.0 * x + c2 + c2) * x + c1;
+            let value = c3.mul_add(x, c2).mul_add(x, c1).mul_add(x, c0);
+            let slope = (c3 * 3.0).mul_add(x, c2 + c2).mul_add(x, c1);
             x = (x - value / slope).max(none).min(whole);
         }
-        self.from + x * self.width
+        x.mul_add(self.width, self.from)
     }
 
     /// Value of the cubic at its extremum if its slopes differ in sign.
@@ -72,11 +72,11 @@ impl<R: Number> Piece<R> {
             |number| R::select(rises, number, -number),
         );
         let triple = c * 3.0;
-        let root = (b * b - a * triple).max(zero).sqrt();
+        let root = (-a).mul_add(triple, b * b).max(zero).sqrt();
         let early = b.ge(zero);
         let x = R::select(early, -a, root - b) / R::select(early, root + b, triple);
         let x = x.max(zero).min(zero.like(1.0));
-        ((c3 * x + c2) * x + c1) * x + c0
+        c3.mul_add(x, c2).mul_add(x, c1).mul_add(x, c0)
     }
 }
 
@@ -155,9 +155,9 @@ pub fn touching<R: Number>(inside: R::Mask, piece: &Piece<R>, slack: R) -> ([R::
     // The cubic stays on one side of its control points: most pieces need no look at its extremum.
     let third = piece.width * (1.0 / 3.0);
     let difference = ((piece.slopes[0] - piece.slopes[1]) * piece.width).abs();
-    let clear = difference * CLEAR + slack;
-    let first = piece.values[0] + third * piece.slopes[0];
-    let last = piece.values[1] - third * piece.slopes[1];
+    let clear = difference.mul_add(slack.like(CLEAR), slack);
+    let first = third.mul_add(piece.slopes[0], piece.values[0]);
+    let last = (-third).mul_add(piece.slopes[1], piece.values[1]);
     let from_above = from_above & first.min(last).le(clear);
     let from_below = from_below & (-first.max(last)).le(clear);
     if !(from_above | from_below).any() {

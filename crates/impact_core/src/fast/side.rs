@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::apart::inlined;
+use super::apart::{apart, inlined};
 use super::{CELL_ANGLE, FINE_CELL_ANGLE, Group, GroupPeaks, GroupRest, Known, Workspace};
 use crate::columns::{Column, Columns, HeadColumns};
 use crate::metrics::{
@@ -10,7 +10,7 @@ use crate::metrics::{
 };
 use crate::parameters::{System, Target};
 use crate::series::Plant;
-use numeric::lanes::{Number, Truth};
+use numeric::lanes::{Number, Truth, vectors};
 use pulp::{Scalar, Simd};
 
 /// Most rows side by side.
@@ -308,7 +308,21 @@ pub(crate) fn usual(
 /// Metrics of the first row in cells of some length, and which of them hold.
 #[inline(never)]
 fn one(columns: &Columns<'_>, walk: Walk, gravity: f64) -> (Metrics, Missing) {
-    let mut space = Workspace::new(Scalar, 0.0);
-    let found = Side::of::<_, true>(&mut space, columns, walk, Rows::From(0));
-    (found.lane(0, gravity), found.known(gravity)[0])
+    match vectors() {
+        Some(vectors) => alone(vectors, columns, walk, gravity),
+        None => alone(Scalar, columns, walk, gravity),
+    }
+}
+
+#[inline(always)]
+fn alone<S: Simd>(simd: S, columns: &Columns<'_>, walk: Walk, gravity: f64) -> (Metrics, Missing) {
+    apart(
+        simd,
+        #[inline(always)]
+        || {
+            let mut space = Workspace::new(simd, 0.0);
+            let found = Side::of::<_, true>(&mut space, columns, walk, Rows::From(0));
+            (found.lane(0, gravity), found.known(gravity)[0])
+        },
+    )
 }

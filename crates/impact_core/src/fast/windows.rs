@@ -89,11 +89,11 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
             let wanted = R::select(concave, third_order(gain, bend, third), uphill);
             let next = (start + wanted).min(room).max(zero);
             let step = next - start;
-            let bent = bend * 0.5 + step * (1.0 / 6.0) * third;
-            let rise = rise + step * (gain + step * bent);
+            let bent = (step * (1.0 / 6.0)).mul_add(third, bend * 0.5);
+            let rise = step.mul_add(step.mul_add(bent, gain), rise);
             let [low, high] = [left, right].each(
                 #[inline(always)]
-                |[_, value, slope, curve]| value + step * (slope + step * 0.5 * curve),
+                |[_, value, slope, curve]| step.mul_add((step * 0.5).mul_add(curve, slope), value),
             );
             found.rise = R::select(open, rise, found.rise);
             found.level = R::select(open, low.min(high), found.level);
@@ -219,21 +219,25 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
             let (u1, u2) = (a1 * per_rise, a2 * per_rise);
             let per_width = width.like(1.0) / width;
             let over = per_width * 1.5;
-            let (g1, g2) = (over - u1 * 2.5, u2 * 2.5 - over);
+            let factor = zero.like(2.5);
+            let (g1, g2) = ((-u1).mul_add(factor, over), u2.mul_add(factor, -over));
             let curve = over * per_width;
-            let h11 = curve - (d1 * per_rise + u1 * u1) * 2.5;
-            let h22 = curve + (d2 * per_rise - u2 * u2) * 2.5;
-            let h12 = u1 * 2.5 * u2 - curve;
-            let determinant = h11 * h22 - h12 * h12;
+            let h11 = (-d1.mul_add(per_rise, u1 * u1)).mul_add(factor, curve);
+            let h22 = d2.mul_add(per_rise, -(u2 * u2)).mul_add(factor, curve);
+            let h12 = (u1 * 2.5).mul_add(u2, -curve);
+            let determinant = h11.mul_add(h22, -(h12 * h12));
             let pinned = held | (start.le(zero) & g1.le(zero));
             let inverse = zero.like(1.0) / R::select(pinned, h22, determinant);
-            let s1 = R::select(pinned, zero, (h12 * g2 - h22 * g1) * inverse);
-            let s2 = R::select(pinned, -g2, h12 * g1 - h11 * g2) * inverse;
+            let s1 = R::select(pinned, zero, h12.mul_add(g2, -(h22 * g1)) * inverse);
+            let s2 = R::select(pinned, -g2, h12.mul_add(g1, -(h11 * g2))) * inverse;
             let next = [(start + s1).max(zero), (end + s2).min(self.end)];
             let (s1, s2) = (next[0] - start, next[1] - end);
             let [v1, v2] = [(v1, a1, d1, c1, s1), (v2, a2, d2, c2, s2)].each(
                 #[inline(always)]
-                |(v, a, d, c, s)| v + s * (a + s * (d * 0.5 + s * (1.0 / 6.0) * c)),
+                |(v, a, d, c, s)| {
+                    let bend = (s * (1.0 / 6.0)).mul_add(c, d * 0.5);
+                    s.mul_add(s.mul_add(bend, a), v)
+                },
             );
             rise = R::select(open, v2 - v1, rise);
             found.slopes = [d1, d2].map_with(

@@ -188,6 +188,13 @@ impl<const N: usize> Number for Lanes<N> {
         to.copy_from_slice(&self.0[..to.len()]);
     }
     #[inline(always)]
+    fn mul_add(mut self, factor: Self, addend: Self) -> Self {
+        for ((a, b), c) in self.0.iter_mut().zip(factor.0).zip(addend.0) {
+            *a = a.mul_add(b, c);
+        }
+        self
+    }
+    #[inline(always)]
     fn truth(self, value: bool) -> LaneMask<N> {
         LaneMask::splat(value)
     }

@@ -98,6 +98,10 @@ pub trait Number:
     fn lane(self, index: usize) -> f64;
     /// Writes the first lanes.
     fn write(self, to: &mut [f64]);
+    /// `self * factor + addend`, rounded once. Every processor with vectors has it; where one has not, it is
+    /// a call of a library with the same bits, so kernels that also run without vectors do without it.
+    #[must_use]
+    fn mul_add(self, factor: Self, addend: Self) -> Self;
     /// Square root.
     #[must_use]
     fn sqrt(self) -> Self;

@@ -49,6 +49,10 @@ impl Number for f64 {
         to.copy_from_slice(&[self][..to.len()]);
     }
     #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        f64::mul_add(self, factor, addend)
+    }
+    #[inline(always)]
     fn truth(self, value: bool) -> bool {
         value
     }

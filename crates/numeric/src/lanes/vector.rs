@@ -124,6 +124,15 @@ impl<S: Simd> Number for Vector<S> {
         }
     }
     #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        Self {
+            numbers: self
+                .simd
+                .mul_add_f64s(self.numbers, factor.numbers, addend.numbers),
+            ..self
+        }
+    }
+    #[inline(always)]
     fn truth(self, value: bool) -> VectorMask<S> {
         // Also where masks are bits.
         let other = if value { 2.0 } else { 0.0 };
@@ -259,7 +268,7 @@ impl<S: Simd> Truth for VectorMask<S> {
 #[cfg(all(test, target_arch = "x86_64"))]
 mod tests {
     use super::*;
-    use crate::elementary::{cosine_and_sine, exponential};
+    use crate::elementary::{cosine_and_sine, fused_exponential};
     use pulp::x86::{V3, V3_512b, V4};
 
     /// Two sets of eight numbers: of any kind, and of moderate size.
@@ -301,8 +310,9 @@ mod tests {
                     x + 0.5,
                     x - 0.5,
                     x * 0.5,
+                    x.mul_add(y, x),
                 ];
-                let expected: [Both; 9] = [
+                let expected: [Both; 10] = [
                     |a, b| a + b,
                     |a, b| a - b,
                     |a, b| a * b,
@@ -312,6 +322,7 @@ mod tests {
                     |a, _| a + 0.5,
                     |a, _| a - 0.5,
                     |a, _| a * 0.5,
+                    |a, b| a.mul_add(b, a),
                 ];
                 let single = [-x, x.sqrt(), x.abs(), Vector::select(x.lt(y), x, y)];
                 let plain: [Both; 4] = [
@@ -349,13 +360,13 @@ mod tests {
             }
             let [_, b] = numbers(round);
             let x = zero.like_each(|lane| b[lane]);
-            let ([cosine, sine], growth) = (cosine_and_sine(x), exponential(x));
+            let ([cosine, sine], growth) = (cosine_and_sine(x), fused_exponential(x));
             let mut written = [0.0; 5];
             growth.write(&mut written);
             for lane in 0..8 {
                 let [c, s] = cosine_and_sine(b[lane]);
                 assert_eq!([cosine.lane(lane), sine.lane(lane)], [c, s]);
-                assert_eq!(growth.lane(lane), exponential(b[lane]));
+                assert_eq!(growth.lane(lane), fused_exponential(b[lane]));
                 assert!(lane > 4 || written[lane] == growth.lane(lane));
             }
         }
