@@ -1,7 +1,7 @@
 //! Numbers of one kernel: `f64` for a single run, [`Lanes`] and [`Vector`] for runs side by side.
 //!
-//! Every operation acts on each lane by the same IEEE operation as `f64`, without contraction,
-//! so a run gives the same bits at any width. [`Lanes`] are plain arrays, and the compiler turns their
+//! Every operation acts on each lane by the same IEEE operation as `f64`, fused only where
+//! [`Number::mul_add`] says so, so a run gives the same bits at any width. [`Lanes`] are plain arrays, and the compiler turns their
 //! loops into vector instructions; [`Vector`] is one of the processor.
 
 use std::fmt::Debug;
