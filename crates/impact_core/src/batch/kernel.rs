@@ -276,7 +276,7 @@ mod tests {
             fields,
             ..BatchOptions::default()
         };
-        let mut result = MetricColumns::sized(ROWS, fields);
+        let mut result = MetricColumns::sized(ROWS, fields).unwrap();
         for mut block in result.blocks() {
             fill(SideBySide {
                 columns: &columns,
