@@ -89,9 +89,9 @@ SETS = {
 ROWS = SETS["designs"]
 
 
-def package(rows: np.ndarray, fields: str) -> impact.ImpactMetricsBatch:
+def package(rows: np.ndarray, fields: str, lanes: int | None = None) -> impact.ImpactMetricsBatch:
     columns = dict(zip(COLUMNS, rows.T[:8], strict=True))
-    return impact.metrics_batch(**columns, closing_speed=rows[:, 8], fields=fields, threads=1)
+    return impact.metrics_batch(**columns, closing_speed=rows[:, 8], fields=fields, threads=1, lanes=lanes)
 
 
 def package_peaks(rows: np.ndarray) -> np.ndarray:
@@ -149,6 +149,16 @@ def test_batch_of_impacts(benchmark: Any, kind: str, fields: str) -> None:
     (rate,) = rates((lambda rows: package(rows, fields), rows))
     benchmark.extra_info |= {f"deviation {name}": float(f"{value:.1e}") for name, value in off.items()}
     benchmark.extra_info["million_evaluations_per_s"] = round(rate / 1e6, 3)
+
+
+@pytest.mark.benchmark(group="impacts, one core, by vectors")
+@pytest.mark.parametrize("lanes", [1, 4, 8])
+def test_batch_by_lanes(benchmark: Any, lanes: int) -> None:
+    """All criteria one after the other, in vectors of 256 bits and in the widest."""
+    contestants = [(lambda rows: package(rows, "all", lanes), rows) for rows in SETS.values()]
+    benchmark.pedantic(package, args=(ROWS, "all", lanes), rounds=ROUNDS, iterations=1)
+    for kind, rate in zip(SETS, rates(*contestants), strict=True):
+        benchmark.extra_info[f"million_evaluations_per_s, {kind}"] = round(rate / 1e6, 3)
 
 
 PEERS = {

@@ -53,7 +53,7 @@ fn many_impacts(criterion: &mut Criterion) {
         .throughput(Throughput::Elements(ROWS as u64))
         .sample_size(20);
     for (name, fields) in [("all", FieldSet::all()), ("peaks", FieldSet::peaks())] {
-        for width in [Width::One, Width::Eight] {
+        for width in [Width::One, Width::Four, Width::Eight] {
             let options = BatchOptions {
                 threads: Some(1),
                 width: Some(width),

@@ -43,13 +43,16 @@ impl FieldSet {
     }
 }
 
-/// Number of impacts side by side.
+/// How many impacts are solved side by side, and in which vectors. A processor that has no instructions for
+/// eight solves one after the other: another copy of the kernel for processors that are rare would be
+/// as long as this one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Width {
     /// One.
     One,
-    /// Eight, or one on a processor that has no instructions for them: another copy of the kernel for
-    /// processors that are rare would be as long as this one.
+    /// Eight in vectors of four numbers.
+    Four,
+    /// Eight in vectors of eight numbers, if the processor has them, else as [`Width::Four`].
     Eight,
 }
 
@@ -61,8 +64,9 @@ impl Width {
     pub fn of(lanes: usize) -> Result<Self> {
         match lanes {
             1 => Ok(Self::One),
+            4 => Ok(Self::Four),
             // Sixteen are two times eight: more than eight would not stay in registers.
-            4 | 8 | 16 => Ok(Self::Eight),
+            8 | 16 => Ok(Self::Eight),
             other => {
                 let given = Given::Count(other as u64);
                 Err(Failure::invalid("lanes", "be 1, 4, 8 or 16", given))

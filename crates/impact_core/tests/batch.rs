@@ -144,6 +144,8 @@ fn bits_do_not_depend_on_width_threads_or_fields() {
     for (threads, width) in [
         (1, Width::One),
         (2, Width::One),
+        (1, Width::Four),
+        (2, Width::Four),
         (1, Width::Eight),
         (2, Width::Eight),
     ] {
@@ -162,7 +164,7 @@ fn bits_do_not_depend_on_width_threads_or_fields() {
     ];
     let alone = CRITERIA.map(|only| FieldSet::of(|criterion| criterion.name == only.name));
     for fields in some.into_iter().chain(alone) {
-        for width in [Width::One, Width::Eight] {
+        for width in [Width::One, Width::Four, Width::Eight] {
             let options = BatchOptions {
                 fields,
                 width: Some(width),

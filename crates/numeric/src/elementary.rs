@@ -53,63 +53,56 @@ const LOGARITHM: [f64; 10] = {
     found
 };
 
+/// `x * y + z`, rounded once if fused.
+#[inline(always)]
+fn sum<const FUSED: bool, R: Number>(x: R, y: R, z: R) -> R {
+    if FUSED { x.mul_add(y, z) } else { x * y + z }
+}
+
 /// Even and odd powers apart: half as many steps wait for each other.
 #[inline(always)]
-fn polynomial<R: Number, const N: usize>(coefficients: &[f64; N], x: R) -> R {
-    let square = x * x;
-    let mut parts = [x.like(0.0); 2];
-    for (power, &coefficient) in coefficients.iter().enumerate().rev() {
-        let part = &mut parts[power % 2];
-        *part = *part * square + coefficient;
-    }
-    parts[0] + x * parts[1]
-}
-
-/// The same with products and sums rounded together.
-#[inline(always)]
-fn fused_polynomial<R: Number, const N: usize>(coefficients: &[f64; N], x: R) -> R {
+fn polynomial<const FUSED: bool, R: Number, const N: usize>(coefficients: &[f64; N], x: R) -> R {
     let square = x * x;
     let mut parts = [x; 2];
-    parts[N % 2] = x.like(coefficients[N - 2]);
-    parts[1 - N % 2] = x.like(coefficients[N - 1]);
-    for (power, &coefficient) in coefficients.iter().enumerate().take(N - 2).rev() {
+    for (power, &coefficient) in coefficients.iter().enumerate().rev() {
+        let coefficient = x.like(coefficient);
         let part = &mut parts[power % 2];
-        *part = part.mul_add(square, x.like(coefficient));
+        *part = if power + 2 < N {
+            sum::<FUSED, R>(*part, square, coefficient)
+        } else {
+            coefficient
+        };
     }
     let [even, odd] = parts;
-    odd.mul_add(x, even)
+    sum::<FUSED, R>(odd, x, even)
 }
 
-/// `exp(x)` of a number that is not far above zero.
+/// `exp(x)` of a number that is not far above zero, fused or not.
 #[inline(always)]
-fn exponential<R: Number>(x: R) -> R {
-    within_range(x.max(x.like(LOWEST)))
+pub fn exponential<const FUSED: bool, R: Number>(x: R) -> R {
+    within_range::<FUSED, R>(x.max(x.like(LOWEST)))
 }
 
 /// `exp(x)` of a number whose rounded power of two is from -1023 to 1023; NaN of NaN.
 #[inline(always)]
-fn within_range<R: Number>(x: R) -> R {
-    let shifted = x * std::f64::consts::LOG2_E + ROUNDER;
-    let whole = shifted - ROUNDER;
-    let rest = x - whole * LN_2[0] - whole * LN_2[1];
-    polynomial(&EXPONENTIAL, rest) * shifted.power_of_two()
+fn within_range<const FUSED: bool, R: Number>(x: R) -> R {
+    let shifted = sum::<FUSED, R>(x, x.like(std::f64::consts::LOG2_E), x.like(ROUNDER));
+    let rest = reduced::<FUSED, R>(x, shifted - ROUNDER, LN_2);
+    polynomial::<FUSED, R, _>(&EXPONENTIAL, rest) * shifted.power_of_two()
 }
 
-/// `exp(x)` of a number that is not far above zero, products and sums rounded together.
+/// What is left of a number beside a whole multiple of one in two parts.
 #[inline(always)]
-pub fn fused_exponential<R: Number>(x: R) -> R {
-    let x = x.max(x.like(LOWEST));
-    let shifted = x.mul_add(x.like(std::f64::consts::LOG2_E), x.like(ROUNDER));
-    let whole = shifted - ROUNDER;
-    let rest = whole.mul_add(x.like(-LN_2[1]), whole.mul_add(x.like(-LN_2[0]), x));
-    fused_polynomial(&EXPONENTIAL, rest) * shifted.power_of_two()
+fn reduced<const FUSED: bool, R: Number>(x: R, whole: R, [most, least]: [f64; 2]) -> R {
+    let rest = sum::<FUSED, R>(whole, x.like(-most), x);
+    sum::<FUSED, R>(whole, x.like(-least), rest)
 }
 
 /// `exp(x)` of any number: infinite beyond 709, zero below -700, NaN of NaN.
 #[inline(always)]
 pub fn exp<R: Real>(x: R) -> R {
     let highest = R::splat(HIGHEST);
-    let found = exponential(x.min(highest));
+    let found = exponential::<false, R>(x.min(highest));
     let found = R::select(x.lt(R::splat(LOWEST)), R::zero(), found);
     // Neither at most the highest one nor above it: not a number.
     let beyond = R::select(x.gt(highest), R::splat(f64::INFINITY), x);
@@ -119,7 +112,11 @@ pub fn exp<R: Real>(x: R) -> R {
 /// `exp(x)` of a number that is not above zero, as [`exp`] but faster: zero below -700, NaN of NaN.
 #[inline(always)]
 pub fn decay<R: Real>(x: R) -> R {
-    let found = R::select(x.lt(R::splat(LOWEST)), R::zero(), exponential(x));
+    let found = R::select(
+        x.lt(R::splat(LOWEST)),
+        R::zero(),
+        exponential::<false, R>(x),
+    );
     R::select(x.le(R::zero()), found, x)
 }
 
@@ -128,7 +125,7 @@ pub fn decay<R: Real>(x: R) -> R {
 #[inline(always)]
 pub fn fading<R: Real>(x: R) -> R {
     // `2^-1023` comes out as zero. In this order a number that is none stays.
-    within_range(R::splat(-HIGHEST).max(x))
+    within_range::<false, R>(R::splat(-HIGHEST).max(x))
 }
 
 /// `ln(x)` of a positive number of full precision.
@@ -139,7 +136,7 @@ pub fn logarithm<R: Real>(x: R) -> R {
     // ln m = 2 artanh s, s = (m - 1)/(m + 1).
     let share = (mantissa - one) / (mantissa + one);
     let square = share * share;
-    let series = share * square * polynomial(&LOGARITHM, square);
+    let series = share * square * polynomial::<false, R, _>(&LOGARITHM, square);
     let small = series + exponent * R::splat(LN_2[1]);
     exponent * R::splat(LN_2[0]) + (share + share + small)
 }
@@ -151,11 +148,10 @@ pub fn cosine_and_sine<R: Number>(x: R) -> [R; 2] {
     let one = x.like(1.0);
     let per_turn = x.like(0.5 * std::f64::consts::FRAC_1_PI);
     let whole = x.mul_add(per_turn, x.like(ROUNDER)) - ROUNDER;
-    let rest = whole.mul_add(x.like(-TURN[1]), whole.mul_add(x.like(-TURN[0]), x));
-    let quarter = rest * 0.25;
+    let quarter = reduced::<true, R>(x, whole, TURN) * 0.25;
     let square = quarter * quarter;
-    let mut cosine = fused_polynomial(&COSINE, square);
-    let mut sine = fused_polynomial(&SINE, square) * quarter;
+    let mut cosine = polynomial::<true, R, _>(&COSINE, square);
+    let mut sine = polynomial::<true, R, _>(&SINE, square) * quarter;
     for _ in 0..2 {
         let double = sine + sine;
         (cosine, sine) = ((-double).mul_add(sine, one), double * cosine);
@@ -232,7 +228,7 @@ mod tests {
     fn they_agree_with_the_library() {
         for index in -4000..=200 {
             let x = f64::from(index) * 0.01;
-            for found in [exponential(x), fused_exponential(x)] {
+            for found in [exponential::<false, _>(x), exponential::<true, _>(x)] {
                 let error = found / x.exp() - 1.0;
                 assert!(error.abs() < 1e-15, "{x}: {error:e}");
             }

@@ -181,8 +181,9 @@ def metrics_batch(
     threads : int or None
         Number of threads, up to 1024; all cores when ``None``. Never changes a bit.
     lanes : int or None
-        1 for impacts one after the other, 4, 8 or 16 for groups of eight side by side, where the processor has
-        vectors for them (AVX2 or NEON); what suits the processor when ``None``. Never changes a bit.
+        1 for impacts one after the other, else groups of eight side by side, where the processor has vectors for
+        them: 4 for vectors of at most four numbers (AVX2 or NEON), 8 or 16 for the widest (AVX-512); what suits the
+        processor when ``None``. Never changes a bit.
     progress : callable or None
         Called now and then as ``progress(done, total)`` with numbers of impacts, and at the end.
 

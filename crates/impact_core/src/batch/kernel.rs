@@ -27,7 +27,8 @@ pub(super) fn fill(columns: &Columns<'_>, options: &BatchOptions, block: &mut Bl
     };
     let alone = match options.width {
         Some(Width::One) => Err(rows),
-        Some(Width::Eight) | None => on_eight(rows),
+        Some(Width::Four) => on_eight(false, rows),
+        Some(Width::Eight) | None => on_eight(true, rows),
     };
     if let Err(rows) = alone {
         // Vectors come with fused products and sums, which single numbers use, too.
@@ -221,85 +222,4 @@ fn alone(columns: &Columns<'_>, options: &BatchOptions, row: usize, missing: Mis
     impact
         .findings_of(manipulator_speed, missing.searches())
         .metrics(&system, options.gravity)
-}
-
-#[cfg(all(test, target_arch = "x86_64"))]
-mod tests {
-    use super::*;
-    use crate::batch::{FieldSet, MetricColumns};
-    use crate::columns::Column;
-    use numeric::lanes::with_vectors;
-    use pulp::x86::{V3, V3_512b, V4};
-
-    const ROWS: usize = 300;
-
-    /// A number of a column from its range.
-    fn drawn(column: usize, row: usize) -> f64 {
-        const RANGES: [[f64; 2]; 9] = [
-            [1.0, 60.0],
-            [0.0, 600.0],
-            [1e3, 4e4],
-            [3.0, 7.0],
-            [0.0, 200.0],
-            [0.0, 8e3],
-            [2e3, 8e4],
-            [0.0, 400.0],
-            [0.1, 3.0],
-        ];
-        let share = ((row * 131 + 7 * column) as f64 * 0.618_033_988_749_895).fract();
-        let mixed = (share * (37.0 + column as f64)).fract();
-        let [low, high] = RANGES[column];
-        low + (high - low) * mixed
-    }
-
-    fn found(fields: FieldSet, fill: impl Fn(SideBySide<'_, '_>)) -> (Vec<u64>, Vec<u8>) {
-        let drawn: [Vec<f64>; 9] =
-            std::array::from_fn(|column| (0..ROWS).map(|row| drawn(column, row)).collect());
-        let [mass, damping, stiffness, m, c, k, foam, loss, speed] =
-            drawn.each_ref().map(|values| Column::Array(values));
-        let columns = Columns {
-            manipulator_mass: mass,
-            manipulator_damping: damping,
-            manipulator_stiffness: stiffness,
-            foam_stiffness: foam,
-            foam_damping: loss,
-            linear_range: Column::Value(0.02),
-            head: HeadColumns::Free {
-                mass: m,
-                damping: c,
-                stiffness: k,
-            },
-            closing_speed: speed,
-            manipulator_speed: None,
-        };
-        let options = BatchOptions {
-            fields,
-            ..BatchOptions::default()
-        };
-        let mut result = MetricColumns::sized(ROWS, fields).unwrap();
-        for mut block in result.blocks() {
-            fill(SideBySide {
-                columns: &columns,
-                options: &options,
-                block: &mut block,
-            });
-        }
-        let loads = result.loads.into_array().into_iter().flatten();
-        (loads.map(f64::to_bits).collect(), result.status)
-    }
-
-    #[test]
-    fn every_kind_of_vector_gives_the_bits_of_single_rows() {
-        for fields in [FieldSet::all(), FieldSet::peaks()] {
-            let single = found(fields, |rows| rows.on_eight(Scalar, 0.0));
-            if let Some(simd) = V3::try_new() {
-                let pairs = found(fields, |rows| with_vectors(V3_512b(simd), rows));
-                assert!(pairs == single, "256 bits");
-            }
-            if let Some(simd) = V4::try_new() {
-                let wide = found(fields, |rows| with_vectors(simd, rows));
-                assert!(wide == single, "512 bits");
-            }
-        }
-    }
 }

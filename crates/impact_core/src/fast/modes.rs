@@ -15,7 +15,7 @@ use super::apart::{apart, inlined};
 use super::arithmetic::{Each, MapWith};
 use super::factors::{Split, factors};
 use crate::series::Plant;
-use numeric::elementary::{cosine_and_sine, fused_exponential};
+use numeric::elementary::{cosine_and_sine, exponential};
 use numeric::lanes::{Number, Truth};
 use pulp::Simd;
 
@@ -193,11 +193,11 @@ impl<S: Simd, R: Number> Modes<S, R> {
         let mut basis = [time; 4];
         for pair in 0..2 {
             let (real, frequency) = (self.real[pair], self.frequency[pair]);
-            let decay = fused_exponential(-(self.slower[pair] * time));
+            let decay = exponential::<true, R>(-(self.slower[pair] * time));
             let [cosine, sine] = cosine_and_sine(frequency * time);
             let mut scaled = [decay * cosine, decay * sine];
             if real.any() {
-                let fast = fused_exponential(-(self.faster[pair] * time));
+                let fast = exponential::<true, R>(-(self.faster[pair] * time));
                 scaled = [(decay + fast) * 0.5, (decay - fast) * 0.5].map_with(
                     scaled,
                     #[inline(always)]

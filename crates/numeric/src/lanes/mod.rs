@@ -1,26 +1,24 @@
-//! Numbers of one kernel: `f64` for a single run, [`Lanes`] and [`Vector`] for runs side by side.
+//! Numbers of one kernel: `f64` for a single run, [`Lanes`] and [`Packed`] for runs side by side.
 //!
 //! Every operation acts on each lane by the same IEEE operation as `f64`, fused only where
 //! [`Number::mul_add`] says so, so a run gives the same bits at any width. [`Lanes`] are plain arrays, and the compiler turns their
-//! loops into vector instructions; [`Vector`] is one of the processor.
+//! loops into vector instructions; [`Packed`] is one of the processor.
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub, SubAssign};
 
 mod arrays;
+mod packed;
 mod planar;
 mod scalar;
-mod vector;
 mod vectors;
 mod wide;
 
 pub use arrays::{LaneMask, Lanes};
 pub use nalgebra::Vector2;
 pub use num_traits::{One, Zero};
+pub use packed::{Packed, PackedMask};
 pub use planar::{Planar, widened};
-pub use vector::{Vector, VectorMask};
-#[cfg(target_arch = "x86_64")]
-pub use vectors::with_vectors;
 pub use vectors::{OnEight, Vectors, on_eight, vectors};
 pub use wide::Wide;
 
@@ -62,7 +60,7 @@ pub trait Mask: Truth + PartialEq {
 }
 
 /// A real number, or several side by side, made from others: what needs no constant but beside a number
-/// it has already. Vectors of the processor are such numbers, which exist only where it has them.
+/// it has already. Packed numbers are made so, which exist only where the processor has their vectors.
 pub trait Number:
     Copy
     + Debug

@@ -25,24 +25,27 @@ pub fn vectors() -> Option<Vectors> {
 pub trait OnEight {
     /// What it gives.
     type Output;
-    /// Does it, with instructions that may be used and zero in every lane.
+    /// Does it, with instructions that it may be compiled for and zero in every lane.
     fn on_eight<S: Simd, R: Number>(self, simd: S, zero: R) -> Self::Output;
 }
 
-/// Does work compiled for the widest vectors of the processor, or returns it where lanes do not pay.
+/// Does work in the widest vectors of the processor, those of 512 bits if they may be used, or returns it
+/// where lanes do not pay.
 ///
 /// # Errors
 /// The processor has no vectors with which lanes pay.
 #[cfg(target_arch = "x86_64")]
-pub fn on_eight<W: OnEight>(work: W) -> Result<W::Output, W> {
+pub fn on_eight<W: OnEight>(wide: bool, work: W) -> Result<W::Output, W> {
+    use super::Packed;
     use pulp::x86::{V3_512b, V4};
-    if let Some(simd) = V4::try_new() {
-        return Ok(with_vectors(simd, work));
+    if let Some(simd) = V4::try_new().filter(|_| wide) {
+        return Ok(work.on_eight(simd, Packed::splat(simd, 0.0)));
     }
-    match vectors() {
-        Some(simd) => Ok(with_vectors(V3_512b(simd), work)),
-        None => Err(work),
-    }
+    let Some(vectors) = vectors() else {
+        return Err(work);
+    };
+    let pair = V3_512b(vectors);
+    Ok(work.on_eight(vectors, Packed::splat(pair, 0.0)))
 }
 
 /// Does work on eight numbers.
@@ -50,24 +53,7 @@ pub fn on_eight<W: OnEight>(work: W) -> Result<W::Output, W> {
 /// # Errors
 /// None here: what every processor of the family has is enough.
 #[cfg(not(target_arch = "x86_64"))]
-pub fn on_eight<W: OnEight>(work: W) -> Result<W::Output, W> {
+pub fn on_eight<W: OnEight>(_wide: bool, work: W) -> Result<W::Output, W> {
     let zero: super::Lanes<8> = super::Zero::zero();
     Ok(work.on_eight(pulp::Scalar, zero))
-}
-
-/// Does work with vectors that hold eight numbers.
-#[cfg(target_arch = "x86_64")]
-pub fn with_vectors<S: Simd, W: OnEight>(simd: S, work: W) -> W::Output {
-    struct In<S, W>(S, W);
-    impl<V: Simd, W: OnEight> pulp::WithSimd for In<V, W> {
-        type Output = W::Output;
-
-        #[inline(always)]
-        fn with_simd<S: Simd>(self, _same: S) -> W::Output {
-            let Self(simd, work) = self;
-            work.on_eight(simd, super::Vector::splat(simd, 0.0))
-        }
-    }
-    const { assert!(S::F64_LANES == 8) };
-    simd.vectorize(In(simd, work))
 }

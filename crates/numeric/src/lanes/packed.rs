@@ -11,19 +11,19 @@ use super::{Number, Truth};
 /// Arrays leave it to the compiler what becomes a vector, and of comparisons little does. A number
 /// of this kind exists only where the processor has the vectors: it carries the proof of it.
 #[derive(Clone, Copy, Debug)]
-pub struct Vector<S: Simd> {
+pub struct Packed<S: Simd> {
     simd: S,
     numbers: S::f64s,
 }
 
 /// Truths side by side in vectors of the processor.
 #[derive(Clone, Copy, Debug)]
-pub struct VectorMask<S: Simd> {
+pub struct PackedMask<S: Simd> {
     simd: S,
     truths: S::m64s,
 }
 
-impl<S: Simd> Vector<S> {
+impl<S: Simd> Packed<S> {
     /// The same value in every lane.
     #[inline(always)]
     pub fn splat(simd: S, value: f64) -> Self {
@@ -48,7 +48,7 @@ fn lanes_mut<S: Simd>(numbers: &mut S::f64s) -> &mut [f64] {
 // nor for the instructions of its caller.
 macro_rules! operator {
     ($operator:ident, $method:ident, $assignment:ident, $assign:ident, $of_simd:ident) => {
-        impl<S: Simd> $operator for Vector<S> {
+        impl<S: Simd> $operator for Packed<S> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
@@ -58,14 +58,14 @@ macro_rules! operator {
                 }
             }
         }
-        impl<S: Simd> $operator<f64> for Vector<S> {
+        impl<S: Simd> $operator<f64> for Packed<S> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: f64) -> Self {
                 self.$method(self.like(other))
             }
         }
-        impl<S: Simd> $assignment for Vector<S> {
+        impl<S: Simd> $assignment for Packed<S> {
             #[inline(always)]
             fn $assign(&mut self, other: Self) {
                 *self = self.$method(other);
@@ -77,7 +77,7 @@ operator!(Add, add, AddAssign, add_assign, add_f64s);
 operator!(Sub, sub, SubAssign, sub_assign, sub_f64s);
 operator!(Mul, mul, MulAssign, mul_assign, mul_f64s);
 
-impl<S: Simd> Div for Vector<S> {
+impl<S: Simd> Div for Packed<S> {
     type Output = Self;
     #[inline(always)]
     fn div(self, other: Self) -> Self {
@@ -88,7 +88,7 @@ impl<S: Simd> Div for Vector<S> {
     }
 }
 
-impl<S: Simd> Neg for Vector<S> {
+impl<S: Simd> Neg for Packed<S> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
@@ -99,8 +99,8 @@ impl<S: Simd> Neg for Vector<S> {
     }
 }
 
-impl<S: Simd> Number for Vector<S> {
-    type Mask = VectorMask<S>;
+impl<S: Simd> Number for Packed<S> {
+    type Mask = PackedMask<S>;
     const WIDTH: usize = S::F64_LANES;
 
     #[inline(always)]
@@ -133,7 +133,7 @@ impl<S: Simd> Number for Vector<S> {
         }
     }
     #[inline(always)]
-    fn truth(self, value: bool) -> VectorMask<S> {
+    fn truth(self, value: bool) -> PackedMask<S> {
         // Also where masks are bits.
         let other = if value { 2.0 } else { 0.0 };
         self.like(1.0).lt(self.like(other))
@@ -164,15 +164,15 @@ impl<S: Simd> Number for Vector<S> {
         self
     }
     #[inline(always)]
-    fn lt(self, other: Self) -> VectorMask<S> {
-        VectorMask {
+    fn lt(self, other: Self) -> PackedMask<S> {
+        PackedMask {
             simd: self.simd,
             truths: self.simd.less_than_f64s(self.numbers, other.numbers),
         }
     }
     #[inline(always)]
-    fn le(self, other: Self) -> VectorMask<S> {
-        VectorMask {
+    fn le(self, other: Self) -> PackedMask<S> {
+        PackedMask {
             simd: self.simd,
             truths: self
                 .simd
@@ -180,7 +180,7 @@ impl<S: Simd> Number for Vector<S> {
         }
     }
     #[inline(always)]
-    fn select(mask: VectorMask<S>, then: Self, otherwise: Self) -> Self {
+    fn select(mask: PackedMask<S>, then: Self, otherwise: Self) -> Self {
         Self {
             numbers: then
                 .simd
@@ -192,7 +192,7 @@ impl<S: Simd> Number for Vector<S> {
 
 macro_rules! mask_operator {
     ($operator:ident, $method:ident, $of_simd:ident) => {
-        impl<S: Simd> $operator for VectorMask<S> {
+        impl<S: Simd> $operator for PackedMask<S> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
@@ -207,7 +207,7 @@ macro_rules! mask_operator {
 mask_operator!(BitAnd, bitand, and_m64s);
 mask_operator!(BitOr, bitor, or_m64s);
 
-impl<S: Simd> Not for VectorMask<S> {
+impl<S: Simd> Not for PackedMask<S> {
     type Output = Self;
     #[inline(always)]
     fn not(self) -> Self {
@@ -218,7 +218,7 @@ impl<S: Simd> Not for VectorMask<S> {
     }
 }
 
-impl<S: Simd> VectorMask<S> {
+impl<S: Simd> PackedMask<S> {
     /// Whether a truth takes as much room as a number, all ones or all zeros; else it takes a bit.
     const WIDE: bool = size_of::<S::m64s>() == size_of::<S::u64s>();
 
@@ -229,7 +229,7 @@ impl<S: Simd> VectorMask<S> {
     }
 }
 
-impl<S: Simd> Truth for VectorMask<S> {
+impl<S: Simd> Truth for PackedMask<S> {
     #[inline(always)]
     fn any(self) -> bool {
         if !Self::WIDE {
@@ -268,7 +268,7 @@ impl<S: Simd> Truth for VectorMask<S> {
 #[cfg(all(test, target_arch = "x86_64"))]
 mod tests {
     use super::*;
-    use crate::elementary::{cosine_and_sine, fused_exponential};
+    use crate::elementary::{cosine_and_sine, exponential};
     use pulp::x86::{V3, V3_512b, V4};
 
     /// Two sets of eight numbers: of any kind, and of moderate size.
@@ -295,7 +295,7 @@ mod tests {
 
     fn lanes_equal_plain_numbers<S: Simd>(simd: S) {
         type Both = fn(f64, f64) -> f64;
-        let zero = Vector::splat(simd, 0.0);
+        let zero = Packed::splat(simd, 0.0);
         for round in 0..400 {
             let [[a, b], [c, _]] = [numbers(round), numbers(round + 1000)];
             for (a, b) in [(a, b), (b, c), (a, a), (c, a)] {
@@ -324,7 +324,7 @@ mod tests {
                     |a, _| a * 0.5,
                     |a, b| a.mul_add(b, a),
                 ];
-                let single = [-x, x.sqrt(), x.abs(), Vector::select(x.lt(y), x, y)];
+                let single = [-x, x.sqrt(), x.abs(), Packed::select(x.lt(y), x, y)];
                 let plain: [Both; 4] = [
                     |a, _| -a,
                     |a, _| a.sqrt(),
@@ -360,13 +360,13 @@ mod tests {
             }
             let [_, b] = numbers(round);
             let x = zero.like_each(|lane| b[lane]);
-            let ([cosine, sine], growth) = (cosine_and_sine(x), fused_exponential(x));
+            let ([cosine, sine], growth) = (cosine_and_sine(x), exponential::<true, _>(x));
             let mut written = [0.0; 5];
             growth.write(&mut written);
             for lane in 0..8 {
                 let [c, s] = cosine_and_sine(b[lane]);
                 assert_eq!([cosine.lane(lane), sine.lane(lane)], [c, s]);
-                assert_eq!(growth.lane(lane), fused_exponential(b[lane]));
+                assert_eq!(growth.lane(lane), exponential::<true, _>(b[lane]));
                 assert!(lane > 4 || written[lane] == growth.lane(lane));
             }
         }
