@@ -17,7 +17,17 @@ import numpy as np
 
 from hrsafety._records import dataclass
 
-__all__ = ["RANGES", "ImplausibleWarning", "Range", "ResultWarning", "gathered", "implausible", "warn_implausible"]
+__all__ = [
+    "RANGES",
+    "HrsafetyWarning",
+    "ImplausibleWarning",
+    "Range",
+    "ResultWarning",
+    "gathered",
+    "implausible",
+    "unsafe_doubts",
+    "warn_implausible",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +42,9 @@ class ResultWarning:
         What it is about: an argument, with its owner and index (``"obstacles[2].critical_radius"``).
     message : str
         One sentence that names the value, the rule, and what would mend it.
+    safe_side : bool
+        Whether the result is certain to be the more careful one if the doubt is right. Any other doubt takes part in
+        verdicts: ``"within_limits"`` becomes ``"not_checked"``.
 
     Examples
     --------
@@ -43,13 +56,42 @@ class ResultWarning:
     code: str
     subject: str
     message: str
+    safe_side: bool = False
 
     def __str__(self) -> str:
         """Return the line that is printed."""
         return f"warning: {self.message}"
 
 
-class ImplausibleWarning(UserWarning):
+def unsafe_doubts(warnings: Iterable[ResultWarning]) -> tuple[ResultWarning, ...]:
+    """Return the warnings whose error may lie on the unsafe side: with any of them a verdict is not checked.
+
+    Parameters
+    ----------
+    warnings : iterable of ResultWarning
+        Of a result.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        Those without `safe_side`, in their order.
+
+    Examples
+    --------
+    >>> from hrsafety.plausibility import ResultWarning, unsafe_doubts
+    >>> light = ResultWarning("implausible", "robot_mass", "robot_mass is 0.008 kg")
+    >>> heavy = ResultWarning("implausible", "robot_mass", "robot_mass is 20000 kg", safe_side=True)
+    >>> [doubt.message for doubt in unsafe_doubts([light, heavy])]
+    ['robot_mass is 0.008 kg']
+    """
+    return tuple(doubt for doubt in warnings if not doubt.safe_side)
+
+
+class HrsafetyWarning(UserWarning):
+    """Category of every warning that the package issues through `warnings.warn`."""
+
+
+class ImplausibleWarning(HrsafetyWarning):
     """A number that is hardly meant in its unit, given to a function whose answer is a plain number."""
 
 
@@ -81,8 +123,10 @@ def gathered(found: Iterable[tuple[str, Iterable[ResultWarning]]], among: str) -
         for each in dict.fromkeys(told):
             if each.code in first:
                 others[each.code] = others.get(each.code, 0) + 1
+                if first[each.code].safe_side and not each.safe_side:
+                    first[each.code] = replace(first[each.code], safe_side=False)
             else:
-                first[each.code] = ResultWarning(each.code, f"{name}.{each.subject}", f"{name}: {each.message}")
+                first[each.code] = replace(each, subject=f"{name}.{each.subject}", message=f"{name}: {each.message}")
     more = {code: f" ({count} more of this kind in these {among})" for code, count in others.items()}
     return tuple(replace(each, message=each.message + more.get(each.code, "")) for each in first.values())
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from types import MappingProxyType
 
-__all__ = ["VERDICTS", "VERDICT_WORDS", "speed_verdict", "strictest"]
+from hrsafety.plausibility import ResultWarning, unsafe_doubts
+
+__all__ = ["VERDICTS", "VERDICT_WORDS", "doubted", "speed_verdict", "strictest"]
 
 VERDICT_WORDS = MappingProxyType(
     {
@@ -36,6 +38,25 @@ def strictest(words: Iterable[str]) -> str:
     """
     given = set(words)
     return next((word for word in VERDICTS if word in given), "not_checked")
+
+
+def doubted(word: str, warnings: Iterable[ResultWarning]) -> str:
+    """Return what is left of a verdict beside the doubts of its result.
+
+    Parameters
+    ----------
+    word : str
+        One of `VERDICTS`.
+    warnings : iterable of ResultWarning
+        Of the result.
+
+    Returns
+    -------
+    str
+        ``"not_checked"`` for ``"within_limits"`` where the error of a doubt may lie on the unsafe side, else the word:
+        what exceeds a limit as computed is no better for a doubt.
+    """
+    return "not_checked" if word == "within_limits" and unsafe_doubts(warnings) else word
 
 
 def speed_verdict(planned: float, allowed: float | None, *, permitted: bool, checked: bool) -> str:
