@@ -1,6 +1,6 @@
 """Train a robot by PPO among people who do not see it: about three minutes on one core.
 
-``pip install hrsafety[gym] stable-baselines3``, then ``python train_ppo.py weights.npz`` and
+``pip install ".[gym]" stable-baselines3`` in the source tree, then ``python train_ppo.py weights.npz`` and
 ``python learned_law.py weights.npz --cases 500``.
 """
 

@@ -270,7 +270,7 @@ def _library(module: str, name: str) -> Any:
     try:
         return importlib.import_module(module)
     except ModuleNotFoundError:
-        raise MissingExtraError(f"this format needs {name}: pip install hrsafety[sweep]") from None
+        raise MissingExtraError(f"this format needs {name}: pip install {module}") from None
 
 
 # ---- columns from arrays ----------------------------------------------------------------------------

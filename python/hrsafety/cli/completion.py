@@ -28,7 +28,7 @@ class PrintCompletion(argparse.Action):
         try:
             import shtab
         except ModuleNotFoundError:
-            message = "--print-completion needs shtab: pip install hrsafety[cli]"
+            message = "--print-completion needs shtab: pip install shtab"
             raise MissingExtraError(message) from None
         _mark(parser, shtab)
         print(shtab.complete(parser, str(values)))

@@ -25,7 +25,7 @@ def print_info() -> None:
     print("\n".join(f"{name:<10}{words}" for name, words in _facts()))
     print()
     rows = [
-        (extra, ", ".join(has) or "-", ", ".join(lacks) or "-", _command(extra, lacks))
+        (extra, ", ".join(has) or "-", ", ".join(lacks) or "-", _command(lacks))
         for extra, has, lacks in _extras()
     ]
     print(terminal.table([("extra", "installed", "missing", "to install")], rows, left=(0, 1, 2, 3)))
@@ -43,8 +43,8 @@ def _cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _command(extra: str, lacks: list[str]) -> str:
-    return f'pip install "hrsafety[{extra}]"' if lacks else "-"
+def _command(lacks: list[str]) -> str:
+    return f"pip install {' '.join(lacks)}" if lacks else "-"
 
 
 def _extras() -> Iterator[tuple[str, list[str], list[str]]]:

@@ -236,7 +236,7 @@ def check_targets(options: argparse.Namespace) -> None:
 def require_matplotlib(option: str) -> None:
     """Find out before the run that its pictures cannot be made."""
     if importlib.util.find_spec("matplotlib") is None:
-        raise MissingExtraError(f"{option} makes pictures and needs matplotlib: pip install hrsafety[plot]")
+        raise MissingExtraError(f"{option} makes pictures and needs matplotlib: pip install matplotlib")
 
 
 def write_text(path: Path, text: str) -> Path:

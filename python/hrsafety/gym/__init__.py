@@ -4,7 +4,7 @@
 
 Importing this module registers ``hrsafety/CircleCrossing-v0``, ``hrsafety/Corridor-v0``, ``hrsafety/Crossing-v0`` and
 ``hrsafety/Bottleneck-v0``; ``gymnasium.make("hrsafety.gym:hrsafety/CircleCrossing-v0")`` imports it by itself. It needs
-``pip install hrsafety[gym]``.
+``pip install gymnasium``.
 """
 
 import importlib.util
@@ -12,7 +12,7 @@ import importlib.util
 from hrsafety.errors import MissingExtraError
 
 if importlib.util.find_spec("gymnasium") is None:
-    raise MissingExtraError("environments for learners need gymnasium: pip install hrsafety[gym]")
+    raise MissingExtraError("environments for learners need gymnasium: pip install gymnasium")
 
 from hrsafety.gym.parallel import parallel_env
 from hrsafety.gym.registration import IDS, register

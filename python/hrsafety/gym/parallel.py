@@ -60,7 +60,7 @@ def parallel_env(world: World | Task, *, render_mode: str | None = None, **optio
     {'robot_0': (47,), 'robot_1': (47,), 'robot_2': (47,)}
     """
     if importlib.util.find_spec("pettingzoo") is None:
-        raise MissingExtraError("environments for many robots need PettingZoo: pip install hrsafety[pettingzoo]")
+        raise MissingExtraError("environments for many robots need PettingZoo: pip install pettingzoo")
     # Imported when it is asked for, as PettingZoo is.
     from hrsafety.gym.many_robots import CrowdParallelEnv
 

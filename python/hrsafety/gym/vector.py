@@ -38,8 +38,8 @@ class CrowdVectorEnv(gymnasium.vector.VectorEnv[Any, npt.NDArray[np.float32], np
     num_envs : int
         How many.
     autoreset_mode : AutoresetMode or str
-        ``NEXT_STEP``: the step after an end starts the next episode. ``SAME_STEP``: the step that ends an episode
-        does, and its info has ``final_obs`` and ``final_info``. ``DISABLED``: the caller does, by
+        ``"NextStep"``: the step after an end starts the next episode. ``"SameStep"``: the step that ends an episode
+        does, and its info has ``final_obs`` and ``final_info``. ``"Disabled"``: the caller does, by
         ``reset(options={"reset_mask": ...})``.
     threads : int or None
         Number of threads; all cores when ``None``.

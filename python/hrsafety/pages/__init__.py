@@ -64,7 +64,7 @@ def require_jinja(what: str) -> None:
         If Jinja2 is not installed.
     """
     if importlib.util.find_spec("jinja2") is None:
-        raise MissingExtraError(f"{what} writes a page and needs Jinja2: pip install hrsafety[report]")
+        raise MissingExtraError(f"{what} writes a page and needs Jinja2: pip install jinja2")
 
 
 def written(template: str, **content: object) -> str:

@@ -4,7 +4,7 @@ Every function takes results of `hrsafety.navigation`, `.impact`, `.contact`, `.
 physics, and returns a ``matplotlib.figure.Figure`` that needs no display and leaves no trace in ``pyplot``; save it
 with ``figure.savefig(path)``. `animate` writes a file and returns its path. Axis labels carry
 units. matplotlib is imported when a picture is asked for; without it the functions raise
-`MissingExtraError`, which names ``pip install hrsafety[plot]``.
+`MissingExtraError`, which names ``pip install matplotlib``.
 """
 
 from types import ModuleType

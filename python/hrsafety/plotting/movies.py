@@ -81,7 +81,7 @@ def check_writer(target: Path) -> None:
         try:
             import PIL  # noqa: F401  # the import is the check
         except ImportError:
-            raise style.MissingExtraError("a GIF file needs Pillow: pip install hrsafety[plot]") from None
+            raise style.MissingExtraError("a GIF file needs Pillow: pip install pillow") from None
 
 
 def checked_instants(target: Path, end: float, frames_per_second: float, speed: float) -> npt.NDArray[np.float64]:

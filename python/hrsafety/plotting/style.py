@@ -77,7 +77,7 @@ def require_matplotlib() -> None:
     except ValueError:  # a module that is marked as missing has no specification
         found = False
     if not found:
-        raise MissingExtraError("pictures need matplotlib: pip install hrsafety[plot]")
+        raise MissingExtraError("pictures need matplotlib: pip install matplotlib")
 
 
 def styled(function: Callable[P, R]) -> Callable[P, R]:

@@ -151,7 +151,7 @@ def _pyarrow() -> tuple[Any, Any]:
         import pyarrow
         from pyarrow import parquet
     except ModuleNotFoundError:
-        raise MissingExtraError("chunks in Parquet need pyarrow: pip install hrsafety[sweep]") from None
+        raise MissingExtraError("chunks in Parquet need pyarrow: pip install pyarrow") from None
     return pyarrow, parquet
 
 

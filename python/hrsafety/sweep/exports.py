@@ -58,7 +58,7 @@ def _polars() -> Any:
     try:
         import polars
     except ModuleNotFoundError:
-        raise MissingExtraError("this format needs Polars: pip install hrsafety[sweep]") from None
+        raise MissingExtraError("this format needs Polars: pip install polars") from None
     return polars
 
 
@@ -154,7 +154,7 @@ def to_xarray(result: Stored, columns: Sequence[Column], *, lazy: bool = False) 
     try:
         import xarray
     except ModuleNotFoundError:
-        raise MissingExtraError("this format needs xarray: pip install hrsafety[sweep]") from None
+        raise MissingExtraError("this format needs xarray: pip install xarray") from None
     if not result.complete:
         text = f"{len(result.finished)} of {result.chunk_count} chunks"
         raise SweepError(f"the sweep is not complete ({text}); run it again to resume")

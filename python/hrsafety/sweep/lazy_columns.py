@@ -79,7 +79,7 @@ def dask_array(lazy: LazyColumn) -> Any:
     try:
         import dask.array
     except ModuleNotFoundError:
-        raise MissingExtraError("lazy arrays need Dask: pip install hrsafety[sweep,distributed]") from None
+        raise MissingExtraError('lazy arrays need Dask: pip install "dask[distributed]"') from None
     blocks = tuple(_blocks(lazy.shape, lazy._chunk_rows))
     from_array: Any = dask.array.from_array
     made: Any = from_array(lazy, chunks=blocks, asarray=False, meta=np.empty((0,) * lazy.ndim, lazy.dtype))

@@ -340,7 +340,7 @@ def _check_client(client: object) -> None:
     try:
         from distributed import Client
     except ModuleNotFoundError:
-        raise MissingExtraError("a cluster needs dask.distributed: pip install hrsafety[distributed]") from None
+        raise MissingExtraError('a cluster needs dask.distributed: pip install "dask[distributed]"') from None
     if not isinstance(client, Client):
         raise InvalidParameterError("client", "be a distributed.Client or None", client)
     if client.asynchronous:

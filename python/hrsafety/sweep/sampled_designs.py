@@ -31,7 +31,7 @@ def _stats() -> Any:
     try:
         from scipy.stats import qmc
     except ModuleNotFoundError:
-        raise MissingExtraError("sampled designs need SciPy: pip install hrsafety[sweep]") from None
+        raise MissingExtraError("sampled designs need SciPy: pip install scipy") from None
     return qmc
 
 

@@ -164,7 +164,7 @@ def test_unknown_shell_is_refused_with_the_choice(capsys: pytest.CaptureFixture[
 def test_missing_shtab_names_its_extra(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setitem(sys.modules, "shtab", None)
     assert main(["--print-completion", "bash"]) == 2
-    assert "pip install hrsafety[cli]" in capsys.readouterr().err
+    assert "pip install shtab" in capsys.readouterr().err
 
 
 def test_the_rest_works_without_shtab_and_rich(

@@ -90,7 +90,7 @@ def test_missing_jinja_is_told_before_the_work_begins(
         importlib.util, "find_spec", lambda each, *more: None if each == "jinja2" else found(each, *more)
     )
     assert main([*COMMANDS[name], "--out", str(tmp_path / "out")]) == 2
-    message = f"{name} writes a page and needs Jinja2: pip install hrsafety[report]"
+    message = f"{name} writes a page and needs Jinja2: pip install jinja2"
     assert message in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
     with pytest.raises(MissingExtraError):

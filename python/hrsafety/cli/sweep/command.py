@@ -158,7 +158,7 @@ def _workers(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
         try:
             from distributed import Client
         except ModuleNotFoundError:
-            raise MissingExtraError("--scheduler needs dask.distributed: pip install hrsafety[distributed]") from None
+            raise MissingExtraError('--scheduler needs dask.distributed: pip install "dask[distributed]"') from None
         connect: Any = Client
         try:
             client = connect(options.scheduler, set_as_default=False)

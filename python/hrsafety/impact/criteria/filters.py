@@ -1,4 +1,4 @@
-"""Channel filters for measured signals (needs SciPy: ``pip install hrsafety[signal]``)."""
+"""Channel filters for measured signals (needs SciPy: ``pip install scipy``)."""
 
 from __future__ import annotations
 
@@ -135,5 +135,5 @@ def _scipy_signal() -> Any:
     try:
         from scipy import signal
     except ImportError as error:
-        raise ImportError("channel filters need SciPy: pip install hrsafety[signal]") from error
+        raise ImportError("channel filters need SciPy: pip install scipy") from error
     return signal

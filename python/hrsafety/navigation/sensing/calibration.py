@@ -1,4 +1,4 @@
-"""Calibration of a camera from points that it shows (needs SciPy: ``pip install hrsafety[signal]``)."""
+"""Calibration of a camera from points that it shows (needs SciPy: ``pip install scipy``)."""
 
 from __future__ import annotations
 
@@ -287,5 +287,5 @@ def scipy_least_squares() -> Any:
     try:
         from scipy.optimize import least_squares
     except ImportError as error:
-        raise MissingExtraError("calibration needs SciPy: pip install hrsafety[signal]") from error
+        raise MissingExtraError("calibration needs SciPy: pip install scipy") from error
     return least_squares

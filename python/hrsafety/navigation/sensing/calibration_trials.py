@@ -1,4 +1,4 @@
-"""How far off positions are that a calibrated camera measures (needs SciPy: ``pip install hrsafety[signal]``)."""
+"""How far off positions are that a calibrated camera measures (needs SciPy: ``pip install scipy``)."""
 
 from __future__ import annotations
 
