@@ -35,7 +35,7 @@ Columns = dict[str, Column]
 SHOWN_ROWS = 5
 """Rows that a table shows when it is printed."""
 _SHOWN_COLUMNS = 8
-_WARNING = ("code", "subject", "message")
+_WARNING = ("code", "subject", "message", "safe_side")
 SHOWN_WARNINGS = 4
 """Warnings that a table shows when it is printed."""
 
