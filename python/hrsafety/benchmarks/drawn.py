@@ -24,7 +24,7 @@ LAW_SPEED, ROBOT_SPEED = 1.0, 1.5
 CROWD = 12
 """People of a crowd."""
 
-Draw = Callable[[Case, Sequence[int]], tuple[nav.Scenarios, nav.Law]]
+Draw = Callable[[Case, Sequence[int]], tuple[Sequence[nav.Scenario], nav.Law]]
 """Scenes of some episodes, and the law that is run in all of them."""
 
 
@@ -58,7 +58,7 @@ def drifting(count: int) -> Draw:
         What draws scenes and law.
     """
 
-    def draw(case: Case, cases: Sequence[int]) -> tuple[nav.Scenarios, nav.Law]:
+    def draw(case: Case, cases: Sequence[int]) -> tuple[Sequence[nav.Scenario], nav.Law]:
         place, velocity = (each[list(cases)] for each in _discs(case.seed, count))
         scenes = nav.Scenarios.from_arrays(
             start=np.zeros((len(cases), 2)),
@@ -75,12 +75,19 @@ def drifting(count: int) -> Draw:
             rest_time=15.0,
             arrival_tolerance=0.3,
         )
-        return scenes, _protocol(case.entry).built(person_speed=case.person_speed, preferred_speed=LAW_SPEED)
+        law = replace(case, entry=_protocol(case.entry)).built(preferred_speed=LAW_SPEED)
+        return _sensed(scenes, case), law
 
     return draw
 
 
-def crowd(case: Case, cases: Sequence[int]) -> tuple[nav.Scenarios, nav.Law]:
+def _sensed(scenes: nav.Scenarios, case: Case) -> Sequence[nav.Scenario]:
+    """Return the scenes with the sensing of the case."""
+    sensing = case.measurement
+    return scenes if sensing is None else [replace(scene, measurement=sensing) for scene in scenes]
+
+
+def crowd(case: Case, cases: Sequence[int]) -> tuple[Sequence[nav.Scenario], nav.Law]:
     """Return crowds that cross the way of the robot, and the law.
 
     Parameters
@@ -92,11 +99,11 @@ def crowd(case: Case, cases: Sequence[int]) -> tuple[nav.Scenarios, nav.Law]:
 
     Returns
     -------
-    tuple of Scenarios and Law
-        Scenes and law.
+    tuple of scenes and Law
+        Scenarios and law.
     """
     scenes = scenarios.random_traffic_batch([case.seed + index for index in cases], obstacles=CROWD)
-    return scenes, case.entry.built(person_speed=case.person_speed)
+    return _sensed(scenes, case), case.built()
 
 
 def first_of(draw: Draw) -> Callable[[Case, int], tuple[nav.Scenario, nav.Law]]:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field
 from pathlib import Path
+from typing import Any
 
 from hrsafety import navigation as nav
 from hrsafety._records import dataclass
@@ -33,6 +35,10 @@ class Case:
         Seed of the draw.
     threads : int or None
         Number of threads.
+    noise : float
+        Half width of the uniform error of each coordinate of measured people, in m.
+    latency : float
+        Age of their measurements, in s.
     """
 
     cases: Sequence[int]
@@ -41,6 +47,31 @@ class Case:
     data: Path | None
     seed: int
     threads: int | None
+    noise: float = 0.0
+    latency: float = 0.0
+
+    @property
+    def measurement(self) -> nav.Measurement | None:
+        """Errors and age of what the robot sees of people; ``None`` where they are known exactly."""
+        if self.noise == self.latency == 0.0:
+            return None
+        return nav.Measurement(scale=self.noise, latency=self.latency, of="obstacles")
+
+    def built(self, **protocol: Any) -> nav.Law:
+        """Return the law of the entry, with a shield that assumes the people and the sensing of the case.
+
+        Parameters
+        ----------
+        **protocol
+            Further arguments of `Entry.built`.
+
+        Returns
+        -------
+        Law
+            The law.
+        """
+        error = math.hypot(self.noise, self.noise)
+        return self.entry.built(person_speed=self.person_speed, latency=self.latency, position_error=error, **protocol)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -71,6 +102,8 @@ class Suite:
         Motion step in s.
     execution_error : float
         How far its robots are off the motion that a shield plans, in m, where that is more than the margin.
+    sensed : bool
+        Whether errors and age of measurements of people may be asked for.
     fastest : float or None
         Largest speed of people in m/s; ``None``: the data decide.
     scene : callable
@@ -90,6 +123,7 @@ class Suite:
     accepted: Mapping[tuple[str, float | None], str] = field(default_factory=dict)
     step: float = 0.01
     execution_error: float = 0.0
+    sensed: bool = True
     fastest: float | None
     scene: Callable[[Case, int], tuple[nav.Scenario, nav.Law]] | None = None
     run: Callable[[Case], Iterator[Row]]

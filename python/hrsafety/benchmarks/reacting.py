@@ -31,23 +31,28 @@ MOST = 1_000_000
 
 
 def _law(case: Case, margin: float = MARGIN) -> nav.Law:
-    return case.entry.built(person_speed=case.person_speed, margin=margin)
+    return case.built(margin=margin)
+
+
+def _sensed(world: World, case: Case) -> World:
+    """Return the world with robots that see people as the case says."""
+    return replace(world, robots=[replace(robot, measurement=case.measurement) for robot in world.robots])
 
 
 def _seen(case: Case, index: int) -> World:
-    return scenarios.circle_crossing(index, law=_law(case), visible=True)
+    return _sensed(scenarios.circle_crossing(index, law=_law(case), visible=True), case)
 
 
 def _unseen(case: Case, index: int) -> World:
-    return scenarios.circle_crossing(index, law=_law(case), visible=False)
+    return _sensed(scenarios.circle_crossing(index, law=_law(case), visible=False), case)
 
 
 def _antipodal(case: Case, index: int) -> World:
-    return scenarios.antipodal(20, law=_law(case, STEP_ERROR), robots=1, seed=case.seed + index)
+    return _sensed(scenarios.antipodal(20, law=_law(case, STEP_ERROR), robots=1, seed=case.seed + index), case)
 
 
 def _driven(case: Case, start: tuple[float, float], goal: tuple[float, float]) -> CrowdRobot:
-    return CrowdRobot(start=start, goal=goal, law=_law(case, STEP_ERROR))
+    return CrowdRobot(start=start, goal=goal, law=_law(case, STEP_ERROR), measurement=case.measurement)
 
 
 def _free(world: World, robot: CrowdRobot) -> World:

@@ -128,12 +128,15 @@ class Result:
         What is asked of an entry: success, contact and fault in percent.
     warnings : tuple of ResultWarning
         Where shields assume slower people than the suite has.
+    conditions : str
+        Scenes, sensing and assumptions for which the shares hold.
     """
 
     suite: str
     rows: Mapping[str, Sequence[Row]]
     warnings: tuple[ResultWarning, ...] = ()
     accepted: Mapping[str, str] = field(default_factory=dict)
+    conditions: str = ""
 
     def success(self, name: str) -> Share:
         """Return the share of episodes that arrived without a contact, with its 95 % Wilson interval."""

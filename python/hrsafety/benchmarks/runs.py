@@ -6,9 +6,10 @@ import hashlib
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from hrsafety import __version__
-from hrsafety._arguments import callback, checked_seed, count, positive, readable, sequence, thread_count, word
+from hrsafety._arguments import callback, checked_seed, count, number, positive, readable, sequence, thread_count, word
 from hrsafety._atomic import write_file
 from hrsafety.benchmarks.entries import MARGIN, Entry, entry
 from hrsafety.benchmarks.protocol import Case, Suite
@@ -34,6 +35,8 @@ def benchmark(
     data: str | Path | None = None,
     out: str | Path | None = None,
     threads: int | None = None,
+    noise: float = 0.0,
+    latency: float = 0.0,
     progress: Progress | None = None,
 ) -> Result:
     """Run laws through a suite.
@@ -57,6 +60,10 @@ def benchmark(
         Folder in which rows are kept as they come; the same call resumes there.
     threads : int or None
         Number of threads.
+    noise : float
+        Half width of the uniform error of each coordinate of measured people, in m; shields assume it, too.
+    latency : float
+        Age of their measurements in s; shields assume it, too.
     progress : callable or None
         Called with (episodes done, episodes in all).
 
@@ -91,12 +98,19 @@ def benchmark(
     most = kind.most if kind.available is None else kind.available(folder)
     usual = min(kind.cases, most) if kind.available else kind.cases
     runs = count("cases", usual if cases is None else cases, most=most)
-    settings = {
+    settings: dict[str, Any] = {
         "person_speed": positive("person_speed", person_speed),
         "seed": first,
         "data": folder,
         "threads": thread_count(threads),
     }
+    for name, value in (("noise", noise), ("latency", latency)):
+        settings[name] = number(name, value)
+        if settings[name] < 0.0:
+            raise InvalidParameterError(name, "be 0 or above", value)
+        if settings[name] > 0.0 and not kind.sensed:
+            rule = f"be 0 in {kind.name}, whose protocol has its own sensing"
+            raise InvalidParameterError(name, rule, value)
     told = callback("progress", progress)
     place = None if out is None else Path(out)
     if place is not None:
@@ -115,11 +129,22 @@ def benchmark(
         name: kind.accepted[name, speed]
         for name in rows
         for speed in (None, person_speed)
-        if (name, speed) in kind.accepted
+        if (name, speed) in kind.accepted and not noise and not latency
     }
     shielded = any("shield" in each.parts for each in entries)
     doubts = (*(_doubts(kind, person_speed) if shielded else ()), *_between(kind, rows))
-    return Result(suite=kind.name, rows=rows, accepted=asked, warnings=doubts)
+    return Result(suite=kind.name, rows=rows, accepted=asked, warnings=doubts, conditions=_conditions(kind, settings))
+
+
+def _conditions(kind: Suite, settings: Mapping[str, Any]) -> str:
+    """Return the conditions under which the shares hold, in words."""
+    noise, latency = settings["noise"], settings["latency"]
+    sensing = (
+        f"people measured to +-{noise:g} m in x and y and {latency:g} s late" if noise or latency else "exact sensing"
+    )
+    if not kind.sensed:
+        sensing = "sensing of the protocol"
+    return f"{kind.summary}; {sensing}; shields assume people of up to {settings['person_speed']:g} m/s"
 
 
 def _doubts(kind: Suite, person_speed: float) -> Iterator[ResultWarning]:
@@ -164,7 +189,8 @@ def _file(place: Path, suite: Suite, each: Entry, settings: Mapping[str, object]
     """Return where rows are kept; other settings, and another version of the package, have another file."""
     plain = re.sub(r"[^a-z0-9+_]", "_", each.name.lower())
     data = f"-data{_content(suite, settings['data'])}" if isinstance(settings["data"], Path) else ""
-    draws = f"v{settings['person_speed']!r}-seed{settings['seed']}{data}"
+    sensing = "".join(f"-{name}{settings[name]!r}" for name in ("noise", "latency") if settings.get(name))
+    draws = f"v{settings['person_speed']!r}-seed{settings['seed']}{sensing}{data}"
     return place / f"{suite.name}-{plain}-{draws}-hrsafety{__version__}.csv"
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
 
@@ -52,7 +53,7 @@ def _crossing(case: Case, index: int) -> tuple[nav.Scenario, nav.Law]:
     if recording >= len(files):
         raise InvalidParameterError("cases", f"be below {RUNS * len(files)}: {RUNS} of each recording", index)
     crossing = _crossings(files[recording])[run]
-    return crossing.scenario, case.entry.built(person_speed=case.person_speed)
+    return replace(crossing.scenario, measurement=case.measurement), case.built()
 
 
 RUNS = 24
@@ -206,6 +207,7 @@ SUITES: dict[str, Suite] = {
             cases=1000,
             seed=0,
             most=10_000_000,
+            sensed=False,
             accepted={(f"{law}+shield", None): "- / - / 0" for law in ("field", "orca", "velocity_obstacle")},
             run=_pursue,
         ),
@@ -213,6 +215,7 @@ SUITES: dict[str, Suite] = {
             name="barn",
             fastest=0.0,
             summary="300 fields of cylinders that the map shows",
+            sensed=False,
             laws=barn.LAWS,
             cases=300,
             seed=0,
@@ -233,6 +236,7 @@ SUITES: dict[str, Suite] = {
                 seed=0,
                 most=600,
                 files=barn.dynamic_files,
+                sensed=False,
                 step=0.025,
                 accepted={(barn.DYNAMIC_LAWS[0], None): f"{asked} / - / -"},
                 scene=barn.dynamic_scene(most),

@@ -16,7 +16,9 @@ from hrsafety.pages import Picture, require_jinja, written
 
 __all__ = ["run_suite"]
 
-OPTIONS = {"laws": "--laws", "cases": "--cases", "data": "--data", "out": "--out", "person_speed": "--person-speed"}
+OPTIONS = {
+    name: f"--{name.replace('_', '-')}" for name in ("laws", "cases", "data", "out", "person_speed", "noise", "latency")
+}
 
 
 def run_suite(options: argparse.Namespace) -> None:
@@ -42,11 +44,14 @@ def run_suite(options: argparse.Namespace) -> None:
                 data=options.data,
                 out=place,
                 threads=options.threads,
+                noise=options.noise,
+                latency=options.latency,
                 progress=None if shown is None else lambda done, total: shown("episodes", done, total, None),
             )
     except InvalidParameterError as error:
         name = OPTIONS.get(error.argument)
         raise error if name is None else error.renamed(name) from None
+    print(f"{result.suite}: {result.conditions}; shares in percent with 95 % Wilson intervals\n")
     print(terminal.table([HEAD], result.cells(), left=(0,)))
     if place is not None:
         print()
@@ -65,12 +70,11 @@ def _write(options: argparse.Namespace, result: Result, place: Path) -> Iterator
     page = written(
         "benchmark.html",
         title=f"Benchmark {result.suite}",
-        summary=SUITES[result.suite].summary,
+        summary=result.conditions,
         head=HEAD,
         rows=result.cells(),
         pictures=pictures,
         warned=result.warnings,
-        person_speed=options.person_speed,
     )
     yield output.write_text(place / f"{stem}.html", page)
 
@@ -87,6 +91,8 @@ def _failures(options: argparse.Namespace, result: Result) -> Iterator[Picture]:
         "seed": suite.seed if options.seed is None else options.seed,
         "data": None if options.data is None else Path(options.data),
         "threads": options.threads,
+        "noise": options.noise,
+        "latency": options.latency,
     }
     for name in result.rows:
         for case in result.failures(name):

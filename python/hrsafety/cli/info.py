@@ -24,10 +24,7 @@ def print_info() -> None:
     """Print versions, machine and optional extras with what each of them still needs."""
     print("\n".join(f"{name:<10}{words}" for name, words in _facts()))
     print()
-    rows = [
-        (extra, ", ".join(has) or "-", ", ".join(lacks) or "-", _command(lacks))
-        for extra, has, lacks in _extras()
-    ]
+    rows = [(extra, ", ".join(has) or "-", ", ".join(lacks) or "-", _command(lacks)) for extra, has, lacks in _extras()]
     print(terminal.table([("extra", "installed", "missing", "to install")], rows, left=(0, 1, 2, 3)))
 
 

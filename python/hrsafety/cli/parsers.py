@@ -347,6 +347,16 @@ def _add_benchmark(commands: Any) -> None:
         metavar="V",
         help="speed of people that shields assume, in m/s [%(default)s]",
     )
+    parser.add_argument(
+        "--noise",
+        type=_number,
+        default=0.0,
+        metavar="M",
+        help="largest error of each coordinate of measured people, in m [%(default)s]",
+    )
+    parser.add_argument(
+        "--latency", type=_number, default=0.0, metavar="S", help="age of their measurements, in s [%(default)s]"
+    )
     parser.add_argument("--seed", type=_count, metavar="N", help="seed of the draw [of the protocol]")
     parser.add_argument("--data", metavar="DIR", help="folder with recordings (.csv), BARN or DynaBARN worlds (.json)")
     parser.add_argument("--out", metavar="DIR", help="folder for rows, tables (CSV) and a page; resumed from there")

@@ -231,3 +231,35 @@ def test_rows_of_worlds_that_diverged_are_read_again(tmp_path: Path) -> None:
     file = tmp_path / "rows.csv"
     file.write_text(row_text([row], head=True), encoding="utf-8")
     assert read_rows(file) == [row]
+
+
+def test_noise_and_delay_are_sensed_and_assumed_and_said(tmp_path: Path) -> None:
+    settings = {"person_speed": 1.0, "data": None, "seed": 0, "threads": 1, "noise": 0.025, "latency": 0.1}
+    case = Case(cases=[3], entry=entry("field+shield"), **settings)
+    scene = SUITES["crowd"].scene
+    assert scene is not None
+    place, law = scene(case, 3)
+    assert place.measurement == nav.Measurement(scale=0.025, latency=0.1)
+    assert isinstance(law, SafeNavigation)
+    assert law.shield.latency == 0.1
+    assert law.shield.position_error == pytest.approx(np.hypot(0.025, 0.025))
+    exact = benchmark("crowd", ["field"], cases=12, out=tmp_path)
+    late = benchmark("crowd", ["field"], cases=12, noise=0.025, latency=0.1, out=tmp_path)
+    assert len(list(tmp_path.iterdir())) == 2
+    assert [row.clearance for row in exact.rows["field"]] != [row.clearance for row in late.rows["field"]]
+    assert "exact sensing" in exact.conditions
+    assert "+-0.025 m" in late.conditions
+    assert "0.1 s late" in late.conditions
+
+
+@pytest.mark.parametrize("suite", ["antipodal", "circle_crossing", "corridor"])
+def test_robots_among_people_who_react_sense_as_told(suite: str) -> None:
+    late = benchmark(suite, ["orca"], cases=2, noise=0.025, latency=0.1)
+    assert repr(late.rows) != repr(benchmark(suite, ["orca"], cases=2).rows)
+
+
+def test_sensing_of_a_protocol_is_not_changed() -> None:
+    with pytest.raises(InvalidParameterError, match="latency must be 0 in adversary"):
+        benchmark("adversary", ["field"], cases=1, latency=0.1)
+    with pytest.raises(InvalidParameterError, match="noise must be 0 or above"):
+        benchmark("s4", ["field"], cases=1, noise=-0.1)
