@@ -16,7 +16,7 @@ MEANINGS = {
     CLOSED_PIPE: "the reader of the output closed it early",
     ERROR: "an error: one line on stderr says which, nothing was left half written",
     FAILED_RUN: "a run ended as --fail-on names, or no gain set keeps the constraints; everything was written",
-    WARNED: "there were warnings and --strict was given; everything was written",
+    WARNED: "warnings and --strict was given, or doubts about runs that --fail-on judges; everything was written",
     INTERRUPTED: "stopped by Ctrl-C",
 }
 """What each code means, as ``hrsafety --help`` prints it."""

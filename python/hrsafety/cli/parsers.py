@@ -208,6 +208,7 @@ def _add_simulate(commands: Any) -> None:
     )
     people = parser.add_argument_group("recorded people (instead of a scenario file)")
     people.add_argument("--people", metavar="FILE.csv", help="recorded people to cross")
+    people.add_argument("--fps", type=_number, metavar="F", help="frames per second of a file whose times are frames")
     people.add_argument("--runs", type=_count, metavar="N", help="number of start times [24]")
     people.add_argument(
         "--selection", choices=["busiest", "even"], help="start times with most traffic, or evenly spaced [busiest]"

@@ -21,6 +21,7 @@ from hrsafety.cli.simulate_page import PageTable
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.tables.runs import RunTable
+from hrsafety.plausibility import unsafe_doubts
 from hrsafety.scenarios.laws import name_of
 from hrsafety.scenarios.recorded_people import ACTIVE_RADIUS, CRITICAL_RADIUS, PERSON_RADIUS
 
@@ -61,7 +62,7 @@ def simulate_people(options: argparse.Namespace) -> None:
     verdict.failures_of(options.fail_on)  # a wrong word is told before the runs
     output.check_targets(options)
     law = output.with_options(nav.VirtualForceField(), options)
-    recording = datasets.load_pedestrians(options.people)
+    recording = datasets.load_pedestrians(options.people, fps=options.fps)
     crossings = scenarios.crossings(recording, runs=runs, selection=options.selection or "busiest")
     stepping = {"integrator": options.integrator, "step": options.step, "hold": options.hold}
     summary = nav.simulate_batch([crossing.scenario for crossing in crossings], law, **stepping)
@@ -91,7 +92,7 @@ def simulate_people(options: argparse.Namespace) -> None:
             page = simulate_page.html(
                 source=options.people,
                 said=_how_they_ended(summary, verdict.counted(summary)),
-                good=bool((summary.outcome == "arrived").all()),
+                good=bool((summary.outcome == "arrived").all()) and not unsafe_doubts(found),
                 facts=setting,
                 table=table,
                 pictures=pictures,

@@ -11,11 +11,11 @@ import numpy as np
 from hrsafety import navigation as nav
 from hrsafety._arguments import meant
 from hrsafety.cli import output, terminal
-from hrsafety.cli.exit_codes import FAILED_RUN
+from hrsafety.cli.exit_codes import FAILED_RUN, WARNED
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.tables.runs import RunTable
-from hrsafety.plausibility import ResultWarning
+from hrsafety.plausibility import ResultWarning, unsafe_doubts
 
 __all__ = ["FAILURES", "counted", "end", "failures_of", "sentence"]
 
@@ -74,7 +74,7 @@ def counted(runs: RunTable | nav.Trajectory) -> Counts:
     return {word: int(np.sum(masks[word])) for word in FAILURES}
 
 
-def sentence(said: str, counts: Counts, fail_on: Sequence[str], runs: int) -> str:
+def sentence(said: str, counts: Counts, fail_on: Sequence[str], runs: int, doubts: int = 0) -> str:
     """Return the last line of a command: how the runs ended, and what the exit code makes of it.
 
     Parameters
@@ -87,13 +87,21 @@ def sentence(said: str, counts: Counts, fail_on: Sequence[str], runs: int) -> st
         Of `failures_of`.
     runs : int
         How many there are.
+    doubts : int
+        Number of warnings whose error may lie on the unsafe side: with any of them nothing has passed.
     """
     named = [word for word in fail_on if counts[word]]
     if named:
         shares = ", ".join(word if runs == 1 else f"{word} in {counts[word]} of {runs} runs" for word in named)
         return f"FAILED  {said}; --fail-on {shares}: exit code {FAILED_RUN}"
-    if not counts["any"]:
+    if not (counts["any"] or doubts):
         return f"passed  {said}"
+    if doubts and (fail_on or not counts["any"]):
+        told = "a warning says" if doubts == 1 else f"{doubts} warnings say"
+        code = (
+            f"exit code {WARNED}" if fail_on else f"exit code 0 all the same, --strict or --fail-on makes it {WARNED}"
+        )
+        return f"NOTE    not checked: {said}, and {told} why that may be wrong; {code}"
     happened = ",".join(word for word in ("contact", *_SHORT_OF_GOAL) if counts[word])
     note = "--fail-on does not name it" if fail_on else f"--fail-on {happened} makes it {FAILED_RUN}"
     return f"NOTE    {said}; exit code 0 all the same, {note}"
@@ -119,13 +127,16 @@ def end(said: str, counts: Counts, found: Sequence[ResultWarning], options: argp
     ------
     SystemExit
         With code 3 if a failure that ``--fail-on`` names happened, else with code 4 if there are
-        warnings and ``--strict`` is given.
+        warnings and ``--strict`` is given, or warnings on the unsafe side and ``--fail-on`` is.
     """
     fail_on = failures_of(options.fail_on)
+    doubts = len(unsafe_doubts(dict.fromkeys(found)))
     output.report_warnings(found, strict=False)
     print()
-    last = sentence(said, counts, fail_on, runs)
+    last = sentence(said, counts, fail_on, runs, doubts)
     print(terminal.styled(last, _LOOKS[last.split()[0]], sys.stdout))
     if any(counts[word] for word in fail_on):
         raise SystemExit(FAILED_RUN)
     output.leave_if_strict(found, options.strict)
+    if fail_on and doubts:
+        raise SystemExit(WARNED)

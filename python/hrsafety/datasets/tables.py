@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from os import PathLike
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import meant, readable
+from hrsafety._arguments import meant, positive, readable
 from hrsafety.datasets.recording import Recording
 from hrsafety.errors import InvalidParameterError, Shown
 
@@ -19,12 +19,13 @@ __all__ = ["load_pedestrians", "load_track"]
 Array = npt.NDArray[np.float64]
 
 PEDESTRIAN_COLUMNS = ("frame", "t_s", "ped_id", "x_m", "y_m")
+FRAME_COLUMNS = ("frame", "ped_id", "x_m", "y_m")
 TRACK_COLUMNS = ("t_s", "x_m", "y_m")
 
 _INTEGER_COLUMNS = frozenset({"frame", "ped_id"})
 
 
-def load_pedestrians(path: str | PathLike[str]) -> Recording:
+def load_pedestrians(path: str | PathLike[str], *, fps: float | None = None) -> Recording:
     r"""Read a table of recorded people.
 
     The file is comma-separated UTF-8 text with the columns ``frame`` (integer video frame, which
@@ -32,10 +33,15 @@ def load_pedestrians(path: str | PathLike[str]) -> Recording:
     no others. Rows are sorted by time, then by id; all rows of a frame carry the same time, and
     time grows from frame to frame.
 
+    Times that are numbers of frames are no seconds: with ``fps`` the time is ``frame / fps``. ``t_s`` may be
+    missing then, or be the frame; a file whose ``t_s`` contradicts that is refused.
+
     Parameters
     ----------
     path : path-like
         The file.
+    fps : float or None
+        Frames per second of a file whose times are numbers of frames.
 
     Returns
     -------
@@ -54,14 +60,41 @@ def load_pedestrians(path: str | PathLike[str]) -> Recording:
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     table = pathlib.Path(folder, "walk.csv")
     ...     _ = table.write_text("frame,t_s,ped_id,x_m,y_m\n0,0.0,7,0.0,1.0\n10,0.4,7,0.5,1.0\n")
-    ...     datasets.load_pedestrians(table).duration
-    0.4
+    ...     timed = datasets.load_pedestrians(table).duration
+    ...     _ = table.write_text("frame,ped_id,x_m,y_m\n0,7,0.0,1.0\n10,7,0.5,1.0\n")
+    ...     timed, datasets.load_pedestrians(table, fps=25.0).duration
+    (0.4, 0.4)
     """
-    rows = _read(Path(path), PEDESTRIAN_COLUMNS, _check_pedestrian_rows, optional=1)
+    rate = None if fps is None else positive("fps", fps)
+    readable("path", path)
+    layouts = [PEDESTRIAN_COLUMNS, PEDESTRIAN_COLUMNS[1:], *([FRAME_COLUMNS] if rate else [])]
+    columns, rows = _read(Path(path), layouts, _check_pedestrian_rows)
     table = np.array(rows, dtype=np.float64)
-    return Recording(
-        time_s=table[:, -4], person=np.array([row[-3] for row in rows], dtype=np.int64), position=table[:, -2:]
-    )
+    time = table[:, 0 if columns == FRAME_COLUMNS else -4]
+    if rate is not None:
+        time = _timed(Path(path), columns, table, rate)
+    return Recording(time_s=time, person=np.array([row[-3] for row in rows], dtype=np.int64), position=table[:, -2:])
+
+
+def _timed(path: Path, columns: tuple[str, ...], table: Array, rate: float) -> Array:
+    """Return the times of rows by their frames, or say that the times of the file are none of frames."""
+    frames = table[:, 0]
+    whole = (frames == np.floor(frames)).all()
+    remedy = "leave out fps: the times of the file are taken as seconds then"
+    if columns == PEDESTRIAN_COLUMNS[1:] and not whole:
+        wrong = float(frames[frames != np.floor(frames)][0])
+        raise InvalidParameterError(f"{path.name}, column t_s", "hold frames where fps is given", wrong, remedy)
+    if columns == PEDESTRIAN_COLUMNS and not np.array_equal(table[:, 1], frames):
+        passed = table[:, 1] - table[0, 1]
+        off = np.abs(passed - (frames - frames[0]) / rate)
+        # Times are rounded to some digits.
+        if off.max() > 0.5 / rate:
+            row = int(np.argmax(off))
+            rule = f"be the frames divided by fps = {rate:g}"
+            found = Shown(f"{passed[row]:g} s for {frames[row] - frames[0]:g} frames")
+            raise InvalidParameterError(f"{path.name}, column t_s", rule, found, remedy)
+    seconds: Array = frames / rate
+    return seconds
 
 
 def load_track(path: str | PathLike[str]) -> tuple[Array, Array]:
@@ -98,21 +131,22 @@ def load_track(path: str | PathLike[str]) -> tuple[Array, Array]:
     >>> time.tolist()
     [0.0, 0.4]
     """
-    table = np.array(_read(Path(path), TRACK_COLUMNS, _check_track_rows), dtype=np.float64)
+    readable("path", path)
+    table = np.array(_read(Path(path), [TRACK_COLUMNS], _check_track_rows)[1], dtype=np.float64)
     return table[:, 0].copy(), table[:, 1:].copy()
 
 
 Row = tuple[float, ...]
-OrderCheck = Callable[[str, Row, Row], None]
+OrderCheck = Callable[[str, str, Row, Row], None]
 
 
-def _check_pedestrian_rows(line: str, before: Row, row: Row) -> None:
-    """Check the order of two rows (frame, t_s, ped_id, x_m, y_m); the frame may be missing."""
+def _check_pedestrian_rows(line: str, first: str, before: Row, row: Row) -> None:
+    """Check the order of two rows (frame, t_s, ped_id, x_m, y_m); frame or t_s may be missing, the other is first."""
     if len(row) < len(PEDESTRIAN_COLUMNS):
         if row[0] < before[0]:
-            remedy = "sort the rows by t_s, then by ped_id"
+            remedy = f"sort the rows by {first}, then by ped_id"
             raise InvalidParameterError(
-                f"{line}, column t_s", f"not be before {before[0]} of the row above", row[0], remedy
+                f"{line}, column {first}", f"not be before {before[0]} of the row above", row[0], remedy
             )
         # Each instant is a frame.
         before, row = (before[0], *before), (row[0], *row)
@@ -133,28 +167,26 @@ def _check_pedestrian_rows(line: str, before: Row, row: Row) -> None:
         raise InvalidParameterError(f"{line}, column ped_id", f"follow {before[2]} within the frame", row[2])
 
 
-def _check_track_rows(line: str, before: Row, row: Row) -> None:
+def _check_track_rows(line: str, _first: str, before: Row, row: Row) -> None:
     """Check the order of two rows (t_s, x_m, y_m)."""
     if not row[0] > before[0]:
         raise InvalidParameterError(f"{line}, column t_s", f"be later than {before[0]}, the time before", row[0])
 
 
-def _read(path: Path, columns: tuple[str, ...], check_order: OrderCheck, *, optional: int = 0) -> list[Row]:
-    """Return the rows of a table, values in the order of ``columns``, of which the first may be missing."""
-    readable("path", path)
+def _read(path: Path, layouts: Sequence[tuple[str, ...]], check_order: OrderCheck) -> tuple[tuple[str, ...], list[Row]]:
+    """Return the columns and rows of a table in one of the layouts, values in the order of its columns."""
     rows: list[Row] = []
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
             reader = csv.reader(file, strict=True)
             header = next(reader, [])
-            if columns[0] not in map(str.strip, header) and len(header) == len(columns) - optional:
-                columns = columns[optional:]
+            columns = _layout([name.strip() for name in header], layouts)
             order = _header(path, header, columns)
             for fields in reader:
                 line = f"{path.name}, line {reader.line_num}"
                 row = _row(line, fields, columns, order)
                 if rows:
-                    check_order(line, rows[-1], row)
+                    check_order(line, columns[0], rows[-1], row)
                 rows.append(row)
     except UnicodeDecodeError as error:
         raise InvalidParameterError(
@@ -166,7 +198,16 @@ def _read(path: Path, columns: tuple[str, ...], check_order: OrderCheck, *, opti
         raise InvalidParameterError("path", "name a readable file", Shown(f"{path} ({error.strerror})")) from None
     if not rows:
         raise InvalidParameterError(path.name, "hold at least one row", Shown("the header only"))
-    return rows
+    return columns, rows
+
+
+def _layout(names: list[str], layouts: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
+    """Return the columns that a header is meant to name: those with its first one, of as many names if there are."""
+    for columns in layouts:
+        if set(columns) == set(names):
+            return columns
+    missing = [columns for columns in layouts if len(columns) == len(names) and layouts[0][0] not in names]
+    return missing[0] if missing else layouts[0]
 
 
 DELIMITERS = {";": "semicolons", "\t": "tabs", "|": "bars", " ": "blanks"}
@@ -217,7 +258,11 @@ def _listed(names: list[str]) -> str:
 def _written(missing: list[str], columns: tuple[str, ...]) -> str:
     """Return what to do about columns by other names."""
     remedy = f"rename those that hold {', '.join(missing)}, in s and m"
-    return f"{remedy}, or hand arrays to datasets.Recording" if "ped_id" in columns else remedy
+    if "ped_id" in columns:
+        remedy += ", or hand arrays to datasets.Recording"
+        if "t_s" in missing:
+            remedy += "; frames are no seconds: name them frame and give fps=, the frames per second"
+    return remedy
 
 
 def _renaming(name: str, names: list[str], columns: tuple[str, ...]) -> str | None:
@@ -227,6 +272,8 @@ def _renaming(name: str, names: list[str], columns: tuple[str, ...]) -> str | No
         stem, _, unit = each.lower().rpartition("_")
         if unit in OTHER_UNITS and stem == name.rpartition("_")[0]:
             return f"convert {_short(each)} to the unit of {name}"
+    if name == "t_s" and any(each.lower().startswith("frame") for each in names):
+        return "give fps=, the frames per second (--fps on the command line), if the file has frames and no times"
     return near
 
 

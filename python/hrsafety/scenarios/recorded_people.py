@@ -28,9 +28,7 @@ START_GRID = 0.4
 LONGEST_RECORDING = 1e5
 """More than a day in s; start instants are listed before any is chosen."""
 LONGEST_STAY = 3600.0
-"""In s. Each instant of a stay is compared with each start during it."""
-MOST_COMPARED = 1_000_000
-"""Pairs of instant and start that are held in memory at once."""
+"""In s. Each instant of a stay is looked at."""
 """Start instants lie on this grid in s: the annotation step of the usual recordings."""
 DEFAULT_SPACING = 4.0
 """Least time between two start instants in s."""
@@ -81,10 +79,6 @@ class _Route:
     @property
     def duration(self) -> float:
         return float(np.linalg.norm(self.goal - self.start)) / self.speed
-
-    def position(self, elapsed: Array) -> Array:
-        share = (elapsed / self.duration)[..., None]
-        return self.start + share * (self.goal - self.start)
 
 
 def crossings(
@@ -261,8 +255,7 @@ def _candidates(recording: Recording, route: _Route) -> Array:
 def _nobody_near(recording: Recording, instants: Array, place: Array, distance: float) -> npt.NDArray[np.bool_]:
     """Return at which of the instants nobody is within a distance of a place."""
     free = np.ones(len(instants), dtype=bool)
-    for person in recording.people():
-        time, position = recording.track(int(person))
+    for _, time, position in recording.tracks():
         seen = slice(*np.searchsorted(instants, (time[0], np.nextafter(time[-1], np.inf))))
         free[seen] &= np.linalg.norm(_along(time, position, instants[seen]) - place, axis=1) > distance
     return free
@@ -276,22 +269,32 @@ def _along(time: Array, position: Array, instants: Array) -> Array:
 def _traffic(recording: Recording, starts: Array, route: _Route, reach: float) -> npt.NDArray[np.int64]:
     """Count the people whom a robot at its nominal speed would have within its reach."""
     count = np.zeros(len(starts), dtype=np.int64)
-    for person in recording.people():
-        time, position = recording.track(int(person))
-        seen = slice(*np.searchsorted(starts, (time[0] - route.duration, time[-1])))
+    along = (route.goal - route.start) / (route.speed * route.duration)
+    for person, time, position in recording.tracks():
         if time[-1] - time[0] > LONGEST_STAY:
             rule = f"hold nobody for longer than {LONGEST_STAY:g} s"
             found = Shown(f"person {person} for {time[-1] - time[0]:.6g} s")
             raise InvalidParameterError("recording", rule, found, _doubt(recording))
         instants = np.append(np.arange(time[0], time[-1], _SIGHTING_STEP), time[-1])
-        walked = _along(time, position, instants)
-        rows = max(1, MOST_COMPARED // len(instants))
-        for begin in range(seen.start, seen.stop, rows):
-            some = slice(begin, min(begin + rows, seen.stop))
-            elapsed = instants - starts[some, None]
-            under_way = (elapsed >= 0.0) & (elapsed <= route.duration)
-            away = np.linalg.norm(walked - route.position(elapsed), axis=-1)
-            count[some] += (under_way & (away < reach)).any(axis=1)
+        offset = _along(time, position, instants) - route.start
+        square = reach * reach - (along[0] * offset[:, 1] - along[1] * offset[:, 0]) ** 2
+        near = square > 0.0
+        instants, ahead, half = instants[near], offset[near] @ along, np.sqrt(square[near])
+        # Within reach at an instant is a robot that started between two times, and is under way.
+        first = np.maximum(
+            np.searchsorted(starts, instants - (ahead + half) / route.speed, "right"),
+            np.searchsorted(starts, instants - route.duration, "left"),
+        )
+        behind = np.minimum(
+            np.searchsorted(starts, instants - (ahead - half) / route.speed, "left"),
+            np.minimum(np.searchsorted(starts, instants, "right"), np.searchsorted(starts, time[-1], "left")),
+        )
+        met = behind > first
+        if met.any():
+            begin, end = int(first[met].min()), int(behind[met].max())
+            edges = np.bincount(first[met] - begin, minlength=end - begin + 1)
+            edges -= np.bincount(behind[met] - begin, minlength=end - begin + 1)
+            count[begin:end] += np.cumsum(edges[:-1]) > 0
     return count
 
 

@@ -38,7 +38,7 @@ def frozen_path(time: npt.ArrayLike, position: npt.ArrayLike) -> Path:
         raise ShapeError("position", f"({len(instants)}, 2)", places.shape)
     if len(instants) == 0:
         raise InvalidParameterError("time", "hold at least one sample", Shown("an empty array"))
-    return tuple(instants.tolist()), tuple((x, y) for x, y in places.tolist())
+    return tuple(instants.tolist()), tuple(map(tuple, places.tolist()))
 
 
 def frozen_segments(segments: Iterable[tuple[float, Sequence[float], Sequence[float]]]) -> tuple[Segment, ...]:
