@@ -257,7 +257,7 @@ RANGES: dict[str, Range] = {
     "static_force": Range(-1e5, 1e5, "N", "presses for foam", "mN given for N"),
     "gravity": Range(1.6, 25.0, "m/s^2", "Moon to Jupiter", "g or mm/s^2 given for m/s^2"),
     # ---- contact ----------------------------------------------------------------------------
-    "effective_mass": Range(0.05, 10000.0, "kg", "one finger to a heavy industrial truck", "g or t given for kg"),
+    "effective_mass": Range(0.3, 10000.0, "kg", "the lightest arms to a heavy industrial truck", "g or t given for kg"),
     "body_mass": Range(0.05, 300.0, "kg", "a finger to a heavy person; ISO/TS 15066 has 0.6 to 75", "g given for kg"),
     "region_stiffness": Range(500.0, 1e7, "N/m", "ISO/TS 15066 has 10,000 to 150,000", "N/mm or kN/m given for N/m"),
     # A body region is smaller than a back; 1 cm^2, the area of many tests, must not pass as 1 m^2.
@@ -265,12 +265,16 @@ RANGES: dict[str, Range] = {
     "contact_radius": Range(1e-4, 100.0, "m", "an edge to nearly flat", "mm or cm given for m"),
     "covering_stress": Range(300.0, 1e10, "Pa", "the softest foams to hard plastics", "kPa or MPa given for Pa"),
     "covering_strain": Range(0.0, 1.0, "", "nothing is pressed to less than nothing", "percent given for shares"),
+    "covering_thickness": Range(0.0005, 0.2, "m", "skin of rubber to thick cushions", "mm or cm given for m"),
     "force_limit": Range(5.0, 5000.0, "N", "ISO/TS 15066 has 65 to 440", "kN given for N"),
     "pressure_limit": Range(1e4, 1e8, "Pa", "ISO/TS 15066 has 1.1 to 6 MPa", "N/cm^2 or N/mm^2 given for Pa"),
     "person_distance": Range(0.0, 100.0, "m", "farther than any safety sensor sees", "mm or cm given for m"),
     "approach_speed": Range(
         0.0, 20.0, "m/s", "standing to twice the fastest industrial arms", "mm/s or cm/s given for m/s"
     ),
+    "contact_speed": Range(0.0, 2.0, "m/s", "ISO/TS 15066 allows light robots some 1.5", "mm/s or cm/s given for m/s"),
+    "load_force": Range(1.0, 1e5, "N", "touch to far above what breaks a skull", "kN given for N"),
+    "load_pressure": Range(1e3, 1e9, "Pa", "touch to hard plastics", "N/cm^2 or N/mm^2 given for Pa"),
     "reaction_time": Range(0.0, 5.0, "s", "immediate to very slow controls", "ms given for s"),
     "intrusion": Range(0.0, 5.0, "m", "ISO 13855 has at most 1.2 m", "mm or cm given for m"),
     "position_uncertainty": Range(0.0, 5.0, "m", "exact to coarse radio positioning", "mm or cm given for m"),

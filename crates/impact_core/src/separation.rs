@@ -320,10 +320,17 @@ pub struct GuardDistance {
 /// Largest detection capability of a curtain that detects hands (m).
 pub const HAND_DETECTION: f64 = 0.04;
 
-/// Least distance `S = K T + C` between a guard and what it guards, for a stop within `T` (s).
+/// Least distance of any guard (m): the floor that manuals of makers print for ISO 13855.
+pub const LEAST_GUARD_DISTANCE: f64 = 0.1;
+
+/// Greatest height of a field parallel to the floor (m): below a higher one people pass.
+pub const HIGHEST_FIELD: f64 = 1.0;
+
+/// Least distance `S = K T + C` between a guard and what it guards, for a stop within `T` (s), never below
+/// [`LEAST_GUARD_DISTANCE`].
 ///
 /// # Errors
-/// A number is not positive, or a curtain detects no hands.
+/// A number is not positive, a curtain detects no hands, or a field lies above [`HIGHEST_FIELD`].
 pub fn guard_distance(time: f64, guard: Guard) -> Result<GuardDistance> {
     positive("stopping_time", time)?;
     let at = |approach_speed: f64, intrusion: f64| approach_speed * time + intrusion;
@@ -351,13 +358,18 @@ pub fn guard_distance(time: f64, guard: Guard) -> Result<GuardDistance> {
         Guard::Body => (walking, 0.85),
         Guard::Floor(height) => {
             not_negative("height", height)?;
+            if height > HIGHEST_FIELD {
+                let rule = "be at most 1 for a field parallel to the floor: people pass below a higher one";
+                let failure = Failure::invalid("height", rule, Given::Number(height));
+                return Err(failure.mended_by("give it in meters, or lower the field"));
+            }
             (walking, (1.2 - 0.4 * height).max(0.85))
         }
     };
-    let distance = at(approach_speed, intrusion);
+    let first = at(approach_speed, intrusion);
     Ok(GuardDistance {
-        distance,
-        first: distance,
+        distance: first.max(LEAST_GUARD_DISTANCE),
+        first,
         approach_speed,
         intrusion,
     })
@@ -365,7 +377,7 @@ pub fn guard_distance(time: f64, guard: Guard) -> Result<GuardDistance> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Guard, Separation, StoppingTable, guard_distance};
+    use super::{Guard, LEAST_GUARD_DISTANCE, Separation, StoppingTable, guard_distance};
 
     const RULES: Separation = Separation {
         human_speed: 1.6,
@@ -440,6 +452,12 @@ mod tests {
         assert_eq!(slow, Ok(0.5));
         let quick = guard_distance(0.1, Guard::Curtain(0.03)).map(|found| found.distance);
         assert!((quick.unwrap_or_default() - 0.328).abs() < 1e-15);
+        let instant = guard_distance(0.02, Guard::Curtain(0.014));
+        let found = instant.map(|found| (found.first, found.distance));
+        assert_eq!(found, Ok((0.04, LEAST_GUARD_DISTANCE)));
+        for height in [1.01, 1.5, 300.0] {
+            assert!(guard_distance(0.5, Guard::Floor(height)).is_err());
+        }
         let body = guard_distance(0.5, Guard::Body).map(|found| found.distance);
         assert_eq!(body, Ok(0.8 + 0.85));
         let floor = |height| guard_distance(0.5, Guard::Floor(height)).map(|found| found.intrusion);

@@ -8,6 +8,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import number
 from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import warn_implausible
 
 __all__ = ["GuardDistance", "minimum_distance"]
 
@@ -22,9 +23,10 @@ class GuardDistance(NamedTuple):
     Attributes
     ----------
     distance : float
-        Least distance S in m.
+        Least distance S in m, at least 0.1.
     first : float
-        The first result in m: with a curtain that is beyond 0.5 m the lower speed of approach counts.
+        The first result in m: with a curtain that is beyond 0.5 m the lower speed of approach counts, and below 0.1 m
+        that least distance.
     approach_speed : float
         Speed of approach K in m/s.
     intrusion : float
@@ -51,13 +53,23 @@ def minimum_distance(
         C = 8 (d - 14 mm), at least 0; beyond 0.5 m again with 1.6 m/s, and at least 0.5 m. With `height`, that of
         the sensors of a field, which may not lie below 15 (d - 50 mm).
     height : float or None
-        Height in m of a field parallel to the floor: K is 1.6 m/s and C = 1.2 m - 0.4 H, at least 0.85 m. Without
-        both, of a field across the way of a body: C is 0.85 m.
+        Height in m of a field parallel to the floor, at most 1: K is 1.6 m/s and C = 1.2 m - 0.4 H, at least 0.85 m.
+        Without both, of a field across the way of a body: C is 0.85 m.
 
     Returns
     -------
     GuardDistance
         The distance in m with the speed of approach and the intrusion distance.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is out of its range: a field above 1 m, or one below which a person could creep.
+
+    Warns
+    -----
+    ImplausibleWarning
+        If the stopping time is hardly meant in seconds.
 
     Examples
     --------
@@ -77,4 +89,6 @@ def minimum_distance(
             raise InvalidParameterError("height", rule, height)
         capability = None
     hands = None if capability is None else number("capability", capability)
-    return GuardDistance(*_hrsafety.guard_distance(time, hands, None if height is None else number("height", height)))
+    found = _hrsafety.guard_distance(time, hands, None if height is None else number("height", height))
+    warn_implausible({"stopping_time": time}, {"stopping_time": "reaction_time"})
+    return GuardDistance(*found)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import field
 from typing import Any
 
@@ -12,7 +13,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, number, numbers, own, vector
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.plausibility import ResultWarning, implausible, warn_implausible
+from hrsafety.plausibility import HrsafetyWarning, ResultWarning, implausible, warn_implausible
 from hrsafety.tables import Columns, Table
 
 __all__ = ["SpeedCurve", "StoppingData", "separation_distance", "separation_speed", "speed_over_distance"]
@@ -24,7 +25,7 @@ _QUANTITIES = {
     "distance": "person_distance",
     "robot_speed": "approach_speed",
     "max_speed": "approach_speed",
-    "contact_speed": "approach_speed",
+    "contact_speed": "contact_speed",
     "target_speed": "approach_speed",
     "human_speed": "person_speed",
     "uncertainty": "position_uncertainty",
@@ -53,7 +54,8 @@ class StoppingData(Parameters):
     --------
     >>> from hrsafety import standards
     >>> stops = standards.StoppingData(speed=[0.0, 0.5, 1.0], time=[0.0, 0.2, 0.3], distance=[0.0, 0.05, 0.16])
-    >>> found = standards.separation_distance(0.75, reaction_time=0.1, stopping=stops)
+    >>> rules = {"reaction_time": 0.1, "intrusion": 0.0, "uncertainty": 0.0}
+    >>> found = standards.separation_distance(0.75, stopping=stops, **rules)
     >>> f"{found:.4f} m"
     '0.7400 m'
     """
@@ -111,8 +113,8 @@ def separation_distance(
     reaction_time: object,
     deceleration: object = None,
     human_speed: object = WALKING_SPEED,
-    intrusion: object = 0.0,
-    uncertainty: object = 0.0,
+    intrusion: object = None,
+    uncertainty: object = None,
     target_speed: object = 0.0,
     stopping: StoppingData | None = None,
     load: float | None = None,
@@ -132,10 +134,10 @@ def separation_distance(
         Constant deceleration a in m/s^2; needed without `stopping`.
     human_speed : array_like
         Speed v_h of the person in m/s.
-    intrusion : array_like
-        Intrusion distance C in m.
-    uncertainty : array_like
-        Uncertainty Z = Z_d + Z_r of both positions in m.
+    intrusion : array_like or None
+        Intrusion distance C in m; ``None`` is 0 and issues a warning.
+    uncertainty : array_like or None
+        Uncertainty Z = Z_d + Z_r of both positions in m; ``None`` is 0 and issues a warning.
     target_speed : array_like
         Speed v_t that the robot slows down to in m/s: 0 stops it before contact, an allowed contact speed does not.
     stopping : StoppingData or None
@@ -157,6 +159,8 @@ def separation_distance(
     -----
     ImplausibleWarning
         If a number is hardly meant in its unit, such as millimeters or milliseconds.
+    HrsafetyWarning
+        If intrusion or uncertainty is not given: the answer holds for none.
 
     Examples
     --------
@@ -165,12 +169,14 @@ def separation_distance(
     >>> f"{standards.separation_distance(1.5, target_speed=0.3, **rules):.2f} m"
     '1.61 m'
     """
+    taken, intrusion, uncertainty = _taken_as_none(intrusion, uncertainty)
     rules = _rules(human_speed, reaction_time, intrusion, uncertainty, target_speed)
     speeds, rows, braking, shape = _rows("robot_speed", robot_speed, rules, deceleration, stopping)
     if stopping is None:
         found = _with_answer("robot_speed", speeds, _hrsafety.separation_distances(speeds, braking, rows))
     else:
         found = _stops(stopping).curve(load, extension).distances(speeds, rows)
+    _warn(taken)
     warn_implausible(_doubted("robot_speed", speeds, rows, deceleration, braking), _QUANTITIES)
     return found.reshape(shape) if shape else float(found[0])
 
@@ -181,8 +187,8 @@ def separation_speed(
     reaction_time: object,
     deceleration: object = None,
     human_speed: object = WALKING_SPEED,
-    intrusion: object = 0.0,
-    uncertainty: object = 0.0,
+    intrusion: object = None,
+    uncertainty: object = None,
     target_speed: object = 0.0,
     stopping: StoppingData | None = None,
     load: float | None = None,
@@ -205,7 +211,7 @@ def separation_speed(
 
     Warns
     -----
-    ImplausibleWarning
+    ImplausibleWarning, HrsafetyWarning
         As `separation_distance`.
 
     Examples
@@ -215,12 +221,14 @@ def separation_speed(
     >>> f"{standards.separation_speed(1.0, target_speed=0.3, **rules):.7f} m/s"
     '0.9106939 m/s'
     """
+    taken, intrusion, uncertainty = _taken_as_none(intrusion, uncertainty)
     rules = _rules(human_speed, reaction_time, intrusion, uncertainty, target_speed)
     distances, rows, braking, shape = _rows("distance", distance, rules, deceleration, stopping)
     if stopping is None:
         found = _with_answer("distance", distances, _hrsafety.separation_speeds(distances, braking, rows))
     else:
         found, _ = _stops(stopping).curve(load, extension).speeds(distances, rows)
+    _warn(taken)
     warn_implausible(_doubted("distance", distances, rows, deceleration, braking), _QUANTITIES)
     return found.reshape(shape) if shape else float(found[0])
 
@@ -244,7 +252,7 @@ class SpeedCurve(Table):
     status : str
         ``"permitted"`` where contact has an allowed speed, ``"not_permitted"`` where it has none.
     warnings : tuple of ResultWarning
-        Numbers that are hardly meant in their unit.
+        Numbers that are hardly meant in their unit, and what was taken as 0 because it was not given.
     """
 
     distance: Array
@@ -280,8 +288,8 @@ def speed_over_distance(
     reaction_time: float,
     deceleration: float | None = None,
     human_speed: float = WALKING_SPEED,
-    intrusion: float = 0.0,
-    uncertainty: float = 0.0,
+    intrusion: float | None = None,
+    uncertainty: float | None = None,
     target_speed: float = 0.0,
     stopping: StoppingData | None = None,
     load: float | None = None,
@@ -295,7 +303,7 @@ def speed_over_distance(
         Distances to the person in m.
     contact_speed : float or None
         Allowed contact speed of the robot in m/s; ``None`` where contact is not permitted, such as with the head
-        within reach.
+        within reach. More than 2 m/s is a doubt.
     max_speed : float
         Largest speed of the robot in m/s.
     reaction_time, deceleration, human_speed, intrusion, uncertainty, target_speed, stopping, load, extension
@@ -310,7 +318,8 @@ def speed_over_distance(
     --------
     >>> from hrsafety import standards
     >>> curve = standards.speed_over_distance(
-    ...     [0.2, 1.0, 5.0], contact_speed=0.25, max_speed=1.5, reaction_time=0.1, deceleration=3.0
+    ...     [0.2, 1.0, 5.0], contact_speed=0.25, max_speed=1.5, reaction_time=0.1, deceleration=3.0,
+    ...     intrusion=0.0, uncertainty=0.0,
     ... )
     >>> curve.mode.tolist(), curve.capped.tolist()
     (['contact', 'separation', 'separation'], [False, False, True])
@@ -325,6 +334,7 @@ def speed_over_distance(
     target = number("target_speed", target_speed)
     if target > contact:
         raise InvalidParameterError("target_speed", f"be at most contact_speed ({contact:g})", target_speed)
+    taken, intrusion, uncertainty = _taken_as_none(intrusion, uncertainty)
     rules = _rules(human_speed, reaction_time, intrusion, uncertainty, target)
     single: dict[str, object] = {name: number(name, each) for name, each in rules.items()}
     braked = None if deceleration is None else number("deceleration", deceleration)
@@ -342,9 +352,18 @@ def speed_over_distance(
         capped=speed > most,
         outside_table=beyond & (apart >= contact) & (speed <= most),
         status="not_permitted" if contact_speed is None else "permitted",
-        warnings=implausible(
-            {"distance": given, **single, "contact_speed": contact_speed, "max_speed": most, "deceleration": braked},
-            _QUANTITIES,
+        warnings=(
+            *taken,
+            *implausible(
+                {
+                    "distance": given,
+                    **single,
+                    "contact_speed": contact_speed,
+                    "max_speed": most,
+                    "deceleration": braked,
+                },
+                _QUANTITIES,
+            ),
         ),
     )
 
@@ -355,6 +374,27 @@ def _doubted(
     """Return the numbers of an answer that may be implausible, by name: each once where all rows share it."""
     columns = {name: given, **rows} | ({} if deceleration is None else {"deceleration": braking})
     return {key: float(each[0]) if len(each) and (each == each[0]).all() else each for key, each in columns.items()}
+
+
+# ---- what is not given --------------------------------------------------------------------------
+
+
+def _taken_as_none(intrusion: Any, uncertainty: Any) -> tuple[tuple[ResultWarning, ...], Any, Any]:
+    """Return a doubt about both numbers that are not given, and the numbers with 0 in their place."""
+    missing = [name for name, each in (("intrusion", intrusion), ("uncertainty", uncertainty)) if each is None]
+    if not missing:
+        return (), intrusion, uncertainty
+    words = (
+        f"no {' and no '.join(missing)} given, taken as 0 m: a distance with them is longer; give 0 where there is none"
+    )
+    doubt = ResultWarning("taken_as_zero", " and ".join(missing), words)
+    return (doubt,), *(0.0 if each is None else each for each in (intrusion, uncertainty))
+
+
+def _warn(taken: tuple[ResultWarning, ...]) -> None:
+    """Issue the doubts of a plain number, which carries none, at the caller of the function that returns it."""
+    for doubt in taken:
+        warnings.warn(doubt.message, HrsafetyWarning, stacklevel=3)
 
 
 # ---- crossing the boundary ----------------------------------------------------------------------

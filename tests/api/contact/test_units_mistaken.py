@@ -6,7 +6,7 @@ import numpy as np
 
 from hrsafety import arms, contact, standards
 
-APART = {"contact_speed": 0.2, "max_speed": 1.0, "reaction_time": 0.1}
+APART = {"contact_speed": 0.2, "max_speed": 1.0, "reaction_time": 0.1, "intrusion": 0.2, "uncertainty": 0.1}
 
 
 def test_strain_in_percent_is_told_of() -> None:
