@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import callback, checked_seed, count, number, positive, thread_count, word
 from hrsafety._display import displayed
+from hrsafety.contact.bodies import (
+    agreeing,
+    body_of,
+    contact_width_doubt,
+    larger_than_part,
+    spread_agrees,
+    touched_area,
+)
 from hrsafety.contact.covering import Covering, Region, covering_of
 from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers, not_checked
 from hrsafety.contact.rows import (
@@ -25,6 +34,8 @@ from hrsafety.errors import InvalidParameterError
 __all__ = ["Exceedance", "probability"]
 
 MOST_DRAWS = 10**8
+_OWN = {"stiffness": "spring_constant", "body_mass": "body_mass", "force_limit": "force", "pressure_limit": "pressure"}
+"""What a limit object knows of the numbers that may be uncertain."""
 _COUNTS = {"normal": 2, "lognormal": 2, "uniform": 2, "triangular": 3}
 
 
@@ -95,7 +106,8 @@ def probability(
     speed : float
         Closing speed in m/s.
     robot_mass, body_mass : float or mapping
-        As for `allowed_speed`, or uncertain.
+        As for `allowed_speed`, or uncertain. Beside a limit object the middle of a distribution of one of its numbers
+        may be off by at most its own spread.
     region, limits, covering, area, max_strain
         As for `allowed_speed`; their uncertain numbers are given by name.
     draws : int
@@ -117,8 +129,8 @@ def probability(
     Raises
     ------
     InvalidParameterError
-        If a number or a distribution is out of range, a number has no effect, no limit is checked, or the
-        covering has a damper or a rate.
+        If a number or a distribution is out of range or contradicts a limit object, a number has no effect, no limit
+        is checked, or the covering has a damper or a rate.
 
     Examples
     --------
@@ -134,12 +146,13 @@ def probability(
     if pad is not None and (pad.damping > 0.0 or pad.rate[:2] != (0.0, 0.0)):
         raise InvalidParameterError("covering", "have neither damping nor rate for chances", pad)
     given = {"robot_mass": robot_mass, **uncertain}
-    if body_mass is not None:
-        given["body_mass"] = body_mass
+    body = body_of(limits, region, None if isinstance(body_mass, Mapping) else body_mass, given=tuple(uncertain))
+    if body_mass is not None or body.mass not in (None, math.inf):
+        given["body_mass"] = body.mass if body_mass is None else body_mass
     shared, values = contact_row(
         robot_mass=1.0,
         body_mass=None,
-        region=spring_of(region, uncertain),
+        region=spring_of(body.region, uncertain),
         covering=pad,
         tolerance=TOLERANCE,
         area=area,
@@ -152,11 +165,13 @@ def probability(
         place = row_name("uncertain", name, names)
         if isinstance(value, Mapping):
             kind, parts = _distribution(name, value)
+            spread_agrees(name, kind, parts, getattr(limits, _OWN.get(name, ""), None), limits)
             inputs.append((place, kind, parts))
             # The middle one of three, else the first: for what is implausible, and where a covering has its limits.
             values[place] = parts[1] if kind == "triangular" else parts[0]
         else:
             values[place] = positive(name, value)
+            agreeing(name, value, getattr(limits, _OWN.get(name, ""), None), limits)
     missing = missing_limits(values, bare=pad is None)
     found = _hrsafety.contact_exceedance(
         shared,
@@ -173,4 +188,9 @@ def probability(
     if pad is not None:
         depth = _hrsafety.contact_speed(shared, in_order(values))["covering_compression"]
         doubts += flagged(covering_flags(pad, depth, values))
+    else:
+        depth = math.nan
+    larger, part = larger_than_part(pad, depth, values, limits)
+    if larger and part is not None:
+        doubts.append(contact_width_doubt(float(touched_area(pad, depth, values)), part))
     return Exceedance(**found, not_checked=missing, warnings=tuple(doubts))

@@ -11,10 +11,10 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety.contact.covering import Covering, shape_flags
-from hrsafety.contact.materials import GibsonAshby, Rusch, StressTable
+from hrsafety.contact.materials import GibsonAshby, Linear, Rusch, StressTable
 from hrsafety.plausibility import RANGES, ResultWarning, implausible
 
-__all__ = ["Doubts", "covering_flags", "flagged", "implausible_numbers", "not_checked"]
+__all__ = ["Doubts", "counted", "covering_flags", "flagged", "implausible_numbers", "not_checked"]
 
 Doubts = tuple[ResultWarning, ...]
 
@@ -43,6 +43,12 @@ _FLAGS = {
     "edge": ResultWarning(
         "edge", "covering.radius", "a radius is below a fifth of the thickness: the pressure of an edge is not covered"
     ),
+    "linear_beyond_half": ResultWarning(
+        "linear_beyond_half",
+        "covering.material",
+        "a linear covering is compressed by more than half of its thickness, where foams become much stiffer, and "
+        "nothing says how far it was tested: give bottom with that strain, max_strain, or a law that stiffens",
+    ),
     "beyond_thickness": ResultWarning(
         "beyond_thickness",
         "covering.thickness",
@@ -50,13 +56,21 @@ _FLAGS = {
     ),
 }
 
+_LINEAR_STRAIN = 0.5
+"""Strain beyond which hardly any foam is linear, a choice of this project."""
+_UNTOLD_STRAIN = 0.8
+"""Strain of bottoming that nobody has stated: the default, and beyond."""
+CAREFUL_ABOVE = frozenset({"robot_mass", "body_mass", "stiffness"})
+CAREFUL_BELOW = frozenset({"force_limit", "pressure_limit"})
+"""Numbers of which more, or less, than was meant certainly makes an allowed speed lower or a load larger."""
+
 _QUANTITIES = {
     "robot_mass": "effective_mass",
     "body_mass": "body_mass",
     "closing_speed": "closing_speed",
     "horizon": "impact_time",
     "stiffness": "region_stiffness",
-    "thickness": "thickness",
+    "thickness": "covering_thickness",
     "area": "contact_area",
     "radius": "contact_radius",
     "second_radius": "contact_radius",
@@ -76,8 +90,15 @@ def flagged(flags: Mapping[str, Any], pad: Covering | None = None, numbers: Mapp
         held = int(np.count_nonzero(rows))
         if held:
             doubt = _unfinished(pad, numbers, rows) if name == "unfinished" and pad and numbers else _FLAGS[name]
-            found.append(doubt if rows.ndim == 0 else replace(doubt, message=_counted(held, rows.size, doubt.message)))
+            found.append(counted(doubt, rows))
     return tuple(found)
+
+
+def counted(doubt: ResultWarning, held: npt.NDArray[np.bool_]) -> ResultWarning:
+    """Return a doubt with the number of rows for which it holds, where there are several."""
+    if held.ndim == 0:
+        return doubt
+    return replace(doubt, message=f"{int(np.count_nonzero(held))} of {held.size} rows: {doubt.message}")
 
 
 def _unfinished(pad: Covering, numbers: Mapping[str, Any], held: npt.NDArray[np.bool_]) -> ResultWarning:
@@ -105,10 +126,6 @@ def _unfinished(pad: Covering, numbers: Mapping[str, Any], held: npt.NDArray[np.
     return replace(doubt, message=f"{_UNKNOWN}: {'; '.join(causes)}") if causes else doubt
 
 
-def _counted(held: int, rows: int, message: str) -> str:
-    return f"{held} of {rows} rows: {message}"
-
-
 def covering_flags(pad: Covering | None, depth: Any, numbers: Mapping[str, Any]) -> dict[str, Any]:
     """Return where the model of a covering does not hold at a compression; numbers may be arrays."""
     if pad is None:
@@ -116,7 +133,11 @@ def covering_flags(pad: Covering | None, depth: Any, numbers: Mapping[str, Any])
     radii = [numbers["radius"], numbers["second_radius"]]
     flags = shape_flags(depth, radii=radii, thickness=numbers["thickness"], half_width=pad.half_width)
     with np.errstate(invalid="ignore"):
-        return {**flags, "beyond_thickness": np.asarray(depth) > np.asarray(numbers["thickness"])}
+        deep, whole = np.asarray(depth), np.asarray(numbers["thickness"])
+        if isinstance(pad.material, Linear):
+            untold = np.asarray(numbers["bottoming_strain"]) >= _UNTOLD_STRAIN
+            flags["linear_beyond_half"] = (deep > _LINEAR_STRAIN * whole) & untold
+        return {**flags, "beyond_thickness": deep > whole}
 
 
 def implausible_numbers(
@@ -135,7 +156,18 @@ def implausible_numbers(
             values["stress"], quantities["stress"] = float(np.max(law.stress)), "covering_stress"
             values["strain"], quantities["strain"] = float(np.max(law.strain)), "covering_strain"
     judged = {name: _judged(value, quantities.get(name, name), threads) for name, value in values.items()}
-    return implausible(judged, quantities)
+    return tuple(
+        replace(each, safe_side=_careful(each.subject, judged[each.subject], quantities))
+        for each in implausible(judged, quantities)
+    )
+
+
+def _careful(name: str, value: Any, quantities: Mapping[str, str]) -> bool:
+    """Return whether every implausible value of a number makes the result the more careful one."""
+    least, most = RANGES[quantities.get(name, name)][:2]
+    if name in CAREFUL_ABOVE:
+        return not np.any(np.asarray(value) < least)
+    return name in CAREFUL_BELOW and not np.any(np.asarray(value) > most)
 
 
 def _judged(value: Any, quantity: str, threads: int | None) -> Any:

@@ -9,6 +9,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import positive
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
+from hrsafety.contact.bodies import body_of, contact_width_doubt, larger_than_part, touched_area
 from hrsafety.contact.covering import Covering, Region, covering_of
 from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers, not_checked
 from hrsafety.contact.rows import TOLERANCE, contact_row, in_order, limits_of, missing_limits
@@ -73,7 +74,7 @@ def thickness(
     Raises
     ------
     InvalidParameterError
-        If a number is out of its range, or the covering has a damper or a rate.
+        If a number is out of its range or contradicts a limit object, or the covering has a damper or a rate.
 
     Examples
     --------
@@ -90,10 +91,11 @@ def thickness(
         covering = {**covering, "thickness": 0.01}
     pad = covering_of(covering)
     speed = positive("speed", speed)
+    body = body_of(limits, region, body_mass)
     shared, values = contact_row(
         robot_mass=robot_mass,
-        body_mass=body_mass,
-        region=region,
+        body_mass=body.mass,
+        region=body.region,
         covering=pad,
         tolerance=TOLERANCE,
         max_strain=max_strain,
@@ -105,7 +107,12 @@ def thickness(
     doubts: list[ResultWarning] = []
     if status == "bare_is_enough" and pad is not None:
         bare, alone = contact_row(
-            robot_mass=robot_mass, body_mass=body_mass, region=region, covering=None, tolerance=TOLERANCE, area=pad.area
+            robot_mass=robot_mass,
+            body_mass=body.mass,
+            region=body.region,
+            covering=None,
+            tolerance=TOLERANCE,
+            area=pad.area,
         )
         alone |= limits_of(limits)
         missing = missing_limits(alone, bare=True)
@@ -117,6 +124,9 @@ def thickness(
     depth = math.nan
     if value > 0.0:
         depth = _hrsafety.contact_speed(shared, in_order(doubted | {"closing_speed": math.nan}))["covering_compression"]
+    larger, part = larger_than_part(pad, depth, doubted, limits)
+    if larger and part is not None:
+        doubts.append(contact_width_doubt(float(touched_area(pad, depth, doubted)), part))
     return LeastThickness(
         thickness=known(value),
         status=status,

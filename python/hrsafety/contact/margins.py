@@ -16,9 +16,10 @@ from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.contact.base import Base, DifferentialBase, HolonomicBase
 from hrsafety.contact.covering import Covering, covering_of
-from hrsafety.contact.doubts import Doubts
+from hrsafety.contact.doubts import Doubts, counted
 from hrsafety.contact.speed import AllowedSpeed, AllowedSpeeds, allowed_speed, allowed_speeds
 from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import ResultWarning, unsafe_doubts
 from hrsafety.tables import Columns, Table, unit_suffix
 
 __all__ = [
@@ -37,6 +38,13 @@ LOWEST = MappingProxyType({"thigh_knee": KNEE_HEIGHT})
 _READ = ("region", "contact", "permitted", "force", "pressure", "spring_constant", "body_mass")
 """What is read of a limit of contact."""
 _OF_RUN = ("time", "position", "velocity", "heading", "obstacle_position")
+
+
+_UNKNOWN = ResultWarning(
+    "closing_speed_unknown",
+    "obstacle_position",
+    "the velocity of a person, and with it the closing speed, is not known",
+)
 
 
 @displayed
@@ -76,7 +84,8 @@ def contact_speed_limit(
 ) -> tuple[RegionSpeed, ...]:
     """Return the allowed closing speed of a point of a base along a normal, for each region and class.
 
-    The limits are those of adults; no limit set has values of children.
+    The limits are those of adults; no limit set has values of children. Those of clamped contacts hold for a base whose
+    drive pushes no further.
 
     Parameters
     ----------
@@ -135,21 +144,17 @@ def _region_speed(
 ) -> RegionSpeed:
     if not limit.permitted:
         return RegionSpeed(limit.region, limit.contact, "not_permitted", mass, 0.0, None)
-    found = allowed_speed(robot_mass=mass, covering=covering, area=area, **_bounds(limit))
+    found = allowed_speed(robot_mass=mass, covering=covering, area=area, limits=_known(limit))
     speed = math.nan if found.speed is None else found.speed
     return RegionSpeed(limit.region, limit.contact, found.status, mass, speed, found)
 
 
-def _bounds(limit: Any) -> dict[str, Any]:
-    """Return what a region may bear, and how it yields."""
+def _known(limit: Any) -> Any:
+    """Return a limit of which it is known how the region yields."""
     for name in ("spring_constant", "body_mass"):
         if getattr(limit, name) is None:
             raise InvalidParameterError(f"regions.{limit.region}.{name}", "be known", None)
-    return {
-        "body_mass": limit.body_mass,
-        "region": limit.spring_constant,
-        "limits": {"force": limit.force, "pressure": limit.pressure},
-    }
+    return limit
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -167,16 +172,17 @@ class ContactMargins(Table):
     margin : ndarray, shape (n, m)
         Allowed less closing speed in m/s; NaN where nothing limits it.
     verdict : ndarray of str, shape (n, m)
-        ``"within_limits"``, also where both move apart; ``"exceeds"``; ``"not_permitted"``; ``"not_checked"``
-        where a limit of some region was not checked, its speed or the velocity of the person is not known, or
-        the model of the covering does not hold (see `Column.status`), and no other limit is exceeded;
+        ``"within_limits"``, also where both move apart; ``"exceeds"``; ``"not_permitted"``, also for a touch at
+        closing speed 0; ``"not_checked"`` where a limit of some region was not checked, its speed or the velocity of
+        the person is not known, or a doubt of `warnings` may lie on the unsafe side, and no other limit is exceeded;
         ``"absent"``.
     touching : ndarray of bool, shape (n, m)
         Whether there is contact.
     region, contact : str
         The region and class with the lowest speed, to which the margins belong.
     warnings : tuple of ResultWarning
-        Of the allowed speeds, by region.
+        Of the allowed speeds, by region, and velocities that are not known. Those whose error may lie on the unsafe
+        side are why an instant is not checked.
     """
 
     time: Array
@@ -216,6 +222,8 @@ def contact_margins(
     cover_height: float | None = None,
 ) -> ContactMargins:
     """Return the margin of the closing speed at every instant of a run, as if the robot touched then.
+
+    Clamped regions hold for a base whose drive pushes no further.
 
     Parameters
     ----------
@@ -277,8 +285,11 @@ def contact_margins(
     verdict = np.where(margin >= 0.0, np.where(known, "within_limits", "not_checked"), "exceeds")
     if not all(each.permitted for each in regions):
         verdict = np.full(closing.shape, "not_permitted")
-    verdict = np.where(closing <= 0.0, "within_limits", verdict)
-    verdict = np.where(np.isnan(closing), "not_checked", verdict)
+    touching = distance <= near
+    # Who moves apart is touched no more; a touch that lasts counts, whatever its closing speed.
+    verdict = np.where((closing < 0.0) | ((closing == 0.0) & ~touching), "within_limits", verdict)
+    unknown = np.isnan(closing) & ~np.isnan(distance)
+    verdict = np.where(unknown & (verdict != "not_permitted"), "not_checked", verdict)
     verdict = np.where(np.isnan(distance), "absent", verdict)
     return ContactMargins(
         time=np.asarray(trajectory.time),
@@ -286,10 +297,13 @@ def contact_margins(
         robot_share=share,
         margin=np.where(np.isinf(margin), np.nan, margin),
         verdict=verdict,
-        touching=distance <= near,
+        touching=touching,
         region=lowest.region,
         contact=lowest.contact,
-        warnings=tuple(dict.fromkeys(doubt for each in limits for doubt in each.warnings)),
+        warnings=(
+            *dict.fromkeys(doubt for each in limits for doubt in each.warnings),
+            *((counted(_UNKNOWN, unknown),) if unknown.any() else ()),
+        ),
     )
 
 
@@ -338,10 +352,12 @@ def _limit_at(
         for place in map(tuple, np.argwhere(np.isfinite(turned)).tolist()):
             along = (math.cos(turned[place]), math.sin(turned[place]))
             masses[place] = base.effective_mass((reach * along[0], reach * along[1]), along)
-    found = allowed_speeds(robot_mass=masses, covering=covering, area=area, **_bounds(limit))
+    found = allowed_speeds(robot_mass=masses, covering=covering, area=area, limits=_known(limit))
     unlimited = found.status == "unlimited_up_to_20"
     known = np.isfinite(found.speed) | unlimited
-    known &= ~_doubted(found, covering) & (not found.not_checked)
+    # Some doubts hold for the instants of a flag; every other one holds for all of them.
+    whole = any(doubt.code not in _OF_ROWS for doubt in unsafe_doubts(found.warnings))
+    known &= ~_doubted(found, covering) & (not whole)
     speed = np.where(np.isnan(found.speed), np.inf, found.speed)
     return _Limits(limit, np.broadcast_to(speed, shape), np.broadcast_to(known, shape), tuple(_named(limit, found)))
 
@@ -352,6 +368,10 @@ def _doubted(found: AllowedSpeeds, covering: Covering | Mapping[str, object] | N
     depth = found.covering_compression
     deeper = np.zeros(depth.shape, dtype=bool) if pad is None else depth > pad.thickness
     return np.asarray(found.rising | found.outside_paraboloid | found.beyond_pad | found.edge | deeper)
+
+
+_OF_ROWS = ("rising_at_horizon", "outside_paraboloid", "beyond_pad", "edge", "beyond_thickness")
+"""Doubts whose instants `_doubted` knows."""
 
 
 def _named(limit: Any, found: AllowedSpeeds) -> Iterator[Any]:

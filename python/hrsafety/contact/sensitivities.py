@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 
 from hrsafety import _hrsafety
+from hrsafety.contact.bodies import body_of
 from hrsafety.contact.covering import Covering, Region, covering_of
 from hrsafety.contact.rows import contact_row, in_order, limits_of
 from hrsafety.errors import InvalidParameterError, Shown
@@ -20,7 +21,7 @@ _FIXED = ("bottoming_strain", "horizon", "backing_stiffness", "unloading_retaine
 def sensitivity(
     *,
     robot_mass: float,
-    region: Region | Mapping[str, object] | float,
+    region: Region | Mapping[str, object] | float | None = None,
     limits: object,
     body_mass: float | None = None,
     covering: Covering | Mapping[str, object] | None = None,
@@ -52,10 +53,11 @@ def sensitivity(
     >>> {name: round(value, 6) for name, value in found.items()}
     {'force_limit': 1.0, 'robot_mass': -0.5, 'stiffness': -0.5}
     """
+    body = body_of(limits, region, body_mass)
     shared, values = contact_row(
         robot_mass=robot_mass,
-        body_mass=body_mass,
-        region=region,
+        body_mass=body.mass,
+        region=body.region,
         covering=covering,
         tolerance=1e-10,
         area=area,

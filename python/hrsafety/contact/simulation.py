@@ -12,6 +12,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, number, positive
 from hrsafety._records import dataclass
+from hrsafety.contact.bodies import agreeing, body_of
 from hrsafety.contact.covering import Covering, Region, covering_of
 from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers
 from hrsafety.contact.many import many
@@ -168,6 +169,7 @@ def simulate(
     horizon: float = HORIZON,
     head: bool | None = None,
     tolerance: float = TOLERANCE,
+    limits: object = None,
 ) -> ContactImpact:
     """Return the loads of a collision, from the first touch to the first loss of contact.
 
@@ -178,9 +180,9 @@ def simulate(
     closing_speed : float
         v in m/s; none above 0 is ``"no_impact"``.
     region : Region, mapping, float or None
-        Spring of the body's region; a number is k in N/m, ``None`` a rigid region.
+        Spring of the body's region; a number is k in N/m. ``None``: that of `limits`, else a rigid region.
     body_mass : float or None
-        M_h in kg; ``None`` or inf: clamped.
+        M_h in kg; inf: clamped. ``None``: that of `limits`, else clamped.
     covering : Covering, mapping or None
         ``None``: bare.
     robot_damping, robot_stiffness, body_damping, body_stiffness : float
@@ -195,6 +197,9 @@ def simulate(
         Relative tolerance of the solution, from 1e-12 to 1e-3. Compressions, and speeds after the contact, may err by
         up to a hundred times as much where a covering turns just behind the start or the end of a plateau; forces
         mostly do not (of 2,000 random collisions one by 120 times).
+    limits : ContactLimit or None
+        A limit object that knows spring and mass of the region, for those that are left out; others than its own are
+        refused.
 
     Returns
     -------
@@ -215,10 +220,11 @@ def simulate(
     ('released', 96.82)
     """
     pad = covering_of(covering)
+    body = body_of(limits, region, body_mass)
     shared, values = contact_row(
         robot_mass=robot_mass,
-        body_mass=body_mass,
-        region=region,
+        body_mass=body.mass,
+        region=body.region,
         covering=pad,
         tolerance=tolerance,
         robot_damping=robot_damping,
@@ -229,7 +235,7 @@ def simulate(
         horizon=horizon,
         stop=stop,
     )
-    found = _hrsafety.contact_simulate(shared, in_order(values), gravity=_gravity(head, body_mass))
+    found = _hrsafety.contact_simulate(shared, in_order(values), gravity=_gravity(head, body.mass))
     if pad is not None and found["status"] == "beyond_data":
         rule = f"not compress the covering by more than was measured (beyond_data, at {float(found['time'][-1]):.6g} s)"
         raise InvalidParameterError("closing_speed", rule, closing_speed, "measure the covering to larger strains")
@@ -320,6 +326,7 @@ def batch(
     horizon: float = HORIZON,
     head: bool = False,
     tolerance: float = TOLERANCE,
+    limits: object = None,
     threads: int | None = None,
     progress: Callable[[int, int], object] | None = None,
     **arrays: npt.ArrayLike,
@@ -332,7 +339,7 @@ def batch(
     ----------
     robot_mass, closing_speed, body_mass : array_like
         As for `simulate`; a body mass of inf is clamped.
-    region, covering, stop, horizon, tolerance
+    region, covering, stop, horizon, tolerance, limits
         As for `simulate`, the same for all rows.
     head : bool
         Whether to give the head injury criterion, which takes longer than the collision.
@@ -371,12 +378,15 @@ def batch(
     """
     pad = covering_of(covering)
     varying = {"robot_mass": robot_mass, "closing_speed": closing_speed, **arrays}
-    if body_mass is not None:
-        varying["body_mass"] = body_mass
+    body = body_of(limits, region, body_mass, given=tuple(arrays))
+    if "stiffness" in arrays:
+        agreeing("stiffness", arrays["stiffness"], getattr(limits, "spring_constant", None), limits)
+    if body.mass is not None:
+        varying["body_mass"] = body.mass
     row = contact_row(
         robot_mass=1.0,
         body_mass=None,
-        region=spring_of(region, arrays),
+        region=spring_of(body.region, arrays),
         covering=pad,
         tolerance=tolerance,
         horizon=positive("horizon", horizon),

@@ -13,11 +13,13 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, not_negative, positive, thread_count
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
+from hrsafety.contact.bodies import Part, agreeing, body_of, contact_width_doubt, larger_than_part, touched_area
 from hrsafety.contact.covering import Covering, Region, covering_of
-from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers, not_checked
+from hrsafety.contact.doubts import Doubts, counted, covering_flags, flagged, implausible_numbers, not_checked
 from hrsafety.contact.many import many, words_at
 from hrsafety.contact.rows import HORIZON, TOLERANCE, contact_row, in_order, limits_of, missing_limits, spring_of
 from hrsafety.contact.simulation import arrays_of, known
+from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table
 
 __all__ = [
@@ -107,11 +109,13 @@ def allowed_speed(
     robot_mass : float
         In kg; inf where the robot cannot yield.
     region : Region, mapping, float or None
-        Spring of the region; a number is k in N/m, ``None`` a rigid region.
+        Spring of the region; a number is k in N/m. ``None``: that of a limit object, else a rigid region.
     limits : mapping or object
-        ``force`` in N and ``pressure`` in Pa, of the class of contact; ``None`` is not checked.
+        ``force`` in N and ``pressure`` in Pa, of the class of contact; ``None`` is not checked. A limit object such as
+        `standards.ContactLimit` also knows spring, mass and class of its region: they may be left out, and others than
+        its own are refused.
     body_mass : float or None
-        In kg; ``None``: clamped.
+        In kg; inf: clamped. ``None``: that of a limit object, else clamped.
     covering : Covering, mapping or None
         ``None``: bare.
     area : float or None
@@ -133,21 +137,29 @@ def allowed_speed(
     Raises
     ------
     InvalidParameterError
-        If a number is out of its range, or the contact is not permitted.
+        If a number is out of its range or contradicts a limit object, or the contact is not permitted.
+
+    Notes
+    -----
+    A clamped contact holds for a robot without drive, unless `robot_stiffness` and `stop` describe one.
 
     Examples
     --------
-    >>> from hrsafety import contact
+    >>> from hrsafety import contact, standards
     >>> limits = {"force": 280.0, "pressure": 380e4}
     >>> bare = contact.allowed_speed(robot_mass=16.35, body_mass=0.6, region=75e3, limits=limits, area=1e-4)
     >>> round(bare.speed, 6), bare.governs
     (1.343933, 'force')
+    >>> hand = standards.limits().contact("hand_finger", "transient")
+    >>> contact.allowed_speed(robot_mass=16.35, limits=hand, area=1e-4).speed == bare.speed
+    True
     """
     pad = covering_of(covering)
+    body = body_of(limits, region, body_mass)
     shared, values = contact_row(
         robot_mass=robot_mass,
-        body_mass=body_mass,
-        region=region,
+        body_mass=body.mass,
+        region=body.region,
         covering=pad,
         tolerance=tolerance,
         area=area,
@@ -166,6 +178,10 @@ def allowed_speed(
     missing = missing_limits(values, bare=pad is None)
     flags = {"unfinished": found["status"] == "unfinished", "rising": found["rising"]}
     flags |= covering_flags(pad, found["covering_compression"], values)
+    larger, part = larger_than_part(pad, found["covering_compression"], values, limits)
+    wide: Doubts = ()
+    if larger and part is not None:
+        wide = (_too_wide(pad, shared, values, part, found["covering_compression"]),)
     return AllowedSpeed(
         speed=speed,
         governs=found["governs"],
@@ -178,11 +194,23 @@ def allowed_speed(
         warnings=(
             *not_checked(missing),
             *flagged(flags, pad, values),
+            *wide,
             *implausible_numbers(pad, str(shared["region"]), values),
         ),
         robot_speed=None if speed is None else max(speed - walking, 0.0),
         human_speed=walking,
     )
+
+
+def _too_wide(
+    pad: Covering | None, shared: dict[str, object], values: dict[str, float], part: Part, depth: float
+) -> ResultWarning:
+    """Return the doubt about a contact that is larger than the part of the body, with the speed at that area."""
+    more = ""
+    if pad is None or pad.shape == "flat":
+        most = known(_hrsafety.contact_speed(shared, in_order(values | {"area": part.area}))["speed"])
+        more = "" if most is None else f" (with that area {most:.3g} m/s is allowed)"
+    return contact_width_doubt(float(touched_area(pad, depth, values)), part, more)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -257,7 +285,8 @@ def allowed_speeds(
     threads, progress
         As for `batch`.
     **arrays : array_like
-        As for `batch`, and ``force_limit`` (N) and ``pressure_limit`` (Pa).
+        As for `batch`, and ``force_limit`` (N) and ``pressure_limit`` (Pa). Beside a limit object none that contradicts
+        its own number.
 
     Returns
     -------
@@ -267,7 +296,7 @@ def allowed_speeds(
     Raises
     ------
     InvalidParameterError
-        If a name is not known or an option out of range.
+        If a name is not known, an option out of range, or a number not that of a limit object.
     ShapeError
         If the arrays do not broadcast.
 
@@ -285,16 +314,25 @@ def allowed_speeds(
     ([[0.588, 0.874], [0.733, 1.029]], ['strain', 'force'])
     """
     pad = covering_of(covering)
-    spring = spring_of(region, arrays)
+    for name, own in (("stiffness", "spring_constant"), ("force_limit", "force"), ("pressure_limit", "pressure")):
+        if name in arrays:
+            agreeing(name, arrays[name], getattr(limits, own, None), limits)
+    body = body_of(limits, region, body_mass, given=tuple(arrays))
+    spring = spring_of(body.region, arrays)
     shared, values = contact_row(robot_mass=1.0, body_mass=None, region=spring, covering=pad, tolerance=tolerance)
     values |= limits_of(limits)
-    given = {"robot_mass": robot_mass, "body_mass": body_mass, "max_strain": max_strain, "area": area}
+    given = {"robot_mass": robot_mass, "body_mass": body.mass, "max_strain": max_strain, "area": area}
     varying = {name: value for name, value in given.items() if value is not None} | arrays
     found = many("speed", (shared, values), varying, pad, threads=threads, progress=progress)
     there = {name: 0.0 if name in varying else values[name] for name in ("force_limit", "pressure_limit", "area")}
     missing = missing_limits(there, bare=pad is None)
     numbers: dict[str, Any] = dict(found.numbers)
     flags: dict[str, Any] = {name: found.flag(name) for name in _FLAGS}
+    larger, part = larger_than_part(pad, numbers["covering_compression"], found.given, limits)
+    wide: Doubts = ()
+    if part is not None and np.any(larger):
+        widest = float(np.nanmax(touched_area(pad, numbers["covering_compression"], found.given)))
+        wide = (counted(contact_width_doubt(widest, part), np.broadcast_to(larger, found.status.shape)),)
     codes = numbers.pop("governs_code")
     governs = words_at(_GOVERNS, codes, threads=thread_count(threads))[()]
     return AllowedSpeeds(
@@ -303,7 +341,7 @@ def allowed_speeds(
         status=found.status,
         **flags,
         not_checked=missing,
-        warnings=(*not_checked(missing), *found.warnings),
+        warnings=(*not_checked(missing), *wide, *found.warnings),
     )
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import warnings
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +14,8 @@ from hrsafety._arguments import Array, number, numbers
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
-from hrsafety.standards.verdicts import strictest
+from hrsafety.plausibility import RANGES, ImplausibleWarning, ResultWarning, implausible
+from hrsafety.standards.verdicts import doubted, strictest
 
 __all__ = ["CERTAINTIES", "CONTACTS", "ContactLimit", "Quantity", "Verdict"]
 
@@ -44,8 +47,16 @@ class Quantity(NamedTuple):
     sources: tuple[str, ...]
 
 
+class _Words(NamedTuple):
+    """Words of a verdict."""
+
+    overall: str
+    force: str
+    pressure: str
+
+
 @displayed
-class Verdict(NamedTuple):
+class Verdict(_Words):
     """What a force and a pressure mean for a limit.
 
     Attributes
@@ -54,11 +65,11 @@ class Verdict(NamedTuple):
         ``not_permitted``, ``exceeds``, ``not_checked`` or ``within_limits``: the first of them that holds.
     force, pressure : str
         The same for each of both.
+    warnings : tuple of ResultWarning
+        Doubts for which a load is not checked: none is given, or one that is hardly meant in its unit.
     """
 
-    overall: str
-    force: str
-    pressure: str
+    warnings: tuple[ResultWarning, ...] = ()
 
 
 @displayed
@@ -182,7 +193,13 @@ class ContactLimit:
         -------
         ndarray of str
             ``within_limits``, ``exceeds``, ``not_permitted`` or ``not_checked``.
+
+        Warns
+        -----
+        ImplausibleWarning
+            If the largest force is hardly meant in N; none is within limits then.
         """
+        self._warn("force", force)
         return self._verdicts("force", force, self.force)
 
     def pressure_verdict(self, pressure: object) -> Words:
@@ -197,7 +214,13 @@ class ContactLimit:
         -------
         ndarray of str
             ``within_limits``, ``exceeds``, ``not_permitted`` or ``not_checked``.
+
+        Warns
+        -----
+        ImplausibleWarning
+            If the largest pressure is hardly meant in Pa; none is within limits then.
         """
+        self._warn("pressure", pressure)
         return self._verdicts("pressure", pressure, self.pressure)
 
     def force_margin(self, force: object) -> Array | None:
@@ -236,13 +259,28 @@ class ContactLimit:
         >>> from hrsafety import standards
         >>> standards.limits().contact("chest", "transient").verdict(force=100.0)
         Verdict(overall='not_checked', force='within_limits', pressure='not_checked')
+        warning: no pressure is given: its limit is not checked
         """
         missing = "not_checked" if self.permitted else "not_permitted"
-        words = (
-            missing if force is None else str(self.force_verdict(number("force", force))),
-            missing if pressure is None else str(self.pressure_verdict(number("pressure", pressure))),
-        )
-        return Verdict(strictest(words), *words)
+        words, doubts = [], []
+        for name, load, limit in (("force", force, self.force), ("pressure", pressure, self.pressure)):
+            if load is None:
+                words.append(missing)
+                doubts += [ResultWarning("not_checked", name, f"no {name} is given: its limit is not checked")]
+                continue
+            given = number(name, load)
+            words.append(str(self._verdicts(name, given, limit)))
+            doubts += _doubts(name, given)
+            if limit is None and self.permitted:
+                doubts.append(ResultWarning("not_checked", name, f"the set has no limit of {name}: it is not checked"))
+        found = Verdict(strictest(words), *words)
+        found.warnings = tuple(doubts) if self.permitted else ()
+        return found
+
+    def _warn(self, name: str, given: object) -> None:
+        """Issue the doubts about loads that end in words without any."""
+        for doubt in _doubts(name, _loads(name, given)) if self.permitted else ():
+            warnings.warn(doubt.message, ImplausibleWarning, stacklevel=3)
 
     def _verdicts(self, name: str, given: object, limit: float | None) -> Words:
         loads = _loads(name, given)
@@ -250,7 +288,15 @@ class ContactLimit:
             return np.full(loads.shape, "not_permitted")
         if limit is None:
             return np.full(loads.shape, "not_checked")
-        return np.where(loads <= limit, "within_limits", "exceeds")
+        return np.where(loads <= limit, doubted("within_limits", _doubts(name, loads)), "exceeds")
+
+
+def _doubts(name: str, given: object) -> tuple[ResultWarning, ...]:
+    """Return the doubts about loads: of a history the largest one counts, for it starts and ends near 0."""
+    loads = np.asarray(given)
+    largest = float(np.max(loads[np.isfinite(loads)], initial=0.0))
+    found = implausible({name: largest} if largest > 0.0 else {}, {name: f"load_{name}"})
+    return tuple(replace(each, safe_side=largest > RANGES[f"load_{name}"].most) for each in found)
 
 
 def _loads(name: str, given: object) -> Array:
