@@ -28,8 +28,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     -------
     int
         0 when done, 2 after an error (one line on stderr says which), 3 when a run ended as ``--fail-on``
-        says or ``optimize`` found no gain set that keeps the constraints, 4 after warnings with ``--strict``,
-        130 after Ctrl-C, 1 when the output was closed early.
+        says, ``optimize`` found no gain set that keeps the constraints or a contact exceeds its limits or is not
+        permitted, 4 after warnings with ``--strict``, 5 when a contact is not checked or runs with ``--fail-on`` are
+        in doubt, 130 after Ctrl-C, 1 when the output was closed early.
 
     Examples
     --------

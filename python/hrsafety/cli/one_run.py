@@ -15,7 +15,6 @@ from hrsafety.cli import output, simulate_page, terminal, verdict
 from hrsafety.cli.output import decimal
 from hrsafety.cli.simulate_page import PageTable
 from hrsafety.navigation.outcomes import OUTCOMES
-from hrsafety.plausibility import unsafe_doubts
 
 __all__ = ["simulate_file"]
 
@@ -56,7 +55,7 @@ def simulate_file(options: argparse.Namespace) -> None:
         page = simulate_page.html(
             source=options.scenario,
             said=_how_it_ended(score.trajectory),
-            good=score.trajectory.outcome == "arrived" and not unsafe_doubts(found),
+            good=score.trajectory.outcome == "arrived",
             facts=[*setting, *summary],
             table=table,
             pictures=pictures,

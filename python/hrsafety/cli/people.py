@@ -21,7 +21,6 @@ from hrsafety.cli.simulate_page import PageTable
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.tables.runs import RunTable
-from hrsafety.plausibility import unsafe_doubts
 from hrsafety.scenarios.laws import name_of
 from hrsafety.scenarios.recorded_people import ACTIVE_RADIUS, CRITICAL_RADIUS, PERSON_RADIUS
 
@@ -92,7 +91,7 @@ def simulate_people(options: argparse.Namespace) -> None:
             page = simulate_page.html(
                 source=options.people,
                 said=_how_they_ended(summary, verdict.counted(summary)),
-                good=bool((summary.outcome == "arrived").all()) and not unsafe_doubts(found),
+                good=bool((summary.outcome == "arrived").all()),
                 facts=setting,
                 table=table,
                 pictures=pictures,

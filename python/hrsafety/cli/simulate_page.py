@@ -7,7 +7,7 @@ from pathlib import Path
 
 from hrsafety._records import dataclass
 from hrsafety.pages import Picture, written
-from hrsafety.plausibility import ResultWarning
+from hrsafety.plausibility import ResultWarning, unsafe_doubts
 
 __all__ = ["PageTable", "html"]
 
@@ -62,7 +62,7 @@ def html(
     said : str
         In one sentence how the runs ended.
     good : bool
-        Whether all arrived without a contact.
+        Whether all arrived without a contact; doubts of `found` on the unsafe side make it unsure.
     facts : sequence of (str, str)
         What was simulated, and results of all runs.
     table : PageTable
@@ -86,7 +86,7 @@ def html(
         title=f"Simulation of {Path(source).name}",
         warned=list(dict.fromkeys(map(str, found))),
         said=said,
-        good=good,
+        good="unsure" if good and unsafe_doubts(found) else good,
         facts=facts,
         heading=table.heading,
         titles=table.titles,

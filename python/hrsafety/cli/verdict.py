@@ -1,23 +1,24 @@
-"""How runs ended: plainly on the last line, and as exit code 3 where ``--fail-on`` names it."""
+"""How runs ended: plainly on the last line, and as exit code where ``--fail-on`` asks for one."""
 
 from __future__ import annotations
 
 import argparse
 import sys
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety._arguments import meant
 from hrsafety.cli import output, terminal
-from hrsafety.cli.exit_codes import FAILED_RUN, WARNED
+from hrsafety.cli.exit_codes import FAILED_RUN, NOT_CHECKED
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.plausibility import ResultWarning, unsafe_doubts
 
-__all__ = ["FAILURES", "counted", "end", "failures_of", "sentence"]
+__all__ = ["FAILURES", "LOOKS", "counted", "end", "failures_of", "sentence"]
 
 Counts = Mapping[str, int]
 
@@ -25,8 +26,8 @@ Counts = Mapping[str, int]
 _SHORT_OF_GOAL = tuple(word for word in OUTCOMES if word not in {"arrived", "collided"})
 FAILURES = ("contact", "moving_contact", *_SHORT_OF_GOAL, "not_arrived", "any")
 """Words of ``--fail-on``; the help says what each means."""
-# First word of the last line and its look on a terminal.
-_LOOKS = {"FAILED": "bold red", "passed": "green", "NOTE": "yellow"}
+LOOKS = MappingProxyType({"FAILED": "bold red", "NOT CHECKED": "bold yellow", "NOTE": "yellow", "passed": "green"})
+"""First words of the last line and their looks on a terminal."""
 _OTHER_WORDS = {"collided": "contact", "collision": "contact", "timeout": "timed_out"}
 
 
@@ -74,7 +75,7 @@ def counted(runs: RunTable | nav.Trajectory) -> Counts:
     return {word: int(np.sum(masks[word])) for word in FAILURES}
 
 
-def sentence(said: str, counts: Counts, fail_on: Sequence[str], runs: int, doubts: int = 0) -> str:
+def sentence(said: str, counts: Counts, fail_on: Sequence[str], runs: int, doubts: Sequence[ResultWarning] = ()) -> str:
     """Return the last line of a command: how the runs ended, and what the exit code makes of it.
 
     Parameters
@@ -87,21 +88,19 @@ def sentence(said: str, counts: Counts, fail_on: Sequence[str], runs: int, doubt
         Of `failures_of`.
     runs : int
         How many there are.
-    doubts : int
-        Number of warnings whose error may lie on the unsafe side: with any of them nothing has passed.
+    doubts : sequence of ResultWarning
+        Those whose error may lie on the unsafe side: with any of them nothing is passed.
     """
     named = [word for word in fail_on if counts[word]]
     if named:
         shares = ", ".join(word if runs == 1 else f"{word} in {counts[word]} of {runs} runs" for word in named)
         return f"FAILED  {said}; --fail-on {shares}: exit code {FAILED_RUN}"
-    if not (counts["any"] or doubts):
-        return f"passed  {said}"
     if doubts and (fail_on or not counts["any"]):
-        told = "a warning says" if doubts == 1 else f"{doubts} warnings say"
-        code = (
-            f"exit code {WARNED}" if fail_on else f"exit code 0 all the same, --strict or --fail-on makes it {WARNED}"
-        )
-        return f"NOTE    not checked: {said}, and {told} why that may be wrong; {code}"
+        codes = ", ".join(dict.fromkeys(doubt.code for doubt in doubts))
+        code = f"exit code {NOT_CHECKED}" if fail_on else f"exit code 0 all the same, --fail-on makes it {NOT_CHECKED}"
+        return f"NOT CHECKED  {said}, but with doubts that may lie on the unsafe side ({codes}); {code}"
+    if not counts["any"]:
+        return f"passed  {said}"
     happened = ",".join(word for word in ("contact", *_SHORT_OF_GOAL) if counts[word])
     note = "--fail-on does not name it" if fail_on else f"--fail-on {happened} makes it {FAILED_RUN}"
     return f"NOTE    {said}; exit code 0 all the same, {note}"
@@ -126,17 +125,18 @@ def end(said: str, counts: Counts, found: Sequence[ResultWarning], options: argp
     Raises
     ------
     SystemExit
-        With code 3 if a failure that ``--fail-on`` names happened, else with code 4 if there are
-        warnings and ``--strict`` is given, or warnings on the unsafe side and ``--fail-on`` is.
+        With code 3 if a failure that ``--fail-on`` names happened, else with code 5 if ``--fail-on`` is given and a
+        doubt may lie on the unsafe side, else with code 4 if there are warnings and ``--strict`` is given.
     """
     fail_on = failures_of(options.fail_on)
-    doubts = len(unsafe_doubts(dict.fromkeys(found)))
     output.report_warnings(found, strict=False)
     print()
+    doubts = unsafe_doubts(found)
     last = sentence(said, counts, fail_on, runs, doubts)
-    print(terminal.styled(last, _LOOKS[last.split()[0]], sys.stdout))
+    look = next(look for word, look in LOOKS.items() if last.startswith(word))
+    print(terminal.styled(last, look, sys.stdout))
     if any(counts[word] for word in fail_on):
         raise SystemExit(FAILED_RUN)
+    if doubts and fail_on:
+        raise SystemExit(NOT_CHECKED)
     output.leave_if_strict(found, options.strict)
-    if fail_on and doubts:
-        raise SystemExit(WARNED)

@@ -101,7 +101,7 @@ def test_runs_across_people_fail_alike(tmp_path: Path, capsys: pytest.CaptureFix
     touched = int(without.split("contact, ")[1].split(" had one")[0])
     assert main([*options, "--fail-on", "contact"]) == (3 if touched else 0)
     # They jump back to where they came from: an end without a contact is not checked then.
-    assert main([*options, "--fail-on", "any"]) == (4 if without.startswith("NOTE    not checked") else 3)
+    assert main([*options, "--fail-on", "any"]) == (5 if without.startswith("NOT CHECKED") else 3)
 
 
 @pytest.mark.parametrize(

@@ -7,12 +7,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from hrsafety import contact
-from hrsafety.cli.cell.file import Cell, Planned
+from hrsafety.cli.cell.file import Cell, Planned, pad_of
 from hrsafety.cli.cell.judgement import reasons_of
 from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import ResultWarning
 from hrsafety.scenarios import keys as kind
 
-__all__ = ["chance_of", "spread"]
+__all__ = ["chance_doubts", "chance_of", "spread"]
 
 OF_REGIONS = ("body_mass", "stiffness", "force_limit", "pressure_limit")
 """Numbers that differ from region to region: one distribution for all of them would be wrong for most."""
@@ -77,21 +78,17 @@ def chance_of(cell: Cell, planned: Planned, allowed: contact.AllowedSpeed | None
     dict
         Fields of the report.
     """
-    pad = None if planned.covering is None else cell.coverings[planned.covering]
+    pad = pad_of(cell, planned, planned.covering)
     reason = _reason(cell, planned, allowed, pad)
     if reason is not None:
         return {"status": "not_computed", "reason": reason}
-    limit = planned.limit
     nominal = _nominal(cell, planned, pad)
     uncertain = {name: spread(name, given, nominal.get(name)) for name, given in _applying(cell, planned).items()}
     given: dict[str, Any] = {"robot_mass": cell.robot.mass, **uncertain}
-    if limit.contact == "transient":
-        given.setdefault("body_mass", limit.body_mass)
     try:
         found = contact.probability(
             speed=planned.speed + cell.human_speed,
-            region=limit.spring_constant,
-            limits={"force": limit.force, "pressure": limit.pressure},
+            limits=planned.limit,
             covering=pad,
             area=planned.area if pad is None else None,
             max_strain=None if planned.covering is None else cell.strains[planned.covering],
@@ -108,8 +105,39 @@ def chance_of(cell: Cell, planned: Planned, allowed: contact.AllowedSpeed | None
         "quantiles": list(found.quantiles),
         "draws": found.draws,
         "uncertain": sorted(uncertain),
+        "allowed": cell.allowed_chance,
         "reasons": reasons_of(found.warnings),
     }
+
+
+def chance_doubts(cell: Cell, found: Mapping[str, Any]) -> tuple[ResultWarning, ...]:
+    """Return the doubt about a contact that is too fast with more than the allowed chance, or whose chance is unknown.
+
+    Parameters
+    ----------
+    cell : Cell
+        What was asked.
+    found : mapping
+        Of `chance_of`.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        Empty where the upper end of the interval is allowed, and where no input is uncertain.
+    """
+    if found["status"] != "computed":
+        if not cell.uncertain:
+            return ()
+        message = f"inputs are uncertain, and the chance of being too fast is not known: {found['reason']}"
+        return (ResultWarning("probability", "uncertain", message),)
+    upper = found["interval"][1]
+    if upper <= cell.allowed_chance:
+        return ()
+    message = (
+        f"the chance of being too fast is {100.0 * found['probability']:.3g} % (at most {100.0 * upper:.3g} % with "
+        f"95 % confidence), more than the allowed {100.0 * cell.allowed_chance:g} %"
+    )
+    return (ResultWarning("probability", "uncertain", message),)
 
 
 def _reason(
@@ -146,7 +174,7 @@ def _nominal(cell: Cell, planned: Planned, pad: contact.Covering | None) -> dict
 
 def _applying(cell: Cell, planned: Planned) -> dict[str, Any]:
     """Return what is uncertain of a contact: a clamped body has no mass, a limit that is not there no spread."""
-    nominal = _nominal(cell, planned, None if planned.covering is None else cell.coverings[planned.covering])
+    nominal = _nominal(cell, planned, pad_of(cell, planned, planned.covering))
     gone = {name for name in OF_REGIONS if nominal[name] is None or not math.isfinite(float(nominal[name] or 0.0))}
     numbers_of_coverings = {name for pad in cell.coverings.values() for name in _own(pad)}
     gone |= {name for name in numbers_of_coverings if nominal.get(name) is None}

@@ -5,12 +5,14 @@ from __future__ import annotations
 import argparse
 import datetime
 import os
+import sys
 from collections.abc import Iterator, Mapping
 from importlib import resources
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
-from hrsafety.cli import output, progress, terminal
+from hrsafety.cli import exit_codes, output, progress, terminal, verdict
 from hrsafety.cli.cell import page as cell_page
 from hrsafety.cli.cell import pictures as cell_pictures
 from hrsafety.cli.cell import report as cell_report
@@ -20,7 +22,18 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.pages import require_jinja
 from hrsafety.standards.verdicts import VERDICT_WORDS
 
-__all__ = ["report_cell"]
+__all__ = ["ENDS", "report_cell"]
+
+ENDS = MappingProxyType(
+    {
+        "not_permitted": exit_codes.FAILED_RUN,
+        "exceeds": exit_codes.FAILED_RUN,
+        "not_checked": exit_codes.NOT_CHECKED,
+        "within_limits": exit_codes.DONE,
+    }
+)
+"""Exit codes of the verdicts."""
+LAST_WORDS = {exit_codes.FAILED_RUN: "FAILED", exit_codes.NOT_CHECKED: "NOT CHECKED", exit_codes.DONE: "passed"}
 
 
 def report_cell(options: argparse.Namespace) -> None:
@@ -54,7 +67,29 @@ def report_cell(options: argparse.Namespace) -> None:
     place = output.folder(options.out)
     for name, text in (("report.json", cell_report.json_text(report)), ("report.html", page)):
         print(f"wrote {output.write_text(place / name, text)}")
-    output.report_warnings(study.warnings, options.strict)
+    output.report_warnings(study.warnings, strict=False)
+    _end(report)
+    output.leave_if_strict(study.warnings, options.strict)
+
+
+def _end(report: Mapping[str, Any]) -> None:
+    """Print the verdict once more as the last line, and leave with its code unless it is within limits.
+
+    Raises
+    ------
+    SystemExit
+        With code 3 if a contact exceeds its limits or is not permitted, with code 5 if one is not checked.
+    """
+    word, code = report["verdict"], ENDS[report["verdict"]]
+    rows = [each for each in report["verdicts"] if each["verdict"] == word]
+    said = f"{VERDICT_WORDS[word]}: {len(rows)} of {len(report['verdicts'])} contacts"
+    if code == exit_codes.NOT_CHECKED:
+        said += f" ({', '.join(report['doubts'])})"
+    last = f"{LAST_WORDS[code]}  {said}" + ("" if code == exit_codes.DONE else f"; exit code {code}")
+    print()
+    print(terminal.styled(last, verdict.LOOKS[LAST_WORDS[code].strip()], sys.stdout), flush=True)
+    if code != exit_codes.DONE:
+        raise SystemExit(code)
 
 
 def _start(path: str) -> None:
@@ -110,8 +145,13 @@ def _table(report: Mapping[str, Any]) -> str:
     for each in report["verdicts"]:
         numbers = [each[name] for name in ("planned_speed", "allowed_speed", "margin")]
         shown = ["-" if value is None else f"{value:.3f}" for value in numbers]
-        place = (each["region"], each["contact"], each["covering"] or "bare", VERDICT_WORDS[each["verdict"]])
-        rows.append((*place, *shown, each["governs"] or "-"))
-    names = ("region", "contact", "covering", "verdict", "planned", "allowed", "margin", "governs")
-    units = ("", "", "", "", "m/s", "m/s", "m/s", "")
-    return terminal.table((names, units), rows, left=(0, 1, 2, 3, 7))
+        place = (each["region"], each["contact"], each["covering"] or "bare")
+        area = "-" if each["contact_area"] is None else f"{1e4 * each['contact_area']:.3g}"
+        words = (each["governs"] or "-", ", ".join(each["doubts"]) or "-")
+        rows.append((*place, area, VERDICT_WORDS[each["verdict"]], *shown, *words))
+    names = ("region", "contact", "covering", "area", "verdict", "planned", "allowed", "margin", "governs", "doubts")
+    units = ("", "", "", "cm2", "", "m/s", "m/s", "m/s", "", "")
+    drawn = terminal.table((names, units), rows, left=(0, 1, 2, 4, 8, 9))
+    clamped = [each["drive"]["holds_for"] for each in report["verdicts"] if each["drive"] is not None]
+    held = [f"clamped contacts hold for {words}" for words in dict.fromkeys(clamped)]
+    return "\n".join([drawn, *held])

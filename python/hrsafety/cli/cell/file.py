@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -16,12 +16,21 @@ from hrsafety import contact, standards
 from hrsafety._records import dataclass
 from hrsafety._words import meant
 from hrsafety.cli.cell.robot import RobotFacts, robot_of
+from hrsafety.cli.cell.stops import separation_of
 from hrsafety.errors import InvalidParameterError
 from hrsafety.scenarios import files
 from hrsafety.scenarios import keys as kind
 from hrsafety.scenarios.keys import Keys, checked, located, one_of
 
-__all__ = ["BASE_REGIONS", "Cell", "Planned", "canonical", "load", "speed_over_distance"]
+__all__ = [
+    "ALLOWED_CHANCE",
+    "BASE_REGIONS",
+    "Cell",
+    "Planned",
+    "canonical",
+    "load",
+    "pad_of",
+]
 
 MOST_CONTACTS = 64
 MOST_COVERINGS = 16
@@ -45,6 +54,8 @@ _TOP: Keys = MappingProxyType(
         "uncertain": kind.table,
         "draws": kind.integer,
         "seed": kind.integer,
+        "allowed_chance": kind.number,
+        "confirmed": kind.table,
     }
 )
 _CONTACT: Keys = MappingProxyType(
@@ -71,27 +82,10 @@ _COVERING: Keys = MappingProxyType(
 )
 
 
-def _stops(path: str, value: Any) -> Any:
-    """Check times or distances of stops: numbers in arrays, one for each load and each extension."""
-    if isinstance(value, list):
-        return [_stops(f"{path}[{index}]", each) for index, each in enumerate(value)]
-    return kind.number(path, value)
-
-
-_STOPPING: Keys = MappingProxyType(
-    {**dict.fromkeys(("speed", "load", "extension"), kind.numbers), **dict.fromkeys(("time", "distance"), _stops)}
-)
-_SEPARATION: Keys = MappingProxyType(
-    {
-        **dict.fromkeys(
-            ("max_speed", "reaction_time", "deceleration", "human_speed", "intrusion", "uncertainty", "farthest"),
-            kind.number,
-        ),
-        "stopping": kind.table,
-        **dict.fromkeys(("load", "extension"), kind.number),
-    }
-)
-_SEPARATION_DEFAULTS = {"human_speed": 1.6, "intrusion": 0.0, "uncertainty": 0.0, "farthest": 3.0}
+ALLOWED_CHANCE = 0.01
+"""Chance of being too fast that is still within limits, unless the file gives another one."""
+NEVER_CONFIRMED = ("beyond_data", "invalid_numbers", "not_checked", "region_unknown", "unfinished")
+"""Doubts that nobody can confirm away: nothing is known there."""
 NO_COVERING = "none"
 """Word for a bare contact where the file has a covering for all others."""
 
@@ -109,12 +103,15 @@ class Planned(NamedTuple):
         Name of the covering; ``None``: bare.
     area : float or None
         Area of the bare contact in m^2.
+    own_area : bool
+        Whether the contact itself gives that area: then it also takes the place of that of a flat covering.
     """
 
     limit: standards.ContactLimit
     speed: float
     covering: str | None
     area: float | None
+    own_area: bool = False
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -145,6 +142,10 @@ class Cell:
         Distributions by name.
     draws, seed : int
         Of the chances.
+    allowed_chance : float
+        Chance of being too fast that is still within limits.
+    confirmed : dict of str to str
+        Doubts by code that somebody has confirmed not to hold here, with reason and name.
     inputs : dict
         Everything that was given or is a default, as JSON holds it.
     files : dict of str to str
@@ -163,6 +164,8 @@ class Cell:
     uncertain: Mapping[str, Any]
     draws: int
     seed: int
+    allowed_chance: float
+    confirmed: Mapping[str, str]
     inputs: Mapping[str, Any]
     files: Mapping[str, str]
 
@@ -205,12 +208,16 @@ def load(path: str) -> Cell:
         raise InvalidParameterError("draws", f"be from 1 to {MOST_DRAWS}", draws)
     if not 0 <= seed < 2**63:
         raise InvalidParameterError("seed", "be from 0 to 2^63 - 1", seed)
-    separation = _separation(given.get("separation"))
+    allowed_chance = given.get("allowed_chance", ALLOWED_CHANCE)
+    if not 0.0 < allowed_chance < 1.0:
+        raise InvalidParameterError("allowed_chance", "be above 0 and below 1", allowed_chance)
+    separation = separation_of(given.get("separation"))
     defaults: dict[str, Any] = {
         "limits": limits.id,
         "human_speed": human_speed,
         "draws": draws,
         "seed": seed,
+        "allowed_chance": allowed_chance,
         "contacts": [_input(each) for each in contacts],
         "coverings": [_numbers(name, pad) | {"max_strain": strains[name]} for name, pad in coverings.items()],
         "robot": {**given["robot"], **robot.inputs},
@@ -230,9 +237,32 @@ def load(path: str) -> Cell:
         uncertain=uncertain,
         draws=draws,
         seed=seed,
+        allowed_chance=allowed_chance,
+        confirmed=_confirmed(given.get("confirmed", {})),
         inputs=canonical({**given, **defaults}),
         files=read,
     )
+
+
+def _confirmed(table: Mapping[str, Any]) -> dict[str, str]:
+    """Return reasons by code; what was not checked at all cannot be confirmed."""
+    found = {}
+    for code, reason in table.items():
+        path = f"confirmed.{code}"
+        if code in NEVER_CONFIRMED:
+            raise InvalidParameterError(path, "be left out: nothing is known there", code, "give what is missing")
+        found[code] = kind.word(path, reason)
+        if not found[code].strip():
+            raise InvalidParameterError(path, "say why the doubt does not hold here, and who says so", reason)
+    return found
+
+
+def pad_of(cell: Cell, planned: Planned, covering: str | None) -> contact.Covering | None:
+    """Return a covering as a contact meets it: a flat one over the area that the contact gives itself."""
+    if covering is None:
+        return None
+    pad = cell.coverings[covering]
+    return replace(pad, area=planned.area) if planned.own_area and pad.shape == "flat" else pad
 
 
 def canonical(value: Any, path: str = "") -> Any:
@@ -337,12 +367,16 @@ def _contacts(
         path = f"contacts[{index}]"
         values = checked(path, entry, _CONTACT, required=("region",))
         shared = {name: given[name] for name in ("speed", "covering", "contact_area") if name in given}
-        found += _classes(path, {**shared, **values}, limits, coverings)
+        found += _classes(path, {**shared, **values}, values, limits, coverings)
     return found
 
 
 def _classes(
-    path: str, values: Mapping[str, Any], limits: standards.LimitSet, coverings: Mapping[str, contact.Covering]
+    path: str,
+    values: Mapping[str, Any],
+    entry: Mapping[str, Any],
+    limits: standards.LimitSet,
+    coverings: Mapping[str, contact.Covering],
 ) -> list[Planned]:
     """Return a planned contact in the class that it names, else in both."""
     region = one_of(f"{path}.region", values["region"], limits.regions, listed=True)
@@ -358,6 +392,10 @@ def _classes(
     area = values.get("contact_area")
     if area is not None and not 0.0 < area < 10.0:
         raise InvalidParameterError(f"{path}.contact_area", "be above 0 and below 10", area)
+    own_area = "contact_area" in entry
+    if own_area and covering not in {None, NO_COVERING} and coverings[covering].shape != "flat":
+        rule = f"be left out beside covering {covering!r}, whose area follows from its shape"
+        raise InvalidParameterError(f"{path}.contact_area", rule, area)
     classes: tuple[str, ...] = standards.CONTACTS
     if "contact" in values:
         classes = (one_of(f"{path}.contact", values["contact"], standards.CONTACTS),)
@@ -368,56 +406,7 @@ def _classes(
                 speed=speed,
                 covering=None if covering == NO_COVERING else covering,
                 area=area,
+                own_area=own_area,
             )
             for each in classes
         ]
-
-
-def _separation(table: Mapping[str, Any] | None) -> dict[str, Any] | None:
-    if table is None:
-        return None
-    given = {
-        **_SEPARATION_DEFAULTS,
-        **checked("separation", table, _SEPARATION, required=("max_speed", "reaction_time")),
-    }
-    if not 0.0 < given["farthest"] <= 100.0:
-        raise InvalidParameterError("separation.farthest", "be above 0 and at most 100", given["farthest"])
-    if "stopping" in given:
-        path = "separation.stopping"
-        given["stopping"] = checked(path, given["stopping"], _STOPPING, required=("speed", "time", "distance"))
-    elif "deceleration" not in given:
-        remedy = "give it, or the table of measured stops [separation.stopping] in its place"
-        raise kind.missing("separation.deceleration", remedy)
-    for name in ("load", "extension"):
-        if name in given and "stopping" not in given:
-            rule = "stand beside [separation.stopping]: a deceleration holds for every one"
-            raise InvalidParameterError(f"separation.{name}", rule, given[name])
-    with located("separation"):
-        speed_over_distance([given["farthest"]], given, contact_speed=None)
-    return given
-
-
-def speed_over_distance(
-    distance: object, separation: Mapping[str, Any], *, contact_speed: float | None
-) -> standards.SpeedCurve:
-    """Return the speed at each distance by the rules of a cell.
-
-    Parameters
-    ----------
-    distance : array_like (n,)
-        In m.
-    separation : mapping
-        Of a `Cell`.
-    contact_speed : float or None
-        Allowed contact speed in m/s; ``None`` where contact is not permitted.
-
-    Returns
-    -------
-    SpeedCurve
-        The speeds.
-    """
-    rules = {name: value for name, value in separation.items() if name != "farthest"}
-    if "stopping" in rules:
-        with located("stopping"):
-            rules["stopping"] = standards.StoppingData(**rules["stopping"])
-    return standards.speed_over_distance(distance, contact_speed=contact_speed, **rules)

@@ -6,30 +6,28 @@ from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from hrsafety import contact
-from hrsafety.cli.cell.file import Cell, Planned
-from hrsafety.plausibility import ResultWarning
+from hrsafety.cli.cell.file import Cell, Planned, pad_of
+from hrsafety.plausibility import ResultWarning, unsafe_doubts
 from hrsafety.standards.verdicts import speed_verdict
 
-__all__ = ["FASTEST", "Judged", "common", "governing", "judged_of", "known", "reasons_of", "strain"]
+__all__ = ["FASTEST", "Judged", "common", "decided", "governing", "judged_of", "known", "reasons_of", "strain"]
 
-UNCHECKED = frozenset(
-    {
-        *("rising_at_horizon", "unfinished", "beyond_data", "invalid_numbers", "not_checked"),
-        *("outside_paraboloid", "beyond_pad", "beyond_thickness", "edge", "bare_exceeds"),
-    }
-)
-"""Warnings with which a limit does not count as kept."""
 FASTEST = 20.0
 """Up to this speed, in m/s, contacts are looked at."""
+NOT_PERMITTED = ResultWarning("not_permitted", "limits", "the limit set does not permit this contact")
+REGION_UNKNOWN = ResultWarning(
+    "region_unknown", "limits", "the limit set has no spring constant or no mass of the region"
+)
 
 
 class Judged(NamedTuple):
-    """A planned contact with its allowed speeds, bare and with every covering, and the verdict."""
+    """A planned contact with its allowed speeds, bare and with every covering, its verdict and the doubts of that."""
 
     planned: Planned
     bare: contact.AllowedSpeed | None
     covered: Mapping[str, contact.AllowedSpeed]
     verdict: dict[str, Any]
+    doubts: tuple[ResultWarning, ...] = ()
 
     @property
     def chosen(self) -> contact.AllowedSpeed | None:
@@ -39,17 +37,12 @@ class Judged(NamedTuple):
 
 def reasons_of(found: Iterable[ResultWarning]) -> list[str]:
     """Return why limits do not count as kept."""
-    return [each.message for each in found if each.code in UNCHECKED]
+    return list(dict.fromkeys(each.message for each in unsafe_doubts(found)))
 
 
 def common(cell: Cell, planned: Planned) -> dict[str, Any]:
     """Return what every computation about a contact is given."""
-    limit = planned.limit
-    return {
-        "robot_mass": cell.robot.mass,
-        "body_mass": limit.body_mass,
-        "region": limit.spring_constant,
-    }
+    return {"robot_mass": cell.robot.mass, "limits": planned.limit}
 
 
 def known(planned: Planned) -> bool:
@@ -63,10 +56,9 @@ def strain(cell: Cell, covering: str | None) -> float | None:
 
 
 def _allowed(cell: Cell, planned: Planned, covering: str | None) -> contact.AllowedSpeed:
-    pad = None if covering is None else cell.coverings[covering]
+    pad = pad_of(cell, planned, covering)
     return contact.allowed_speed(
         **common(cell, planned),
-        limits={"force": planned.limit.force, "pressure": planned.limit.pressure},
         covering=pad,
         area=planned.area if pad is None else None,
         max_strain=strain(cell, covering),
@@ -82,29 +74,58 @@ def judged_of(cell: Cell, planned: Planned) -> Judged:
     if bare is not None:
         covered = {name: _allowed(cell, planned, name) for name in cell.coverings}
     found = Judged(planned, bare, covered, {})
-    return found._replace(verdict=_verdict(cell, planned, found.chosen))
+    return found._replace(verdict=_fields(cell, planned, found.chosen))
 
 
-def _verdict(cell: Cell, planned: Planned, allowed: contact.AllowedSpeed | None) -> dict[str, Any]:
-    limit, closing = planned.limit, planned.speed + cell.human_speed
-    reasons: list[str] = []
+def decided(cell: Cell, judged: Judged, more: Iterable[ResultWarning]) -> Judged:
+    """Return a contact with its verdict: every doubt that may lie on the unsafe side takes part unless confirmed.
+
+    Parameters
+    ----------
+    cell : Cell
+        What was asked, with the doubts of its robot.
+    judged : Judged
+        Without verdict.
+    more : iterable of ResultWarning
+        Doubts beside those of the allowed speed: of the loads, the drive, the chance.
+
+    Returns
+    -------
+    Judged
+        With ``verdict``, ``reasons``, ``doubts`` and ``confirmed``.
+    """
+    limit, allowed, row = judged.planned.limit, judged.chosen, dict(judged.verdict)
+    found: list[ResultWarning] = []
     if not limit.permitted:
-        reasons.append("the limit set does not permit this contact")
+        found.append(NOT_PERMITTED)
     elif allowed is None:
-        reasons.append("the limit set has no spring constant or no mass of the region")
+        found.append(REGION_UNKNOWN)
     else:
-        reasons += reasons_of(allowed.warnings)
+        found += unsafe_doubts((*allowed.warnings, *cell.robot.warnings, *more))
+    found = list(dict.fromkeys(found))
+    left = [each for each in found if each.code not in cell.confirmed]
+    most = row["allowed_closing_speed"]
+    checked = allowed is not None and most is not None and not left
+    row["verdict"] = speed_verdict(row["planned_closing_speed"], most, permitted=limit.permitted, checked=checked)
+    row["reasons"] = [each.message for each in left]
+    row["doubts"] = list(dict.fromkeys(each.code for each in left if each is not NOT_PERMITTED))
+    row["confirmed"] = list(dict.fromkeys(each.code for each in found if each.code in cell.confirmed))
+    return judged._replace(verdict=row, doubts=tuple(found))
+
+
+def _fields(cell: Cell, planned: Planned, allowed: contact.AllowedSpeed | None) -> dict[str, Any]:
+    limit, closing = planned.limit, planned.speed + cell.human_speed
     most = None
     if allowed is not None:
         most = FASTEST if allowed.status == "unlimited_up_to_20" else allowed.speed
-    checked = allowed is not None and most is not None and not reasons
-    word = speed_verdict(closing, most, permitted=limit.permitted, checked=checked)
     speed = None if most is None else max(most - cell.human_speed, 0.0)
+    pad = pad_of(cell, planned, planned.covering)
     return {
         "region": limit.region,
         "area_name": limit.area,
         "contact": limit.contact,
         "covering": planned.covering,
+        "contact_area": planned.area if pad is None else pad.area,
         "planned_speed": planned.speed,
         "planned_closing_speed": closing,
         "allowed_speed": speed,
@@ -112,8 +133,6 @@ def _verdict(cell: Cell, planned: Planned, allowed: contact.AllowedSpeed | None)
         "margin": None if speed is None else speed - planned.speed,
         "governs": None if allowed is None else allowed.governs,
         "status": "not_permitted" if not limit.permitted else None if allowed is None else allowed.status,
-        "verdict": word,
-        "reasons": reasons,
     }
 
 

@@ -25,6 +25,8 @@ STATUS_WORDS = {
     "unfinished": "a simulation did not end: nothing is known",
     "not_permitted": "not permitted",
 }
+LOOKS = {"not_permitted": "bad", "exceeds": "bad", "not_checked": "unsure", "within_limits": "good"}
+"""Class of style of each verdict: red, yellow, green."""
 CONTACT_WORDS = {"quasi_static": "clamped", "transient": "free (transient)"}
 
 
@@ -72,6 +74,7 @@ def html(report: Mapping[str, Any], drawings: Sequence[Drawing]) -> str:
         status_words=STATUS_WORDS,
         contact_words=CONTACT_WORDS,
         good="within_limits",
+        looks=LOOKS,
         inputs=list(_paths(report["inputs"], "inputs")),
     )
 

@@ -12,9 +12,21 @@ import numpy as np
 from hrsafety import contact, standards
 from hrsafety._arguments import Array
 from hrsafety._records import dataclass
-from hrsafety.cli.cell.chances import chance_of
-from hrsafety.cli.cell.file import Cell, Planned, speed_over_distance
-from hrsafety.cli.cell.judgement import FASTEST, Judged, common, governing, judged_of, known, reasons_of, strain
+from hrsafety.cli.cell.chances import chance_doubts, chance_of
+from hrsafety.cli.cell.driven import drive_doubts, drive_fields, driven_of
+from hrsafety.cli.cell.file import Cell, Planned, pad_of
+from hrsafety.cli.cell.judgement import (
+    FASTEST,
+    Judged,
+    common,
+    decided,
+    governing,
+    judged_of,
+    known,
+    reasons_of,
+    strain,
+)
+from hrsafety.cli.cell.stops import speed_over_distance
 from hrsafety.cli.progress import Report
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
@@ -27,6 +39,8 @@ MAP_POINTS = 25
 MAP_SPAN = 4.0
 """A map reaches from a quarter of the covering's own numbers to four times them."""
 CURVE_POINTS = 61
+LATEST = 5.0
+"""Time in s up to which a collision is followed whose loads still rise at the usual horizon."""
 MAPPED = {"linear": "modulus", "gibson_ashby": "plateau", "rusch": "b", "avalle": "plateau"}
 """Number of each law that a map varies beside the thickness."""
 
@@ -88,30 +102,58 @@ def studied(cell: Cell, shown: Report | None = None) -> Study:
     Study
         With the warnings of all results.
     """
-    judged = [judged_of(cell, planned) for planned in cell.contacts]
-    impacts, curves = _loads(cell, judged), _over_speed(cell, judged)
+    found = [judged_of(cell, planned) for planned in cell.contacts]
+    loads = [_loads(cell, each) for each in found]
+    curves = _over_speed(cell, found)
+    chances = [chance_of(cell, each.planned, each.chosen) for each in found]
+    judged = []
+    for each, impacts, chance in zip(found, loads, chances, strict=True):
+        driven = None if _yields(each) else driven_of(cell, each.planned, each.verdict["planned_closing_speed"])
+        chosen = impacts.get(each.planned.covering)
+        doubts = (
+            *(() if chosen is None else chosen.warnings),
+            *drive_doubts(cell, each.planned, driven),
+            *chance_doubts(cell, chance),
+        )
+        decision = decided(cell, each, doubts)
+        closing = each.verdict["planned_closing_speed"]
+        drive = None if _yields(each) else drive_fields(cell, each.planned, closing, driven)
+        judged.append(decision._replace(verdict=decision.verdict | {"drive": drive}))
     least = governing(judged)
     speeds = _over_distance(cell, judged)
-    results = [_result(cell, each, impacts) for each in judged]
+    drawn = _by_region(judged, loads)
     fields: dict[str, Any] = {
         "verdict": strictest(each.verdict["verdict"] for each in judged),
         "verdicts": [each.verdict for each in judged],
+        "doubts": _counts(judged),
+        "confirmed": dict(cell.confirmed),
         "robot": _robot(cell),
         "limits": _limits(cell),
-        "results": results,
-        "curves": _curve_fields(impacts, curves),
+        "results": [_result(cell, each, impacts) for each, impacts in zip(judged, loads, strict=True)],
+        "curves": _curve_fields(drawn, curves),
         "map": None if least is None else _map(cell, least, shown),
         "speed_over_distance": None if speeds is None else _speed_fields(cell, speeds),
         "sensitivity": None if least is None else _sensitivity(cell, least),
-        "probability": [_named(each) | chance_of(cell, each.planned, each.chosen) for each in judged],
+        "probability": [_named(each) | chance for each, chance in zip(judged, chances, strict=True)],
     }
     return Study(
         fields=fields,
-        impacts=impacts,
+        impacts=drawn,
         curves=curves,
         speeds=speeds,
-        warnings=(*_warnings(cell, judged, impacts), *(() if speeds is None else speeds.warnings)),
+        warnings=(*_warnings(cell, judged, drawn), *(() if speeds is None else speeds.warnings)),
     )
+
+
+def _yields(judged: Judged) -> bool:
+    """Return whether a contact is none that is clamped: nothing a drive could press."""
+    return judged.chosen is None or judged.planned.limit.contact != "quasi_static"
+
+
+def _counts(judged: list[Judged]) -> dict[str, int]:
+    """Return for each doubt in how many verdicts it takes part."""
+    codes = [code for each in judged for code in each.verdict["doubts"]]
+    return {code: codes.count(code) for code in sorted(set(codes))}
 
 
 def numbers_of(value: Any) -> Any:
@@ -171,16 +213,18 @@ def _limits(cell: Cell) -> dict[str, Any]:
 
 def _label(planned: Planned, covering: str | None) -> str:
     kind = "clamped" if planned.limit.contact == "quasi_static" else "free"
-    return f"{kind}, {covering or 'bare'}"
+    area = "" if planned.limit.area is None else f"{planned.limit.area}, "
+    return f"{area}{kind}, {covering or 'bare'}"
 
 
 def _impact(cell: Cell, planned: Planned, covering: str | None) -> contact.ContactImpact | None:
-    pad = None if covering is None else cell.coverings[covering]
-    given = common(cell, planned)
-    if math.isinf(given["robot_mass"]) and math.isinf(given["body_mass"]):
+    if math.isinf(cell.robot.mass) and planned.limit.body_mass == math.inf:
         return None
+    hit = {**common(cell, planned), "covering": pad_of(cell, planned, covering), "head": False}
+    hit["closing_speed"] = planned.speed + cell.human_speed
     try:
-        return contact.simulate(**given, covering=pad, closing_speed=planned.speed + cell.human_speed, head=False)
+        found = contact.simulate(**hit)
+        return contact.simulate(**hit, horizon=LATEST) if found.rising else found
     except InvalidParameterError as error:
         # A covering that is compressed by more than was measured has no loads; the verdict says so, too.
         if "beyond_data" not in error.requirement:
@@ -188,29 +232,35 @@ def _impact(cell: Cell, planned: Planned, covering: str | None) -> contact.Conta
         return None
 
 
-def _loads(cell: Cell, judged: list[Judged]) -> dict[str, dict[str, contact.ContactImpact]]:
+def _loads(cell: Cell, judged: Judged) -> dict[str | None, contact.ContactImpact]:
+    """Return the collisions at the planned speed, bare and with every covering."""
+    if not known(judged.planned):
+        return {}
+    found = {covering: _impact(cell, judged.planned, covering) for covering in (None, *cell.coverings)}
+    return {covering: impact for covering, impact in found.items() if impact is not None}
+
+
+def _by_region(
+    judged: list[Judged], loads: list[dict[str | None, contact.ContactImpact]]
+) -> dict[str, dict[str, contact.ContactImpact]]:
+    """Return collisions by region and label; of equal ones the last."""
     found: dict[str, dict[str, contact.ContactImpact]] = {}
-    for each in judged:
-        if not known(each.planned):
-            continue
-        for covering in (None, *cell.coverings):
-            impact = _impact(cell, each.planned, covering)
-            if impact is not None:
-                found.setdefault(each.planned.limit.region, {})[_label(each.planned, covering)] = impact
+    for each, impacts in zip(judged, loads, strict=True):
+        for covering, impact in impacts.items():
+            found.setdefault(each.planned.limit.region, {})[_label(each.planned, covering)] = impact
     return found
 
 
 def _over_speed(cell: Cell, judged: list[Judged]) -> dict[str, list[Curve]]:
     found: dict[str, list[Curve]] = {}
     for each in judged:
-        given = common(cell, each.planned)
-        if not known(each.planned) or (math.isinf(given["robot_mass"]) and math.isinf(given["body_mass"])):
+        if not known(each.planned) or (math.isinf(cell.robot.mass) and each.planned.limit.body_mass == math.inf):
             continue
         most = 1.5 * max(each.verdict["planned_closing_speed"], each.verdict["allowed_closing_speed"] or 0.0)
         speeds = np.linspace(min(most, FASTEST) / SPEEDS, min(most, FASTEST), SPEEDS)
         for covering in dict.fromkeys((None, each.planned.covering)):
-            pad = None if covering is None else cell.coverings[covering]
-            rows = contact.batch(**given, covering=pad, closing_speed=speeds)
+            pad = pad_of(cell, each.planned, covering)
+            rows = contact.batch(**common(cell, each.planned), covering=pad, closing_speed=speeds)
             label = _label(each.planned, covering)
             found.setdefault(each.planned.limit.region, []).append(Curve(label, speeds, rows.peak_force))
     return found
@@ -228,7 +278,7 @@ def _allowed_fields(allowed: contact.AllowedSpeed) -> dict[str, Any]:
     }
 
 
-def _result(cell: Cell, judged: Judged, impacts: Mapping[str, Mapping[str, contact.ContactImpact]]) -> dict[str, Any]:
+def _result(cell: Cell, judged: Judged, impacts: Mapping[str | None, contact.ContactImpact]) -> dict[str, Any]:
     """Return what was found of a contact bare and with every covering."""
     planned = judged.planned
     rows = []
@@ -237,7 +287,7 @@ def _result(cell: Cell, judged: Judged, impacts: Mapping[str, Mapping[str, conta
         row: dict[str, Any] = dict.fromkeys(_RESULT) | {"covering": covering} | {name: [] for name in _LISTS}
         if allowed is not None:
             row |= _allowed_fields(allowed)
-        impact = impacts.get(planned.limit.region, {}).get(_label(planned, covering))
+        impact = impacts.get(covering)
         if impact is not None:
             row |= {
                 "peak_force": impact.peak_force,
@@ -260,14 +310,11 @@ def _pressure(planned: Planned, covering: str | None, impact: contact.ContactImp
 
 
 def _thickness(cell: Cell, planned: Planned, covering: str) -> dict[str, Any]:
-    pad = cell.coverings[covering]
-    if pad.damping > 0.0 or pad.rate[:2] != (0.0, 0.0) or math.isinf(cell.robot.mass):
+    pad = pad_of(cell, planned, covering)
+    if pad is None or pad.damping > 0.0 or pad.rate[:2] != (0.0, 0.0) or math.isinf(cell.robot.mass):
         return {"least_thickness": None, "least_thickness_status": "not_computed"}
-    limits = {"force": planned.limit.force, "pressure": planned.limit.pressure}
     closing = planned.speed + cell.human_speed
-    found = contact.thickness(
-        **common(cell, planned), limits=limits, covering=pad, speed=closing, max_strain=strain(cell, covering)
-    )
+    found = contact.thickness(**common(cell, planned), covering=pad, speed=closing, max_strain=strain(cell, covering))
     return {
         "least_thickness": found.thickness,
         "least_thickness_status": found.status,
@@ -307,17 +354,15 @@ def _map(cell: Cell, judged: Judged, shown: Report | None) -> dict[str, Any] | N
     """Return the allowed speed over thickness and strength of the covering that is planned."""
     if judged.planned.covering is None:
         return None
-    pad = cell.coverings[judged.planned.covering]
+    pad = pad_of(cell, judged.planned, judged.planned.covering) or cell.coverings[judged.planned.covering]
     name = MAPPED.get(pad.material.law)
     own = None if name is None else getattr(pad.material, name)
     if name is None or not own:
         return None
     span = np.geomspace(1.0 / MAP_SPAN, MAP_SPAN, MAP_POINTS)
     thickness, strength = pad.thickness * span, own * span
-    limit = judged.planned.limit
     found = contact.allowed_speeds(
         **common(cell, judged.planned),
-        limits={"force": limit.force, "pressure": limit.pressure},
         covering=pad,
         max_strain=strain(cell, judged.planned.covering),
         progress=None if shown is None else lambda done, total: shown("map of allowed speeds", done, total, None),
@@ -338,18 +383,28 @@ def _over_distance(cell: Cell, judged: list[Judged]) -> standards.SpeedCurve | N
     if cell.separation is None:
         return None
     # A contact that is not permitted, or of which something is not known, allows none at all; one that is planned too
-    # fast has an allowed speed, if every limit behind it was checked.
-    speeds = [each.verdict["allowed_speed"] for each in judged]
-    unknown = any(each.verdict["reasons"] for each in judged)
-    least = None if unknown or any(each is None for each in speeds) else min(speeds)
+    # fast, with a drive too, has an allowed speed, if every limit behind it was checked.
+    speeds = [_usable(cell, each) for each in judged]
+    least = None if None in speeds else min(each for each in speeds if each is not None)
     distances = np.linspace(0.0, cell.separation["farthest"], CURVE_POINTS)
     return speed_over_distance(distances, cell.separation, contact_speed=least)
+
+
+def _usable(cell: Cell, judged: Judged) -> float | None:
+    """Return the speed at which a contact may happen, with the drive that the cell knows; ``None`` for none."""
+    row = judged.verdict
+    speed: float | None = row["allowed_speed"]
+    if row["doubts"] == ["drive_not_given"]:
+        driven: float | None = row["drive"]["allowed_closing_speed"]
+        return None if driven is None else max(driven - cell.human_speed, 0.0)
+    return None if row["doubts"] else speed
 
 
 def _speed_fields(cell: Cell, curve: standards.SpeedCurve) -> dict[str, Any]:
     return {
         "rules": dict(cell.separation or {}),
         "contact": curve.status,
+        "taken_as_zero": [name for name in ("intrusion", "uncertainty") if name not in (cell.separation or {})],
         "distance": curve.distance,
         "speed": curve.speed,
         "mode": curve.mode,
@@ -360,12 +415,11 @@ def _speed_fields(cell: Cell, curve: standards.SpeedCurve) -> dict[str, Any]:
 
 def _sensitivity(cell: Cell, judged: Judged) -> dict[str, Any] | None:
     planned = judged.planned
-    pad = None if planned.covering is None else cell.coverings[planned.covering]
+    pad = pad_of(cell, planned, planned.covering)
     if math.isinf(cell.robot.mass):
         return None
     found = contact.sensitivity(
         **common(cell, planned),
-        limits={"force": planned.limit.force, "pressure": planned.limit.pressure},
         covering=pad,
         area=planned.area if pad is None else None,
         max_strain=strain(cell, planned.covering),
@@ -379,7 +433,10 @@ def _warnings(
     yield from cell.robot.warnings
     for each in judged:
         limit = each.planned.limit
-        for found in () if each.chosen is None else each.chosen.warnings:
+        careful = () if each.chosen is None else (doubt for doubt in each.chosen.warnings if doubt.safe_side)
+        for found in (*each.doubts, *careful):
+            if found in cell.robot.warnings or found.code in {"not_permitted", "region_unknown"}:
+                continue
             place = f"{limit.region}, {limit.contact}"
             yield replace(found, message=f"{place}: {found.message}")
     for region, by_label in impacts.items():
