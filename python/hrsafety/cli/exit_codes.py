@@ -19,8 +19,8 @@ MEANINGS = {
     FAILED_RUN: "a run ended as --fail-on names, no gain set keeps the constraints, or a contact exceeds its limits or "
     "is not permitted; everything was written",
     WARNED: "there were warnings and --strict was given; everything was written",
-    NOT_CHECKED: "a doubt may lie on the unsafe side: a contact is not checked, or no run ended as --fail-on names, but "
-    "one may have; everything was written",
+    NOT_CHECKED: "a doubt may lie on the unsafe side: a contact is not checked, or no run ended as --fail-on names, "
+    "but one may have; everything was written",
     INTERRUPTED: "stopped by Ctrl-C",
 }
 """What each code means, as ``hrsafety --help`` prints it."""

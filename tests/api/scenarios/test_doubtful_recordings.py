@@ -114,12 +114,12 @@ def test_runs_among_people_by_frames_are_not_passed(tmp_path: Path, capsys: pyte
     assert main(options) == 0
     shown = capsys.readouterr()
     assert "passed" not in shown.out
-    assert "NOTE    not checked" in shown.out
+    assert "NOT CHECKED" in shown.out
     assert "--fps" in shown.err
-    assert main([*options, "--fail-on", "contact"]) == 4
+    assert main([*options, "--fail-on", "contact"]) == 5
     capsys.readouterr()
     main([*options, "--fps", "25"])
-    assert "not checked" not in capsys.readouterr().out
+    assert "NOT CHECKED" not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("factor", [100.0, 1000.0])
