@@ -119,7 +119,7 @@ def row(worlds: list[nav.crowd.World], word: str, alone: list[nav.crowd.CrowdTra
         exits = np.mean([each.throughput for each in whole])
         ends = (f"{exits:.2f}", f"{100 * np.mean([each.deadlocked_share for each in whole]):.1f}")
     # Of those who leave the last place is not kept, but the time is.
-    delays = [run.arrival_time - other.arrival_time for run, other in zip(runs, alone, strict=True)]
+    delays = [run.person_arrival_time - other.person_arrival_time for run, other in zip(runs, alone, strict=True)]
     counts = (int(table.success.sum()), int((contacts > 0).sum()), sum(faults))
     return line(
         word,

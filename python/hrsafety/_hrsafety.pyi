@@ -553,6 +553,7 @@ class CrowdWorld:
         walls: Sequence[CrowdWall],
         **given: object,
     ) -> Self: ...
+    def nearest_walls(self, places: Sequence[_Pair]) -> list[tuple[float, int]]: ...
 
 def crowd_simulate(
     worlds: Sequence[CrowdWorld], *, threads: int | None, progress: Callable[[int, int], object] | None

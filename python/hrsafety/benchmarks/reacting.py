@@ -15,6 +15,7 @@ from hrsafety.benchmarks.results import Row
 from hrsafety.navigation.crowd import CrowdRobot, World
 from hrsafety.navigation.crowd.agents import FASTEST_DRAWN
 from hrsafety.navigation.crowd.contacts import contacts_of
+from hrsafety.navigation.crowd.episodes import outcome_of
 from hrsafety.navigation.metrics.between import touched_between
 from hrsafety.navigation.warnings.shields import Motion
 
@@ -89,11 +90,12 @@ def _worlds(scene: Callable[[Case, int], World]) -> Callable[[Case], Iterator[Ro
         contacts = table.robot_on_person + table.person_on_robot + table.mutual_contacts + table.wall_contacts
         for row, (index, each) in enumerate(zip(case.cases, runs, strict=True)):
             arrival = float(table.arrival_time[row])
+            there = not np.isnan(each.robot_arrival_time[0])
             at_fault = contacts_of(episodes[row], arrival).at_fault
             between = touched_between(episodes[row], arrival, float(table.min_time_to_collision[row]))
             yield Row(
                 case=index,
-                outcome="collided" if contacts[row] else each.outcomes[0],
+                outcome=outcome_of(table, row, arrived=there, diverged=each.diverged is not None),
                 arrival_time=arrival,
                 end_time=float(each.time[-1]),
                 contacts=int(contacts[row]),

@@ -8,15 +8,15 @@ import math
 import numpy as np
 
 from hrsafety import navigation as nav
-from hrsafety._arguments import checked_seed, count, flag, instance
+from hrsafety._arguments import checked_seed, count, flag, instance, not_negative
 from hrsafety.navigation.crowd import CrowdRobot, Pedestrian, Person, World
 from hrsafety.navigation.laws.python_law import AnyLaw
 from hrsafety.scenarios.placing import drawn, model_of
 
 __all__ = ["antipodal", "circle_crossing"]
 
-DISTURBANCE = 1e-3
-"""Disturbance of starts on a circle, in m."""
+DISTURBANCE = 0.05
+"""Disturbance of starts on a circle, in m: with 1 mm people who avoid each other reciprocally block the middle."""
 
 
 @functools.cache
@@ -32,12 +32,14 @@ def antipodal(
     robots: int | None = None,
     robot: nav.HolonomicRobot | None = None,
     desired_speed: float | None = 1.0,
+    disturbance: float = DISTURBANCE,
     seed: int = 0,
     time_limit: float = 60.0,
 ) -> World:
     """Return a circle of people or robots who all go to the opposite point.
 
-    The radius is ``max(4, n/(2 pi))`` m; starts are disturbed by up to 1 mm.
+    The radius is ``max(4, n/(2 pi))`` m. Starts are disturbed: who all aim at one middle block each other there, and
+    `ReciprocalAvoidance` does so even with starts that are 1 mm from a perfect circle.
 
     Parameters
     ----------
@@ -53,6 +55,8 @@ def antipodal(
         What they are; the default one when ``None``.
     desired_speed : float or None
         Of the people, in m/s; ``None``: drawn.
+    disturbance : float
+        Largest distance along each axis of a start from its place on the circle, in m.
     seed : int
         Seed of the disturbance and of the world.
     time_limit : float
@@ -78,10 +82,11 @@ def antipodal(
     total = count("n", n, most=10_000)
     checked, generator = drawn(seed)
     driven = (0 if law is None else total) if robots is None else count("robots", robots, least=0, most=total)
+    most = not_negative("disturbance", disturbance)
     radius = max(4.0, total / (2.0 * math.pi))
     angles = 2.0 * math.pi * np.arange(total) / total
     starts = radius * np.column_stack([np.cos(angles), np.sin(angles)])
-    disturbed = (starts + generator.uniform(-DISTURBANCE, DISTURBANCE, starts.shape)).tolist()
+    disturbed = (starts + generator.uniform(-most, most, starts.shape)).tolist()
     goals = (-starts).tolist()
     body = nav.HolonomicRobot() if robot is None else robot
     of = model_of(model)

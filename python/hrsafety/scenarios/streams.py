@@ -21,6 +21,8 @@ ARM = 8.0
 """Length of each arm of a crossing from its middle, in m."""
 ROOM = 8.0
 """Side of the room before a bottleneck, in m."""
+BEHIND = 2.0
+"""Distance behind the door of a bottleneck at which people have left, in m."""
 
 
 def corridor(
@@ -289,7 +291,8 @@ def bottleneck(
     Returns
     -------
     World
-        The same for the same arguments. People leave 2 m behind the door.
+        The same for the same arguments. People go to the nearest point of the line of the door, and leave where they
+        are 2 m behind it.
 
     Raises
     ------
@@ -316,7 +319,7 @@ def bottleneck(
         people=[
             Person(
                 start=(x, y),
-                route=[(ROOM, middle), (ROOM + 2.0, middle)],
+                route=[((ROOM, low), (ROOM, high)), ((ROOM + BEHIND, 0.0), (ROOM + BEHIND, ROOM))],
                 model=of,
                 desired_speed=desired_speed,
                 at_end="leave",

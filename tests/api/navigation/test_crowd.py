@@ -35,7 +35,7 @@ def pair_of_people(model: nav.crowd.Pedestrian | None = None) -> tuple[nav.crowd
 def test_people_of_every_model_pass_each_other(model: nav.crowd.Pedestrian) -> None:
     run = nav.crowd.simulate_crowd(nav.crowd.World(people=pair_of_people(model), time_limit=20.0))
     assert run.diverged is None
-    assert np.isfinite(run.arrival_time).all()
+    assert np.isfinite(run.person_arrival_time).all()
     assert run.position.shape == (len(run.time), 2, 2)
     assert run.time[-1] < 20.0
     assert np.hypot(*(run.position[:, 0] - run.position[:, 1]).T).min() > 0.25
@@ -46,7 +46,7 @@ def test_a_world_without_anybody_ends_at_once_and_one_person_walks_alone() -> No
     assert nobody.position.shape == (1, 0, 2)
     assert nobody.robot_position.shape == (1, 0, 2)
     alone = nav.crowd.simulate_crowd(nav.crowd.World(people=pair_of_people()[:1]))
-    assert alone.arrival_time[0] == pytest.approx(5.7 / 1.2, abs=0.06)
+    assert alone.person_arrival_time[0] == pytest.approx(5.7 / 1.2, abs=0.06)
 
 
 def test_a_robot_whose_goal_is_its_start_has_arrived() -> None:
@@ -119,17 +119,17 @@ def test_a_robot_delays_people_who_leave_at_their_goal() -> None:
     run = nav.crowd.simulate_crowd(world)
     alone = nav.crowd.simulate_crowd(replace(world, robots=()))
     assert np.isnan(run.position[-1, 0]).all()
-    np.testing.assert_array_less(np.hypot(*(run.arrival_position - [(6, 0), (0, 4)]).T), 0.3 + 1e-12)
+    np.testing.assert_array_less(np.hypot(*(run.person_arrival_position - [(6, 0), (0, 4)]).T), 0.3 + 1e-12)
     (episode,) = nav.crowd.episodes_of(run, alone)
     found = nav.metrics.evaluate(episode)
-    assert found.person_delay == pytest.approx(np.mean(run.arrival_time - alone.arrival_time), abs=1e-12)
+    assert found.person_delay == pytest.approx(np.mean(run.person_arrival_time - alone.person_arrival_time), abs=1e-12)
     assert found.person_delay > 0.1
     assert found.person_detour > 0.05
     assert found.people_blocked == 0
     table = nav.crowd.crowd_batch([world], people_alone=True)
     assert table.person_delay[0] == found.person_delay
     total = nav.crowd.world_metrics(run).aggregated_time
-    assert total == pytest.approx(run.arrival_time.sum(), abs=1e-9)
+    assert total == pytest.approx(run.person_arrival_time.sum(), abs=1e-9)
 
 
 def test_people_from_sources_are_met_though_they_are_not_compared() -> None:

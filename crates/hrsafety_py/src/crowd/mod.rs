@@ -6,6 +6,7 @@ pub(crate) mod metrics;
 use std::sync::Arc;
 
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::crowd::agent::{Agent, FIRST_ROBOT, direction_of};
@@ -14,7 +15,9 @@ use vff_core::crowd::neighbors::grid::Period;
 use vff_core::crowd::pedestrian::{Decision, Groupings, Walker};
 use vff_core::crowd::snapshot::{Models, Setting, Snapshot};
 use vff_core::crowd::walls::Wall;
-use vff_core::crowd::world::{PersonSetup, RobotSetup, Route, RouteEnd, SourceSetup, Traits};
+use vff_core::crowd::world::{
+    PersonSetup, RobotSetup, Route, RouteEnd, SourceSetup, Traits, Waypoint,
+};
 use vff_core::crowd::{Diverged, Model, Simulation, simulate_worlds};
 use vff_core::lanes::Vector2;
 use vff_core::world::motion::Motion;
@@ -62,6 +65,16 @@ impl CrowdModel {
     }
 }
 
+/// The elements of a route: points, or lines between two of them.
+fn route_of(given: Vec<Vec<[f64; 2]>>) -> PyResult<Vec<Waypoint>> {
+    let elements = given.into_iter().map(|element| match element[..] {
+        [point] => Ok(Waypoint::Point(point)),
+        [start, end] => Ok(Waypoint::Line([start, end])),
+        _ => Err(PyValueError::new_err("a route has points and lines")),
+    });
+    elements.collect()
+}
+
 /// What people have in common.
 fn traits_of(given: &Keywords<'_>) -> PyResult<Traits> {
     let ends = [
@@ -78,7 +91,7 @@ fn traits_of(given: &Keywords<'_>) -> PyResult<Traits> {
         distracted_share: given.take("distracted_share")?,
         model: 0,
         route: Route {
-            points: given.take("route")?,
+            points: route_of(given.take("route")?)?,
             end: word("at_end", &end, rule, &ends)?,
             arrival_radius: given.take("arrival_radius")?,
         },
@@ -255,6 +268,18 @@ impl CrowdWorld {
             python: robots.iter().any(|robot| robot.python),
         })
     }
+
+    /// Distance of each place from the nearest wall in m, negative inside, and the index of that wall.
+    fn nearest_walls(&self, places: Vec<[f64; 2]>) -> Vec<(f64, usize)> {
+        let nearest = |place: [f64; 2]| {
+            let walls = self.core.walls.iter().enumerate();
+            let gaps = walls.map(|(index, wall)| (wall.clearance(Vector2::from(place)), index));
+            gaps.fold((f64::INFINITY, 0), |least, gap| {
+                if gap.0 < least.0 { gap } else { least }
+            })
+        };
+        places.into_iter().map(nearest).collect()
+    }
 }
 
 impl CrowdWorld {
@@ -296,12 +321,15 @@ fn fields_of(py: Python<'_>, mut ended: Simulation) -> PyResult<Bound<'_, PyDict
     fields.vector("radius", column(&|index| all[index].radius))?;
     fields.vector("desired_speed", column(&|index| all[index].desired_speed))?;
     fields.vector("awareness", column(&|index| all[index].awareness))?;
-    fields.vector("arrival_time", column(&|index| all[index].arrival_time))?;
+    fields.vector(
+        "person_arrival_time",
+        column(&|index| all[index].arrival_time),
+    )?;
     let ends: Vec<_> = all[..people]
         .iter()
         .map(|each| each.arrival_position)
         .collect();
-    fields.matrix("arrival_position", flat(&ends), people, 2)?;
+    fields.matrix("person_arrival_position", flat(&ends), people, 2)?;
     let robots = ended.robots().iter();
     fields.vector(
         "robot_arrival_time",
@@ -309,6 +337,8 @@ fn fields_of(py: Python<'_>, mut ended: Simulation) -> PyResult<Bound<'_, PyDict
             .map(vff_core::crowd::robots::CrowdRobot::arrival_time)
             .collect(),
     )?;
+    fields.value("wall_rescues", ended.wall_rescues())?;
+    fields.value("max_person_speed", ended.max_person_speed())?;
     let diverged = ended.divergence().map(|found| {
         let (kind, number) = match found.agent {
             Diverged::Person(number) => ("person", number),

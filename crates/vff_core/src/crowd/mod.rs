@@ -14,6 +14,7 @@ pub mod neighbors;
 pub mod pedestrian;
 pub mod people;
 mod record;
+mod rescue;
 pub mod robots;
 mod sight;
 pub mod simulation;

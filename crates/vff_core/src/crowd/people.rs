@@ -9,7 +9,9 @@ use crate::crowd::divergence::is_finite;
 use crate::crowd::models::Model;
 use crate::crowd::neighbors::grid::Period;
 use crate::crowd::pedestrian::{Company, Fellows, Walker, company_of};
-use crate::crowd::world::{PersonSetup, Route, RouteEnd, Traits};
+use crate::crowd::rescue::set_back;
+use crate::crowd::walls::Wall;
+use crate::crowd::world::{PersonSetup, Route, RouteEnd, Traits, Waypoint};
 use crate::lanes::Vector2;
 use crate::world::motion::Motion;
 
@@ -72,7 +74,11 @@ pub struct PersonState {
     pub group: Option<u32>,
     /// Next point of the route by number.
     pub next: u32,
-    /// Where that is, in m.
+    /// Lines of the route from the next one on that were crossed since the last instant.
+    pub crossed: u32,
+    /// Whether the next element of the route is a line.
+    pub to_line: bool,
+    /// Where that is, in m: of a line the point to go to.
     pub target: Vector,
     /// Squared distance at which it is reached, in m^2.
     pub arrival_squared: f64,
@@ -96,6 +102,7 @@ impl PersonState {
             && stream_of(seed, Purpose::Distraction, number as u64).unit()
                 < traits.distracted_share;
         let drawn = || drawn_speed(&mut stream_of(seed, Purpose::Speed, number as u64));
+        let first = traits.route.points.first();
         Self {
             position: place,
             velocity: Vector::zeros(),
@@ -112,11 +119,9 @@ impl PersonState {
             source: None,
             group: None,
             next: 0,
-            target: traits
-                .route
-                .points
-                .first()
-                .map_or(place, |first| Vector::from(*first)),
+            crossed: 0,
+            to_line: first.is_some_and(Waypoint::is_line),
+            target: first.map_or(place, |first| first.target(place, traits.radius)),
             arrival_squared: traits.route.arrival_radius * traits.route.arrival_radius,
             recorded: false,
             arrival_time: f64::NAN,
@@ -166,7 +171,7 @@ impl PersonState {
         match self.presence {
             _ if self.recorded => false,
             Presence::Expected => true,
-            Presence::Walking => !self.is_off_target(),
+            Presence::Walking => self.crossed > 0 || !self.is_off_target(),
             Presence::Staying | Presence::Left => false,
         }
     }
@@ -254,6 +259,47 @@ impl PersonState {
         self.position += self.velocity * step;
     }
 
+    /// Sets the person back who came from a place to walls; whether it was necessary.
+    #[inline]
+    pub(super) fn keep_off(&mut self, walls: &[Wall], from: Vector) -> bool {
+        let moved = [from, self.position];
+        let rescue = set_back(walls, moved, self.velocity, self.radius);
+        if let Some(rescue) = rescue.filter(|_| self.is_finite()) {
+            (self.position, self.velocity) = (rescue.position, rescue.velocity);
+        }
+        rescue.is_some()
+    }
+
+    /// Notes which lines of the route the person crossed who came from a place, and where the next one is nearest.
+    pub(super) fn look_at_lines(&mut self, route: &Route, from: Vector) {
+        let count = route.points.len();
+        let repeats = route.end == RouteEnd::Repeat;
+        for _ in self.crossed as usize..count {
+            let ahead = self.next as usize + self.crossed as usize;
+            if ahead >= count && !repeats {
+                break;
+            }
+            if !route.points[ahead % count].is_crossed(from, self.position) {
+                break;
+            }
+            self.crossed += 1;
+        }
+        self.target = route.points[self.next as usize].target(self.position, self.radius);
+    }
+
+    /// Whether the next element of the route is reached.
+    fn has_reached_next(&mut self) -> bool {
+        if self.crossed > 0 {
+            self.crossed -= 1;
+            return true;
+        }
+        if self.to_line {
+            // On the line there is no direction to it.
+            return (self.target - self.position).norm() < SHORTEST;
+        }
+        !self.is_off_target()
+    }
+
     /// Whether the next point is not reached.
     fn is_off_target(&self) -> bool {
         let way = self.target - self.position;
@@ -267,7 +313,7 @@ impl PersonState {
             return;
         }
         for _ in 0..route.points.len() {
-            if self.is_off_target() {
+            if !self.has_reached_next() {
                 return;
             }
             self.next += 1;
@@ -276,13 +322,16 @@ impl PersonState {
                 self.next = 0;
             }
             if !ended || route.end == RouteEnd::Repeat {
-                self.target = route.points[self.next as usize].into();
+                let next = &route.points[self.next as usize];
+                self.to_line = next.is_line();
+                self.target = next.target(self.position, self.radius);
             } else {
                 self.presence = if route.end == RouteEnd::Leave {
                     Presence::Left
                 } else {
                     Presence::Staying
                 };
+                self.crossed = 0;
                 self.arrival_time = time;
                 self.arrival_position = self.position;
                 return;

@@ -44,6 +44,9 @@ struct CrowdParts {
     reach: f64,
     /// Whether somebody follows a recording.
     replays: bool,
+    /// How often somebody was set back at a wall, and the largest squared speed in m^2/s^2 of those who decide.
+    wall_rescues: u64,
+    fastest_squared: f64,
     record: Option<Trajectories>,
     /// Steps of the world so far.
     instant: usize,
@@ -74,6 +77,8 @@ impl CrowdParts {
             moved: None,
             reach: 0.0,
             replays: false,
+            wall_rescues: 0,
+            fastest_squared: 0.0,
             record: record.then(Trajectories::default),
             instant: 0,
             diverged: None,
@@ -91,6 +96,7 @@ impl CrowdParts {
             numbered.map(|(number, setup)| PersonState::at_start(setup, world.seed, number)),
         );
         self.replays = self.people.iter().any(|person| person.recorded);
+        (self.wall_rescues, self.fastest_squared) = (0, 0.0);
         self.groups.fill(&self.people);
         self.robots.clear();
         for index in 0..world.robots.len() {
@@ -154,11 +160,21 @@ impl CrowdParts {
         let everybody = (people.len(), walker_of);
         snapshot.decide(&setting, everybody, &self.bodies, models, decisions);
         let mut finite = true;
-        for (person, decision) in people.iter_mut().zip(&*decisions) {
+        for (number, (person, decision)) in people.iter_mut().zip(&*decisions).enumerate() {
             if person.decides() {
                 person.heading = decision.heading;
                 let model = &world.models[person.model as usize];
+                let from = person.position;
                 person.move_by(decision.order, model, part);
+                self.fastest_squared = self
+                    .fastest_squared
+                    .max(person.velocity.dot(&person.velocity));
+                if !world.walls.is_empty() {
+                    self.wall_rescues += u64::from(person.keep_off(&world.walls, from));
+                }
+                if person.to_line {
+                    person.look_at_lines(world.route(number, person.source), from);
+                }
                 finite &= person.is_finite();
             }
         }
@@ -421,6 +437,19 @@ impl Simulation {
     #[must_use]
     pub fn robots(&self) -> &[CrowdRobot] {
         &self.0.parts.robots
+    }
+
+    /// How often somebody was set back who would have passed a wall or come too near to it.
+    #[must_use]
+    pub fn wall_rescues(&self) -> u64 {
+        self.0.parts.wall_rescues
+    }
+
+    /// Largest speed in m/s at which somebody moved who decides, before walls took of it; not of people who were moved
+    /// together with those of other worlds, whose models bound it.
+    #[must_use]
+    pub fn max_person_speed(&self) -> f64 {
+        self.0.parts.fastest_squared.sqrt()
     }
 
     /// Who is no longer at a finite place, if somebody is not.

@@ -114,6 +114,12 @@ fn off(offset: Vector) -> Option<Near> {
 }
 
 fn off_contour(shape: &PlacedShape, place: Vector) -> Option<Near> {
+    let near = contour(shape, place);
+    (near.distance.abs() >= SHORTEST).then_some(near)
+}
+
+/// The nearest point of the contour of a disc or rectangle.
+pub(super) fn contour(shape: &PlacedShape, place: Vector) -> Near {
     let offset = place - shape.center;
     match shape.shape {
         Shape::Disc { radius } => {
@@ -124,7 +130,7 @@ fn off_contour(shape: &PlacedShape, place: Vector) -> Option<Near> {
             } else {
                 offset / length
             };
-            (distance.abs() >= SHORTEST).then_some(Near { normal, distance })
+            Near { normal, distance }
         }
         Shape::Rectangle {
             half_length,
@@ -133,8 +139,10 @@ fn off_contour(shape: &PlacedShape, place: Vector) -> Option<Near> {
         } => {
             let local = into_axes(offset, axis);
             let depth = Vector::new(half_length - local.x.abs(), half_width - local.y.abs());
-            if depth.x < 0.0 || depth.y < 0.0 {
-                return off(shape.shape.offset(offset));
+            if (depth.x < 0.0 || depth.y < 0.0)
+                && let Some(near) = off(shape.shape.offset(offset))
+            {
+                return near;
             }
             let least = depth.x.min(depth.y);
             let outward = if depth.x <= depth.y {
@@ -142,10 +150,10 @@ fn off_contour(shape: &PlacedShape, place: Vector) -> Option<Near> {
             } else {
                 Vector::new(0.0, 1.0_f64.copysign(local.y))
             };
-            (least >= SHORTEST).then(|| Near {
+            Near {
                 normal: out_of_axes(outward, axis),
                 distance: -least,
-            })
+            }
         }
     }
 }

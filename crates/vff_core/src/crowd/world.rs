@@ -1,5 +1,6 @@
 //! What a world of people and robots consists of, and what it must obey.
 
+use crate::crowd::agent::SHORTEST;
 use crate::crowd::models::Model;
 use crate::crowd::neighbors::grid::Period;
 use crate::crowd::walls::Wall;
@@ -36,11 +37,64 @@ pub enum RouteEnd {
     Repeat,
 }
 
+/// An element of a route.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Waypoint {
+    /// A point in m, which is reached within the arrival radius.
+    Point([f64; 2]),
+    /// A line between two points in m, which is passed where the center crosses it.
+    Line([[f64; 2]; 2]),
+}
+
+impl Waypoint {
+    /// Where somebody of a radius in m at a place goes: of a line to the nearest point, shortened by the radius at both
+    /// ends.
+    #[inline]
+    pub(super) fn target(&self, place: Vector2<f64>, radius: f64) -> Vector2<f64> {
+        let [start, end] = match *self {
+            Self::Point(point) => return point.into(),
+            Self::Line(ends) => ends.map(Vector2::from),
+        };
+        let along = end - start;
+        let length = along.norm();
+        let most = length - radius;
+        if most <= radius {
+            return start + along * 0.5;
+        }
+        let axis = along / length;
+        start + axis * axis.dot(&(place - start)).clamp(radius, most)
+    }
+
+    /// Whether this is a line.
+    #[must_use]
+    pub fn is_line(&self) -> bool {
+        matches!(self, Self::Line(_))
+    }
+
+    /// Whether a motion crosses a line, or ends on it.
+    pub(super) fn is_crossed(&self, from: Vector2<f64>, to: Vector2<f64>) -> bool {
+        let Self::Line(ends) = *self else {
+            return false;
+        };
+        let [start, end] = ends.map(Vector2::from);
+        let along = end - start;
+        let length = along.norm();
+        let axis = along / length;
+        let (before, after) = (axis.perp(&(from - start)), axis.perp(&(to - start)));
+        let within = |place: Vector2<f64>| (0.0..=length).contains(&axis.dot(&(place - start)));
+        if after.abs() <= SHORTEST {
+            return within(to);
+        }
+        let crossed = before * after <= 0.0;
+        crossed && within(from + (to - from) * (before / (before - after)))
+    }
+}
+
 /// Where a person walks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Route {
-    /// Points in m, one after the other; nobody goes anywhere without one.
-    pub points: Vec<[f64; 2]>,
+    /// Elements, one after the other; nobody goes anywhere without one.
+    pub points: Vec<Waypoint>,
     /// What comes after the last one.
     pub end: RouteEnd,
     /// Distance in m at which a point is reached.
@@ -52,7 +106,7 @@ impl Route {
     #[must_use]
     pub fn to(goal: [f64; 2]) -> Self {
         Self {
-            points: vec![goal],
+            points: vec![Waypoint::Point(goal)],
             end: RouteEnd::Stay,
             arrival_radius: 0.3,
         }
@@ -61,8 +115,13 @@ impl Route {
     fn check(&self) -> Result<()> {
         for (index, point) in self.points.iter().enumerate() {
             // The name is made where it is needed: episodes of learners start often.
-            if !point.iter().all(|value| value.is_finite()) {
-                finite_pair(&format!("route[{index}]"), *point)?;
+            match point {
+                Waypoint::Point(point) => {
+                    if !point.iter().all(|value| value.is_finite()) {
+                        finite_pair(&format!("route[{index}]"), *point)?;
+                    }
+                }
+                Waypoint::Line(ends) => check_line(index, ends)?,
             }
         }
         if self.points.is_empty() && self.end != RouteEnd::Stay {
@@ -73,6 +132,21 @@ impl Route {
         positive("arrival_radius", self.arrival_radius)?;
         Ok(())
     }
+}
+
+/// Refuses a line whose ends are not two places.
+fn check_line(index: usize, ends: &[[f64; 2]; 2]) -> Result<()> {
+    for (end, point) in ends.iter().enumerate() {
+        finite_pair(&format!("route[{index}][{end}]"), *point)?;
+    }
+    let length = (Vector2::from(ends[1]) - Vector2::from(ends[0])).norm();
+    if length > SHORTEST && length.is_finite() {
+        return Ok(());
+    }
+    let name = format!("route[{index}]");
+    let found = format!("a line of {length} m");
+    let failure = Failure::invalid(&name, "have two ends apart", Given::Found(found.into()));
+    Err(failure.mended_by("give a point (x, y) instead of a line"))
 }
 
 /// What people have in common, at the start or when they come.
@@ -402,6 +476,14 @@ impl CrowdWorld {
             return Err(Failure::invalid("step", rule, Given::Number(self.step)));
         }
         Ok(count_of(parts))
+    }
+
+    /// The route of a person with a number, from the start or from a source.
+    pub(super) fn route(&self, number: usize, source: Option<u32>) -> &Route {
+        match source {
+            Some(source) => &self.sources[source as usize].traits.route,
+            None => &self.people[number].traits.route,
+        }
     }
 
     /// Farthest distance in m at which people act on each other.

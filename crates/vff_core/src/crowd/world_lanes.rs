@@ -10,7 +10,7 @@ use crate::crowd::neighbors::grid::Period;
 use crate::crowd::people::{PersonState, Presence};
 use crate::crowd::simulation::Simulation;
 use crate::crowd::velocity_programs::VelocityPrograms;
-use crate::crowd::world::{CrowdWorld, PersonSetup};
+use crate::crowd::world::{CrowdWorld, PersonSetup, Waypoint};
 use crate::lanes::{LaneMask, Real, Truth, Vector2, vectors};
 
 /// Fewest worlds that are worth the lanes.
@@ -32,7 +32,11 @@ pub(super) struct WorldLanes {
 pub(super) fn model_of(world: &CrowdWorld) -> Option<&Model> {
     let number = world.people.first()?.traits.model;
     let alone = |person: &PersonSetup| {
-        person.recorded.is_none() && person.group.is_none() && person.traits.model == number
+        person.recorded.is_none()
+            && person.group.is_none()
+            && person.traits.model == number
+            // Where a line is nearest changes with every motion.
+            && !person.traits.route.points.iter().any(Waypoint::is_line)
     };
     let plain = world.walls.is_empty()
         && world.sources.is_empty()
@@ -159,7 +163,7 @@ mod tests {
 
     fn person(stream: &mut Stream, number: usize) -> PersonSetup {
         let mut draw = |size: f64| [stream.uniform(-size, size), stream.uniform(-size, size)];
-        let points = vec![draw(2.0); usize::from(number % 4 != 3)];
+        let points = vec![Waypoint::Point(draw(2.0)); usize::from(number % 4 != 3)];
         let end = match number % 5 {
             _ if points.is_empty() => RouteEnd::Stay,
             1 => RouteEnd::Leave,

@@ -12,7 +12,9 @@ use vff_core::crowd::models::social_force_1995::SocialForce1995;
 use vff_core::crowd::models::social_force_2000::SocialForce2000;
 use vff_core::crowd::neighbors::grid::Period;
 use vff_core::crowd::walls::Wall;
-use vff_core::crowd::world::{PersonSetup, RobotSetup, Route, RouteEnd, SourceSetup, Traits};
+use vff_core::crowd::world::{
+    PersonSetup, RobotSetup, Route, RouteEnd, SourceSetup, Traits, Waypoint,
+};
 use vff_core::crowd::{CrowdWorld, Diverged, Model, Simulation, simulate_worlds};
 use vff_core::laws::planning::family::Planned;
 use vff_core::laws::reciprocal::ReciprocalAvoidance;
@@ -244,12 +246,25 @@ fn people_in_single_file_walk_as_their_gaps_allow() {
     }
 }
 
+/// The place of a waypoint that is a point.
+fn first_place(waypoint: Waypoint) -> [f64; 2] {
+    match waypoint {
+        Waypoint::Point(place) => place,
+        Waypoint::Line([start, _]) => start,
+    }
+}
+
+/// Where a route goes first.
+fn first_point(route: &Route) -> Vector {
+    first_place(route.points[0]).into()
+}
+
 #[test]
 fn renumbered_turned_and_mirrored_worlds_are_the_same() {
     let mut people = scattered(40, 9.0, 5);
     for person in &mut people {
         // From rest nobody turns to either side, and rounding would decide.
-        let way = Vector::from(person.traits.route.points[0]) - Vector::from(person.start);
+        let way = first_point(&person.traits.route) - Vector::from(person.start);
         person.velocity = (way.normalize() * 1.1).into();
     }
     let mut models = all_models();
@@ -275,7 +290,7 @@ fn renumbered_turned_and_mirrored_worlds_are_the_same() {
                 person.start = moved(person.start).into();
                 person.velocity = moved(person.velocity).into();
                 for point in &mut person.traits.route.points {
-                    *point = moved(*point).into();
+                    *point = Waypoint::Point(moved(first_place(*point)).into());
                 }
             }
             let found = places(&ended(brief(model, others)));
@@ -367,7 +382,7 @@ fn forces_of_equal_people_on_each_other_cancel() {
     // The drive of a motion step is known: the rest comes from others.
     let drives = |run: &Simulation, part: f64| {
         let drive = |(person, setup): (&vff_core::crowd::people::PersonState, &PersonSetup)| {
-            let way = Vector::from(setup.traits.route.points[0]) - person.position;
+            let way = first_point(&setup.traits.route) - person.position;
             (way.normalize() * 1.3 - person.velocity) / 0.5 * part
         };
         run.people()
@@ -468,6 +483,33 @@ fn a_state_that_is_not_finite_ends_the_world() {
     assert!(matches!(found.agent, Diverged::Person(1 | 2)));
     assert!(found.time < 0.2 && run.finished());
     assert!(places(&run).iter().all(|place| place.is_finite()));
+}
+
+#[test]
+fn people_who_would_pass_a_wall_are_set_back_and_counted() {
+    let mut rescues = 0;
+    for model in all_models() {
+        let mut world = world(model, scattered(30, 5.0, 9));
+        let room = vec![
+            [-0.5, -0.5],
+            [5.5, -0.5],
+            [5.5, 5.5],
+            [-0.5, 5.5],
+            [-0.5, -0.5],
+        ];
+        world.walls = vec![Wall::polyline(room).unwrap()];
+        for person in &mut world.people {
+            person.traits.route.points = vec![Waypoint::Line([[20.0, -20.0], [20.0, 20.0]])];
+        }
+        world.time_limit = 10.0;
+        let run = ended(world);
+        for place in run.recorded().unwrap().person_positions() {
+            let kept = -0.5 + 0.1 * run.people()[0].radius - 1e-9;
+            assert!(place > kept && place < 5.0 - kept, "{model:?} {place}");
+        }
+        rescues += run.wall_rescues();
+    }
+    assert!(rescues > 0);
 }
 
 #[test]

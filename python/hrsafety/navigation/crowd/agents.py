@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import field
 from typing import Any, Literal
 
+import numpy as np
+
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, Parameters, count, instance, number, pair, points, sequence, vector, word
 from hrsafety._records import dataclass
@@ -16,7 +18,7 @@ from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.sensing.measurement import Measurement
 
-__all__ = ["FASTEST_DRAWN", "AtEnd", "CrowdRobot", "Person", "Source"]
+__all__ = ["FASTEST_DRAWN", "AtEnd", "CrowdRobot", "Person", "Source", "Waypoint", "middle_of", "points_of"]
 
 AtEnd = Literal["stay", "leave", "repeat"]
 
@@ -25,11 +27,35 @@ FASTEST_DRAWN = 2.2
 """Largest speed that is drawn for people, in m/s, Weidmann (1993)."""
 
 
-def _route(name: str, points: object) -> tuple[Pair, ...]:
-    """Return the points of a route."""
-    rule = "be a sequence of points (x, y)"
-    given = enumerate(sequence(name, rule, points))
-    return tuple(pair(f"{name}[{index}]", point) for index, point in given)
+Line = tuple[Pair, Pair]
+Waypoint = Pair | Line
+"""An element of a route: a point (x, y) in m, or a line between two points."""
+
+
+def _route(name: str, elements: object) -> tuple[Waypoint, ...]:
+    """Return the points and lines of a route."""
+    rule = "be a sequence of points (x, y) and lines ((x, y), (x, y))"
+    return tuple(_element(f"{name}[{index}]", each) for index, each in enumerate(sequence(name, rule, elements)))
+
+
+def _element(name: str, given: object) -> Waypoint:
+    """Return a point, or a line of two points."""
+    parts = sequence(name, "be a point (x, y) or a line of two points", given)
+    if len(parts) == 2 and all(isinstance(part, Sequence | np.ndarray) and not isinstance(part, str) for part in parts):
+        return pair(f"{name}[0]", parts[0]), pair(f"{name}[1]", parts[1])
+    return pair(name, given)
+
+
+def points_of(element: Waypoint) -> tuple[Pair, ...]:
+    """Return the point, or the two ends of the line, of an element of a route."""
+    first, second = element
+    return (first, second) if isinstance(first, tuple) and isinstance(second, tuple) else (element,)  # type: ignore[return-value]
+
+
+def middle_of(element: Waypoint) -> Pair:
+    """Return the point, or the middle of the line, of an element of a route."""
+    ends = points_of(element)
+    return sum(x for x, _ in ends) / len(ends), sum(y for _, y in ends) / len(ends)
 
 
 def _recording(given: object) -> tuple[tuple[float, ...], tuple[Pair, ...]] | None:
@@ -57,6 +83,11 @@ def _traits(owner: Person | Source) -> dict[str, Any]:
     }
 
 
+def _told(traits: dict[str, Any]) -> dict[str, Any]:
+    """Return what people have in common as the core is told of it."""
+    return traits | {"route": [points_of(element) for element in traits["route"]]}
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Person(Parameters):
     """A person who walks along a route.
@@ -65,8 +96,10 @@ class Person(Parameters):
     ----------
     start : tuple of float
         Position (x, y) in m.
-    route : sequence of tuple of float
-        Points (x, y) in m, one after the other; without one the person stands.
+    route : sequence of points and lines
+        Points (x, y) in m and lines ((x, y), (x, y)), one after the other; without one the person stands. A point
+        is reached within the arrival radius. Of a line, a door for example, the person goes to the nearest point
+        that leaves room for the body at both ends, and it is passed where the center crosses it.
     model : Pedestrian
         How the person decides.
     radius : float
@@ -96,7 +129,8 @@ class Person(Parameters):
     Raises
     ------
     InvalidParameterError
-        If a value is not finite or out of range, or an empty route is to be repeated or left.
+        If a value is not finite or out of range, the ends of a line are one place, or an empty route is to be
+        repeated or left.
 
     Examples
     --------
@@ -106,7 +140,7 @@ class Person(Parameters):
     """
 
     start: Pair
-    route: tuple[Pair, ...] | Sequence[Pair] = ()
+    route: tuple[Waypoint, ...] | Sequence[Waypoint] = ()
     model: Pedestrian = field(default_factory=functools.cache(CollisionFreeSpeed))
     radius: float = 0.25
     desired_speed: float | None = None
@@ -128,7 +162,7 @@ class Person(Parameters):
         group = None if self.group is None else count("group", self.group, least=0, most=_MOST_GROUPS)
         own = {"group": group, "enters": number("enters", self.enters), "recording": _recording(self.recording)}
         self._set(**traits, **places, **own)
-        native = _hrsafety.CrowdPerson(self.model._native, **traits, **places, **own)
+        native = _hrsafety.CrowdPerson(self.model._native, **_told(traits), **places, **own)
         self._set(_native=native)
 
 
@@ -166,7 +200,7 @@ class Source(Parameters):
     high: Pair
     rate: float
     arrivals: Literal["poisson", "regular"] = "poisson"
-    route: tuple[Pair, ...] | Sequence[Pair]
+    route: tuple[Waypoint, ...] | Sequence[Waypoint]
     model: Pedestrian = field(default_factory=functools.cache(CollisionFreeSpeed))
     radius: float = 0.25
     desired_speed: float | None = None
@@ -183,7 +217,7 @@ class Source(Parameters):
         word("arrivals", self.arrivals, ("poisson", "regular"))
         own = {"low": pair("low", self.low), "high": pair("high", self.high), "rate": number("rate", self.rate)}
         self._set(**traits, **own)
-        native = _hrsafety.CrowdSource(self.model._native, **traits, **own, regular=self.arrivals == "regular")
+        native = _hrsafety.CrowdSource(self.model._native, **_told(traits), **own, regular=self.arrivals == "regular")
         self._set(_native=native)
 
 

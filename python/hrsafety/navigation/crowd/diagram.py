@@ -11,6 +11,7 @@ import numpy.typing as npt
 from hrsafety._arguments import Array, instance, numbers, positive, sequence
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown, SimulationError
+from hrsafety.navigation.crowd.agents import points_of
 from hrsafety.navigation.crowd.simulation import simulate_crowds
 from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
 from hrsafety.navigation.crowd.world import World
@@ -158,7 +159,7 @@ def _density(name: str, world: object, width: float) -> float:
         found = "nobody" if not place.people else "sources"
         raise InvalidParameterError(f"{name}.people", "be there from the start, at least one", Shown(found))
     for index, person in enumerate(place.people):
-        way = [person.start[0], *(point[0] for point in person.route)]
+        way = [person.start[0], *(min(x for x, _ in points_of(element)) for element in person.route)]
         if len(way) < 2 or not (np.diff(way) > 0.0).all():
             rule = "lead to +x, as of everybody in the corridor"
             remedy = "of scenarios.corridor, give two_way=False"
@@ -182,9 +183,9 @@ def _speed(index: int, run: CrowdTrajectories) -> float:
     """Return the mean velocity along x over the second half of the time."""
     if run.diverged is not None:
         raise SimulationError(f"worlds[{index}] diverged at {run.diverged.time:g} s", index)
-    arrived = np.flatnonzero(~np.isnan(run.arrival_time))
+    arrived = np.flatnonzero(~np.isnan(run.person_arrival_time))
     if arrived.size > 0:
-        found = Shown(f"an arrival at {run.arrival_time[arrived[0]]:g} s")
+        found = Shown(f"an arrival at {run.person_arrival_time[arrived[0]]:g} s")
         rule = "lead farther than the person walks within the time limit"
         raise InvalidParameterError(f"worlds[{index}].people[{arrived[0]}].route", rule, found)
     first = len(run.time) // 2

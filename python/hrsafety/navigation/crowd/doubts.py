@@ -7,12 +7,14 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
-from hrsafety.navigation.crowd.agents import FASTEST_DRAWN, CrowdRobot, Person, Source
+from hrsafety import _hrsafety
+from hrsafety._arguments import Array, Pair
+from hrsafety.navigation.crowd.agents import FASTEST_DRAWN, CrowdRobot, Person, Source, middle_of
 from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.warnings.shields import SEES_LESS, Motion, Mover, of_order, of_surroundings, shield_of
-from hrsafety.plausibility import ResultWarning, gathered, implausible
+from hrsafety.plausibility import RANGES, ResultWarning, gathered, implausible
 
-__all__ = ["of_numbers", "of_robots"]
+__all__ = ["of_numbers", "of_people", "of_robots", "of_walls"]
 
 
 def of_numbers(
@@ -44,6 +46,106 @@ def of_numbers(
             values |= {"measurement_scale": robot.measurement.scale, "latency": robot.measurement.latency}
         found.append((f"robots[{index}]", implausible(values, _QUANTITIES)))
     return gathered(found, "bodies")
+
+
+def of_people(wall_rescues: int, max_person_speed: float, desired_speed: Array) -> tuple[ResultWarning, ...]:
+    """Return the doubts about people in a world that has run.
+
+    Parameters
+    ----------
+    wall_rescues : int
+        How often somebody was set back at a wall.
+    max_person_speed : float
+        Largest speed of somebody, in m/s.
+    desired_speed : ndarray of shape (m,)
+        Speeds that people want, in m/s.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        With the codes ``"wall_rescues"`` and ``"people_too_fast"``.
+    """
+    found = []
+    if wall_rescues:
+        found.append(
+            ResultWarning(
+                "wall_rescues",
+                "wall_rescues",
+                f"people were set back {wall_rescues} times who would have passed a wall or come nearer to it than "
+                "a tenth of their radius: their model does not keep them off these walls, and near them they move as "
+                "no model says; a larger wall_strength or wall_range, slower people or starts apart help",
+            )
+        )
+    most = max(RANGES["walking_speed"].most, _PUSHED * float(desired_speed.max(initial=0.0)))
+    if max_person_speed > most:
+        found.append(
+            ResultWarning(
+                "people_too_fast",
+                "max_person_speed",
+                f"somebody moved at {max_person_speed:.4g} m/s, faster than {most:.3g} m/s, the fastest that people "
+                "are pushed: bodies that overlap push each other apart without bound; let people start apart, or take "
+                "a model that bounds the speed",
+            )
+        )
+    return tuple(found)
+
+
+_PUSHED = 1.3
+"""Multiple of the desired speed that other models of force permit."""
+
+
+def of_walls(
+    people: Sequence[Person], sources: Sequence[Source], robots: Sequence[CrowdRobot], native: _hrsafety.CrowdWorld
+) -> tuple[ResultWarning, ...]:
+    """Return a warning about starts and goals inside walls, the first of each kind with the number of the others.
+
+    Parameters
+    ----------
+    people, sources, robots : sequence of Person, Source, CrowdRobot
+        Who is in the world.
+    native : CrowdWorld
+        The world as the core has it.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        With the codes ``"start_in_wall"`` and ``"goal_in_wall"``.
+    """
+    acting = [(f"people[{index}]", person) for index, person in enumerate(people) if person.recording is None]
+    starts = [(owner, "start", person.start, 0.0) for owner, person in acting]
+    walking: list[tuple[str, Person | Source]] = [*acting]
+    walking += [(f"sources[{index}]", source) for index, source in enumerate(sources)]
+    goals = [
+        (owner, f"route[{place}]", middle_of(element), 0.0)
+        for owner, each in walking
+        for place, element in enumerate(each.route)
+    ]
+    # A robot has arrived as soon as it is within the tolerance.
+    goals += [
+        (f"robots[{index}]", "goal", robot.goal, max(0.0, robot.robot.radius - robot.arrival_tolerance))
+        for index, robot in enumerate(robots)
+    ]
+    inside = [
+        (owner, (ResultWarning("start_in_wall", name, f"{said}: who is inside is set out at the first step"),))
+        for owner, name, said in _in_walls(starts, native)
+    ]
+    behind = [
+        (owner, (ResultWarning("goal_in_wall", name, f"{said}: nobody passes a wall to get there"),))
+        for owner, name, said in _in_walls(goals, native)
+    ]
+    return (*gathered(inside, "starts"), *gathered(behind, "goals"))
+
+
+def _in_walls(
+    places: Sequence[tuple[str, str, Pair, float]], native: _hrsafety.CrowdWorld
+) -> Iterator[tuple[str, str, str]]:
+    """Yield owner, name and what is wrong of places that are not so far from walls as they need to be."""
+    gaps = native.nearest_walls([place for _, _, place, _ in places])
+    for (owner, name, (x, y), least), (gap, wall) in zip(places, gaps, strict=True):
+        if gap < least:
+            there = f"{-gap:.3g} m inside" if gap < 0.0 else f"{gap:.3g} m from"
+            needed = "" if least == 0.0 else f", where a body that is to come within {least:.3g} m touches it"
+            yield owner, name, f"{name} ({x:.6g}, {y:.6g}) is {there} walls[{wall}]{needed}"
 
 
 _OF_ROBOTS = ("mass", "radius", "max_speed", "max_acceleration")

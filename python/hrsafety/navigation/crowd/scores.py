@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from hrsafety._arguments import Array
+from hrsafety.navigation.crowd.agents import middle_of
+from hrsafety.navigation.crowd.episodes import episodes_in
 from hrsafety.navigation.crowd.simulation import simulate_crowds
 from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
 from hrsafety.navigation.crowd.world import World
@@ -20,10 +22,10 @@ __all__ = ["crowd_batch", "episodes_of", "world_metrics"]
 
 
 def _goals(run: CrowdTrajectories) -> Array:
-    """Return the last points of the routes; of people without one their places, NaN of those from sources."""
+    """Return where routes end, of lines the middles; of people without one their places, NaN of those from sources."""
     goals = np.full((len(run.radius), 2), np.nan)
     for index, person in enumerate(run.world.people):
-        goals[index] = person.route[-1] if person.route else person.start
+        goals[index] = middle_of(person.route[-1]) if person.route else person.start
     return goals
 
 
@@ -31,7 +33,7 @@ def _arrivals(run: CrowdTrajectories, people: int) -> Array:
     """Return instants and places at which the people of the world arrived, and so many rows."""
     rows = np.full((people, 3), np.nan)
     count = len(run.world.people)
-    rows[:count] = np.column_stack([run.arrival_time, run.arrival_position])[:count]
+    rows[:count] = np.column_stack([run.person_arrival_time, run.person_arrival_position])[:count]
     return rows
 
 
@@ -74,29 +76,8 @@ def episodes_of(run: CrowdTrajectories, without: CrowdTrajectories | None = None
     >>> nav.metrics.evaluate(episode).arrived
     True
     """
-    world = run.world
-    groups = [-1 if person.group is None else person.group for person in world.people]
-    groups += [-1] * (len(run.radius) - len(groups))
-    grouped = any(group >= 0 for group in groups)
     beside = {} if without is None else _beside(run, without)
-    return [
-        Episode(
-            position=run.robot_position[:, index],
-            step=world.step,
-            goal=robot.goal,
-            robot_radius=robot.robot.radius,
-            people=run.position,
-            person_radius=run.radius,
-            groups=groups if grouped else (),
-            walls=world.walls,
-            arrival_tolerance=robot.arrival_tolerance,
-            max_speed=robot.robot.max_speed,
-            period=world.period,
-            warnings=run.warnings,
-            **beside,
-        )
-        for index, robot in enumerate(world.robots)
-    ]
+    return episodes_in(run.world, run.robot_position, run.position, run.radius, warnings=run.warnings, **beside)
 
 
 def crowd_batch(
@@ -172,7 +153,7 @@ def world_metrics(run: CrowdTrajectories) -> WorldMetrics:
     found = evaluate_world(
         run.position,
         person_goals=_goals(run),
-        person_arrival_time=run.arrival_time,
+        person_arrival_time=run.person_arrival_time,
         step=world.step,
         time_limit=world.time_limit,
         robots=run.robot_position if world.robots else (),

@@ -15,6 +15,7 @@ from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.crowd.contacts import Contacts, contacts_of
 from hrsafety.navigation.crowd.doubts import of_robots
+from hrsafety.navigation.crowd.episodes import outcome_of
 from hrsafety.navigation.crowd.scores import episodes_of, world_metrics
 from hrsafety.navigation.crowd.simulation import simulate_crowds
 from hrsafety.navigation.crowd.table import CrowdTable
@@ -172,7 +173,7 @@ class CrowdStudy:
         return gathered(driven, "scenarios")
 
     def _between(self, parts: Sequence[_Rows]) -> tuple[ResultWarning, ...]:
-        """Return the doubts about contacts that no instant shows."""
+        """Return the doubts about what happened: contacts that no instant shows, people set back at walls."""
         runs = (
             (self._names[job[0]], doubts) for part in parts for job, doubts in zip(part.jobs, part.doubts, strict=True)
         )
@@ -289,7 +290,10 @@ class _Rows:
             end_time=np.array([runs[index].time[-1] for index in owner]),
             contacts=_with_walls(contacts, table),
             values=values,
-            doubts=[doubts_between(*each) for each in zip(episodes, ends, *least, strict=True)],
+            doubts=[
+                (*doubts_between(*each), *_of_people(runs[index]))
+                for index, each in zip(owner, zip(episodes, ends, *least, strict=True), strict=True)
+            ],
         )
 
 
@@ -301,8 +305,11 @@ def _with_walls(contacts: Sequence[Contacts], table: MetricTable) -> np.ndarray[
 
 
 def _outcome(table: MetricTable, row: int, run: CrowdTrajectories, robot: int) -> str:
-    touched = (table.robot_on_person, table.person_on_robot, table.mutual_contacts, table.wall_contacts)
-    # Who had arrived before the world diverged did so with the contacts that it had.
-    if run.outcomes[robot] == "diverged":
-        return "diverged"
-    return "collided" if any(kind[row] for kind in touched) else run.outcomes[robot]
+    arrived = not np.isnan(run.robot_arrival_time[robot])
+    return outcome_of(table, row, arrived=arrived, diverged=run.diverged is not None)
+
+
+def _of_people(run: CrowdTrajectories) -> tuple[ResultWarning, ...]:
+    """Return the doubts of a run but those of its world, which are told once, and its end, which is a column."""
+    known = {*run.world.warnings}
+    return tuple(doubt for doubt in run.warnings if doubt not in known and doubt.code != "unfinished")

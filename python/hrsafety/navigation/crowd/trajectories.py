@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from hrsafety._arguments import Array
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
+from hrsafety.navigation.crowd.doubts import of_people
+from hrsafety.navigation.crowd.episodes import episodes_in, outcome_of
 from hrsafety.navigation.crowd.world import World
+from hrsafety.navigation.metrics.scores import table_of
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, plane
 
@@ -56,12 +59,17 @@ class CrowdTrajectories(Table):
         Headings of the robots in rad.
     radius, desired_speed, awareness : ndarray of shape (m,)
         Of the people, in m, in m/s, and from 0 to 1, as drawn.
-    arrival_time : ndarray of shape (m,)
+    person_arrival_time : ndarray of shape (m,)
         When a person reached the end of the route, in s; NaN for those who did not.
-    arrival_position : ndarray of shape (m, 2)
+    person_arrival_position : ndarray of shape (m, 2)
         Where that was, in m. Who leaves at the end is absent from ``position`` from that instant on.
     robot_arrival_time : ndarray of shape (k,)
         When a robot arrived, in s; NaN for those that did not.
+    wall_rescues : int
+        How often somebody was set back who would have passed a wall or come nearer to it than a tenth of the radius:
+        nobody does, whatever a model decides.
+    max_person_speed : float
+        Largest speed of the people who decide, in m/s, also between instants and before walls take of it.
     diverged : Divergence or None
         Whose state was no longer finite, if that ended the world.
     """
@@ -76,27 +84,47 @@ class CrowdTrajectories(Table):
     radius: Array
     desired_speed: Array
     awareness: Array
-    arrival_time: Array
-    arrival_position: Array
+    person_arrival_time: Array
+    person_arrival_position: Array
     robot_arrival_time: Array
+    wall_rescues: int
+    max_person_speed: float
     diverged: Divergence | None = None
+
+    def __getattr__(self, name: str) -> Any:
+        """Say whose arrival is meant, of people or of robots: elsewhere ``arrival_time`` is that of a robot."""
+        meant = f": take person_{name} or robot_arrival_time" if name in ("arrival_time", "arrival_position") else ""
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}{meant}", name=name, obj=self)
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """Those of the world, and that it diverged if it did."""
+        """Those of the world; that it diverged, that people were set back at walls, or moved faster than people do."""
+        # Of a world that diverged its end says more than a speed.
+        speed = self.max_person_speed if self.diverged is None else 0.0
+        found = (*of_people(self.wall_rescues, speed, self.desired_speed), *self.world.warnings)
         if self.diverged is None:
-            return self.world.warnings
+            return found
         who, when = f"{self.diverged.kind} {self.diverged.index}", self.diverged.time
         message = (
             f"the world diverged at {when:g} s, {who} first: nothing is known from then on; a smaller step may help"
         )
-        return (ResultWarning("unfinished", "diverged", message), *self.world.warnings)
+        return (ResultWarning("unfinished", "diverged", message), *found)
 
     @property
     def outcomes(self) -> tuple[str, ...]:
-        """What became of each robot: ``"arrived"``, ``"timed_out"``, or ``"diverged"``."""
-        missed = "timed_out" if self.diverged is None else "diverged"
-        return tuple(missed if np.isnan(time) else "arrived" for time in self.robot_arrival_time)
+        """What became of each robot, by the rule and in the words of the tables of `simulate_many`.
+
+        ``"arrived"`` without a contact with people or walls, ``"collided"``, ``"timed_out"``, or ``"diverged"`` where
+        the world did so before the robot arrived.
+        """
+        if not self.world.robots:
+            return ()
+        table = table_of(episodes_in(self.world, self.robot_position, self.position, self.radius), threads=1)
+        arrived = ~np.isnan(self.robot_arrival_time)
+        diverged = self.diverged is not None
+        return tuple(
+            outcome_of(table, row, arrived=bool(there), diverged=diverged) for row, there in enumerate(arrived)
+        )
 
     def columns(self) -> Columns:
         """Return one-dimensional columns by name, a row for each instant.

@@ -11,7 +11,7 @@ from hrsafety._arguments import Pair, Parameters, checked_seed, instance, pair, 
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.crowd.agents import CrowdRobot, Person, Source
-from hrsafety.navigation.crowd.doubts import of_numbers, of_robots
+from hrsafety.navigation.crowd.doubts import of_numbers, of_robots, of_walls
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.plausibility import ResultWarning
 
@@ -96,7 +96,7 @@ class World(Parameters):
     ... ]
     >>> world = nav.crowd.World(people=people, walls=walls, time_limit=20)
     >>> run = nav.crowd.simulate_crowd(world)
-    >>> bool((run.arrival_time < 10).all())
+    >>> bool((run.person_arrival_time < 10).all())
     True
     """
 
@@ -139,11 +139,12 @@ class World(Parameters):
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """Implausible numbers, and bounds of the robots' shields that people, other robots or measurements exceed."""
+        """Doubts: implausible numbers, starts and goals inside walls, bounds of shields that the world exceeds."""
         found = self._warnings
         if found is None:
             own = tuple(self.people), tuple(self.sources), tuple(self.robots)
             of_shields = of_robots(*own, self.step, walls=len(self.walls) > 0)
-            found = (*of_numbers(*own, self.time_limit), *of_shields)
+            in_walls = of_walls(*own, self._native) if self.walls else ()
+            found = (*of_numbers(*own, self.time_limit), *in_walls, *of_shields)
             self._set(_warnings=found)
         return found

@@ -3,7 +3,7 @@
 use numeric::random::Stream;
 
 use crate::crowd::neighbors::circle;
-use crate::crowd::world::CrowdWorld;
+use crate::crowd::world::{CrowdWorld, Waypoint};
 use crate::error::{Failure, Given, Result};
 use crate::lanes::Vector2;
 
@@ -80,7 +80,7 @@ fn draw_circle(world: &mut CrowdWorld) -> Result<()> {
         drawn.start = start;
         let goal = start.map(std::ops::Neg::neg);
         drawn.traits.route.points.clear();
-        drawn.traits.route.points.push(goal);
+        drawn.traits.route.points.push(Waypoint::Point(goal));
     }
     Ok(())
 }
@@ -106,7 +106,9 @@ impl Area {
             drawn.start = start.into();
             if self.level {
                 for point in &mut drawn.traits.route.points {
-                    point[1] = start.y;
+                    if let Waypoint::Point(point) = point {
+                        point[1] = start.y;
+                    }
                 }
             }
         }
