@@ -29,7 +29,7 @@ def drawn(count: int) -> np.ndarray:
 
 
 def own(poses: np.ndarray, threads: int = 1) -> np.ndarray:
-    return ARM.effective_mass(poses, link="tool", direction=ALONG, threads=threads)
+    return ARM.effective_mass(poses, link="tool", direction=ALONG, threads=threads).mass
 
 
 def processor_time(work: Callable[[], Any]) -> tuple[float, Any]:

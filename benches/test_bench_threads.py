@@ -95,7 +95,7 @@ def masses() -> Work:
     arm = arms.Arm.example()
     poses = np.random.default_rng(18).uniform(-2.0, 2.0, (1_000_000, len(arm.joint_names)))
     along = np.array([0.6, -0.48, 0.64])
-    return lambda threads: arm.effective_mass(poses, link="tool", direction=along, threads=threads)
+    return lambda threads: arm.effective_mass(poses, link="tool", direction=along, threads=threads).mass
 
 
 KINDS: dict[str, Callable[[], Work]] = {

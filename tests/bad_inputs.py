@@ -15,7 +15,19 @@ from pathlib import Path
 
 import numpy as np
 
-from hrsafety import HrsafetyError, datasets, gym, impact, navigation, plotting, reactive, reproduce, scenarios, sweep
+from hrsafety import (
+    HrsafetyError,
+    arms,
+    datasets,
+    gym,
+    impact,
+    navigation,
+    plotting,
+    reactive,
+    reproduce,
+    scenarios,
+    sweep,
+)
 from hrsafety.cli import main
 
 FILES = {
@@ -74,6 +86,7 @@ NAMES = {
     "nav": navigation,
     "impact": impact,
     "reactive": reactive,
+    "arms": arms,
     "sweep": sweep,
     "scenarios": scenarios,
     "datasets": datasets,
@@ -260,6 +273,13 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "[[0.0, 0.0], [1.0, 0.0]])",
         "seeds without end": "nav.simulate_many(scene, law, seeds=2**53)",
         "refinements without end": "nav.optimize_gains([scene], law, refinements=2**31)",
+    },
+    "Arms": {
+        "SDF for a URDF": "arms.Arm.from_urdf('<sdf version=\"1.9\"/>')",
+        "MJCF for a URDF": "arms.Arm.from_urdf('<mujoco/>')",
+        "inertia that no body has": "arms.Arm(arms.Arm.example().urdf.replace('ixx=\"0.42\"', 'ixx=\"0.9\"'))",
+        "units in a URDF": "arms.Arm.from_urdf(arms.Arm.example().urdf.replace('<mass ', '<mass unit=\"g\" '))",
+        "type plate of 0 kg": "arms.Arm.example(type_plate_mass=0.0)",
     },
     "Impacts": {
         "foam of negative stiffness": "impact.Foam(stiffness=-24300.0, damping=71.9)",

@@ -151,6 +151,7 @@ __all__ = [
     "microphone_delays",
     "microphone_elevations",
     "moving_average",
+    "nearest_inertia",
     "parallel_ray_bearings",
     "pd_gains",
     "positive_ends",
@@ -2025,7 +2026,12 @@ class Arm:
     """An arm on a base that stands still."""
 
     def __new__(
-        cls, urdf: str, payloads: Sequence[_Load], armature: Sequence[tuple[str, float]], locked: Sequence[str]
+        cls,
+        urdf: str,
+        payloads: Sequence[_Load],
+        armature: Sequence[tuple[str, float]],
+        locked: Sequence[str],
+        repair_inertia: bool,
     ) -> Self: ...
     def facts(self) -> dict[str, Any]:
         """Return what is known of the arm without a pose."""
@@ -2038,6 +2044,9 @@ class Arm:
 
 def urdf_joint_names(urdf: str) -> list[str]:
     """Return the names of the joints of a URDF that take values."""
+
+def nearest_inertia(inertia: Sequence[Sequence[float]]) -> tuple[list[list[float]], float]:
+    """Return the nearest inertia that a rigid body can have, and by how much of its trace a given one misses that."""
 
 def bare_forces(closing_speed: _Array, robot_mass: _Array, body_mass: float, stiffness: float) -> _Array:
     """Return contact forces of closing speeds on a linear region without a covering."""

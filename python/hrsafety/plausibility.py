@@ -279,7 +279,8 @@ RANGES: dict[str, Range] = {
     "intrusion": Range(0.0, 5.0, "m", "ISO 13855 has at most 1.2 m", "mm or cm given for m"),
     "position_uncertainty": Range(0.0, 5.0, "m", "exact to coarse radio positioning", "mm or cm given for m"),
     "robot_deceleration": Range(0.0, 100.0, "m/s^2", "ten times gravity", "mm/s^2 given for m/s^2"),
-    "point_of_link": Range(-10.0, 10.0, "m", "longer than links of industrial arms", "mm or cm given for m"),
+    "arm_reach": Range(0.02, 10.0, "m", "a finger to the largest industrial arms", "mm or cm given for m"),
+    "arm_moving_mass": Range(0.0, 6000.0, "kg", "nothing to the heaviest industrial arms", "g or t given for kg"),
     "damping_ratio": Range(
         0.0, 10.0, "", "0.11 for the foams of Zeng (2011)", "a damping in N s/m given for its ratio"
     ),

@@ -202,6 +202,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     ),
     "Arm.effective_mass": (WEIGHED.effective_mass, POINT | {"direction": (1.0, 0.0, 0.0)}),
     "Arm.point_masses": (WEIGHED.point_masses, POINT | {"direction": (1.0, 0.0, 0.0)}),
+    "nearest_inertia": (arms.nearest_inertia, {"inertia": np.diag([0.1, 0.1, 0.6])}),
     "Arm.velocity": (WEIGHED.velocity, POINT | {"rates": np.ones(6)}),
     "workspace": (
         arms.workspace,

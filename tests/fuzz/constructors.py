@@ -22,7 +22,9 @@ Right = dict[str, Any]
 
 # Classes that describe their parameters and are made by the package, not by its users.
 NO_CONSTRUCTORS: dict[type, str] = {
-    **dict.fromkeys((arms.MassHistory, arms.PointMasses, arms.Workspace), "made by functions of arms"),
+    **dict.fromkeys(
+        (arms.EffectiveMass, arms.MassHistory, arms.PointMasses, arms.Workspace), "made by functions of arms"
+    ),
     **dict.fromkeys((nav.crowd.CrowdTrajectories, nav.crowd.Divergence), "made by a run of a world"),
     **dict.fromkeys((nav.metrics.Falsification, nav.metrics.Pursuit), "made by falsify"),
     **dict.fromkeys((nav.metrics.SafetyDecision, nav.metrics.SafetyRecord), "made by record_safety"),

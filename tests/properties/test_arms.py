@@ -22,13 +22,13 @@ EXACT = 1e-9
 @given(pose=ANGLES, point=POINTS, direction=DIRECTIONS)
 def test_masses_lie_between_the_extremes(pose: list[float], point: Any, direction: Any) -> None:
     place = {"link": "tool", "point": point}
-    mass = ARM.effective_mass(pose, direction=direction, **place)
+    mass = ARM.effective_mass(pose, direction=direction, **place).mass
     found = ARM.extremes(pose, **place)
     assert found.least_mass * (1.0 - EXACT) <= mass
     assert mass <= found.worst_mass * (1.0 + 1e-6)  # ratios of up to 1e9 lose digits of the larger one
-    turned = ARM.effective_mass(pose, direction=-7.0 * np.array(direction), **place)
+    turned = ARM.effective_mass(pose, direction=-7.0 * np.array(direction), **place).mass
     assert turned == pytest.approx(mass, rel=EXACT)
-    along = ARM.effective_mass(pose, direction=found.least_direction, **place)
+    along = ARM.effective_mass(pose, direction=found.least_direction, **place).mass
     assert along == pytest.approx(float(found.least_mass), rel=EXACT)
 
 
@@ -38,14 +38,14 @@ def test_masses_lie_between_the_extremes(pose: list[float], point: Any, directio
 def test_motor_inertia_never_lowers_a_mass(pose: Any, point: Any, direction: Any, joint: str, more: float) -> None:
     place = {"link": "tool", "point": point, "direction": direction}
     heavier = arms.Arm.example(armature={joint: more})
-    assert heavier.effective_mass(pose, **place) >= ARM.effective_mass(pose, **place) * (1.0 - EXACT)
+    assert heavier.effective_mass(pose, **place).mass >= ARM.effective_mass(pose, **place).mass * (1.0 - EXACT)
 
 
 @given(pose=ANGLES, direction=DIRECTIONS, joint=JOINTS)
 def test_a_locked_joint_never_lowers_a_mass(pose: Any, direction: Any, joint: str) -> None:
     place = {"link": "tool", "direction": direction}
     locked = arms.Arm.example(locked=[joint])
-    assert locked.effective_mass(pose, **place) >= ARM.effective_mass(pose, **place) * (1.0 - EXACT)
+    assert locked.effective_mass(pose, **place).mass >= ARM.effective_mass(pose, **place).mass * (1.0 - EXACT)
 
 
 @given(pose=ANGLES, point=POINTS, turn=some.floats(-3.0, 3.0))
@@ -82,5 +82,5 @@ def test_a_denser_arm_is_heavier_in_proportion(pose: Any, direction: Any, factor
     for name in ("<mass value", "ixx", "iyy", "izz"):
         text = scaled(text, name)
     place = {"link": "tool", "direction": direction}
-    denser = arms.Arm.from_urdf(text).effective_mass(pose, **place)
-    assert denser == pytest.approx(factor * ARM.effective_mass(pose, **place), rel=1e-7)
+    denser = arms.Arm.from_urdf(text).effective_mass(pose, **place).mass
+    assert denser == pytest.approx(factor * ARM.effective_mass(pose, **place).mass, rel=1e-7)

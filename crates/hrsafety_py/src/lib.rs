@@ -44,7 +44,7 @@ mod _hrsafety {
     #[pymodule_export]
     use crate::columns::{codes_there, fill_words, positive_ends};
     #[pymodule_export]
-    use crate::contact::arm::{Arm, bare_forces, urdf_joint_names};
+    use crate::contact::arm::{Arm, bare_forces, nearest_inertia, urdf_joint_names};
     #[pymodule_export]
     use crate::contact::separation::{
         StoppingCurve, guard_distance, separation_distances, separation_speeds,

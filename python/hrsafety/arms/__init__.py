@@ -7,21 +7,25 @@ from hrsafety._namespace import names_of
 if TYPE_CHECKING:
     from hrsafety.arms.arm import Arm
     from hrsafety.arms.histories import MassHistory, along
-    from hrsafety.arms.masses import Extremes, PointMasses
+    from hrsafety.arms.inertias import NearestInertia, nearest_inertia
+    from hrsafety.arms.masses import EffectiveMass, Extremes, PointMasses
     from hrsafety.arms.payload import Payload
     from hrsafety.arms.workspaces import Workspace, workspace
     from hrsafety.errors import InvalidParameterError, ShapeError
 
 __all__ = [
     "Arm",
+    "EffectiveMass",
     "Extremes",
     "InvalidParameterError",
     "MassHistory",
+    "NearestInertia",
     "Payload",
     "PointMasses",
     "ShapeError",
     "Workspace",
     "along",
+    "nearest_inertia",
     "workspace",
 ]
 
@@ -32,7 +36,8 @@ if not TYPE_CHECKING:  # loaded when they are asked for; a type checker asks for
         {
             "hrsafety.arms.arm": "Arm",
             "hrsafety.arms.histories": "MassHistory along",
-            "hrsafety.arms.masses": "Extremes PointMasses",
+            "hrsafety.arms.inertias": "NearestInertia nearest_inertia",
+            "hrsafety.arms.masses": "EffectiveMass Extremes PointMasses",
             "hrsafety.arms.payload": "Payload",
             "hrsafety.arms.workspaces": "Workspace workspace",
             "hrsafety.errors": "InvalidParameterError ShapeError",

@@ -9,30 +9,28 @@ from importlib import resources
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, checked_text, count, flag, sequence, thread_count, word
+from hrsafety._arguments import Array, checked_text, count, flag, positive, sequence, thread_count, word
 from hrsafety._bounds import MOST_MASSES, MOST_POINT_STATES
 from hrsafety._records import dataclass
+from hrsafety.arms.doubts import doubts_of_point, for_rule
 from hrsafety.arms.facts import Facts
 from hrsafety.arms.inputs import (
     armature_of,
     broadcast,
-    doubts_of_point,
     locked_of,
     motors_of,
     poses_of,
     urdf_text,
     vectors_of,
 )
-from hrsafety.arms.masses import RULES, Extremes, PointMasses, mass_by_rule
+from hrsafety.arms.masses import RULES, EffectiveMass, Extremes, PointMasses, mass_by_rule
 from hrsafety.arms.payload import Payload, payloads_of
 from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Arm"]
-
-Masses = npt.NDArray[np.float64] | float
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -52,6 +50,10 @@ class Arm(Facts):
         Reflected motor inertia n^2 J_m by joint, in kg m^2, or in kg where the joint slides.
     locked : tuple of str
         Joints that keep their value.
+    repair_inertia : bool
+        Whether every inertia that no rigid body has is replaced by the nearest one, see `from_urdf`.
+    type_plate_mass : float or None
+        Mass on the type plate, without payload and controller, in kg.
 
     Raises
     ------
@@ -65,16 +67,22 @@ class Arm(Facts):
     >>> arm.joint_names[:3]
     ('turn', 'shoulder', 'elbow')
     >>> pose = {"shoulder": 0.4, "elbow": 1.4}
-    >>> f"{arm.effective_mass(pose, link='tool', direction=(1, 0, 0)):.3f} kg, ISO {arm.iso_mass:.1f} kg"
+    >>> found = arm.effective_mass(pose, link="tool", direction=(1, 0, 0))
+    >>> f"{float(found):.3f} kg, ISO {arm.iso_mass:.1f} kg"
     '6.923 kg, ISO 14.5 kg'
+    >>> [doubt.code for doubt in found.warnings]
+    ['no_motor_inertia']
     """
 
     urdf: str
     payloads: tuple[Payload, ...] = ()
     armature: tuple[tuple[str, float], ...] = ()
     locked: tuple[str, ...] = ()
+    repair_inertia: bool = False
+    type_plate_mass: float | None = None
     _native: _hrsafety.Arm = field(init=False, repr=False, compare=False)
     _facts: dict[str, Any] = field(init=False, repr=False, compare=False)
+    _doubts: tuple[ResultWarning, ...] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Read the URDF and check everything."""
@@ -83,10 +91,14 @@ class Arm(Facts):
             payloads=payloads_of(list(sequence("payloads", "be a tuple of Payload", self.payloads))),
             armature=motors_of(self.armature),
             locked=locked_of(sequence("locked", "be a tuple of names of joints", self.locked)),
+            repair_inertia=flag("repair_inertia", self.repair_inertia),
         )
+        if self.type_plate_mass is not None:
+            self._set(type_plate_mass=positive("type_plate_mass", self.type_plate_mass))
         loads = [(each.link, each.mass, each.center, each.inertia) for each in self.payloads]
-        native = _hrsafety.Arm(self.urdf, loads, list(self.armature), list(self.locked))
+        native = _hrsafety.Arm(self.urdf, loads, list(self.armature), list(self.locked), self.repair_inertia)
         self._set(_native=native, _facts=dict(native.facts()))
+        self._set(_doubts=self._doubted())
 
     @classmethod
     def from_urdf(
@@ -95,6 +107,9 @@ class Arm(Facts):
         payload: object = None,
         armature: object = None,
         locked: object = None,
+        *,
+        repair_inertia: bool = False,
+        type_plate_mass: float | None = None,
     ) -> Arm:
         """Read an arm.
 
@@ -110,6 +125,15 @@ class Arm(Facts):
         locked : iterable of str or None
             Joints that keep their value, such as those of a closed gripper; a joint that mimics another one follows
             that one, locked or not.
+        repair_inertia : bool
+            An inertia I belongs to a rigid body if S = tr(I)/2 - I, the second moments of its mass, is positive
+            semidefinite. Where it is not, eigenvalues of S below 0 become 0, and tr(S') - S' is taken: the nearest
+            in the Frobenius norm of S, which never lowers an effective mass. That is done with a warning where the
+            least eigenvalue of S is at most 10 % of tr(I) below 0, and for links below 1 % of the moving mass. Any
+            other one is an error, or with this option repaired, too. Inertias of links that stand still are not used.
+        type_plate_mass : float or None
+            Mass of the arm on its type plate, without payload and controller, in kg: masses of links that do not fit
+            it are doubted.
 
         Returns
         -------
@@ -124,9 +148,9 @@ class Arm(Facts):
         text, name = urdf_text(path_or_text)
         try:
             motors = armature_of(armature, () if armature is None else tuple(_hrsafety.urdf_joint_names(text)))
-            return cls(text, payloads_of(payload), motors, locked_of(locked))
+            return cls(text, payloads_of(payload), motors, locked_of(locked), repair_inertia, type_plate_mass)
         except InvalidParameterError as error:
-            options = ("payload", "armature", "locked")
+            options = ("payload", "armature", "locked", "repair_inertia", "type_plate_mass")
             if not name or error.argument.startswith(options):
                 raise
             raise error.renamed(f"{name}: {error.argument}") from None
@@ -171,7 +195,7 @@ class Arm(Facts):
         direction: object,
         check_limits: bool = True,
         threads: int | None = None,
-    ) -> Any:
+    ) -> EffectiveMass:
         """Return the mass of a point along directions, m_u = 1/(u^T J M^-1 J^T u).
 
         Parameters
@@ -191,23 +215,24 @@ class Arm(Facts):
 
         Returns
         -------
-        float or ndarray (...)
-            Masses in kg; inf where no motion of the joints moves the point along the direction.
+        EffectiveMass
+            Masses in kg, inf where no motion of the joints moves the point along the direction, and the doubts about
+            them.
 
         Raises
         ------
         InvalidParameterError
             If a value is out of range, a direction is zero, or the mass matrix of a pose is singular.
         """
-        shape, (poses, points, directions) = broadcast(
-            MOST_MASSES,
-            joints=poses_of(joints, self.joint_names),
-            point=vectors_of("point", point),
-            direction=vectors_of("direction", direction),
+        return self.robot_mass(
+            joints,
+            link=link,
+            point=point,
+            direction=direction,
+            rule="directional",
+            check_limits=check_limits,
+            threads=threads,
         )
-        given = self._given(link, poses, points, shape, check_limits, threads)
-        found = self._native.effective_mass(given, directions).reshape(shape)
-        return found if shape else float(found)
 
     def point_masses(
         self,
@@ -233,19 +258,17 @@ class Arm(Facts):
         """
         poses, points = poses_of(joints, self.joint_names), vectors_of("point", point)
         directions = vectors_of("direction", direction)
-        mass = self.effective_mass(
-            poses, link=link, point=points, direction=directions, check_limits=check_limits, threads=threads
-        )
+        mass = self._along(poses, points, directions, link, check_limits, threads)
         states = self._states(poses, points, link, check_limits, threads)
         scaled = directions / np.max(np.abs(directions), axis=-1, keepdims=True)
         return PointMasses(
             position=states["position"],
             direction=scaled / np.linalg.norm(scaled, axis=-1, keepdims=True),
-            effective_mass=np.asarray(mass),
+            effective_mass=mass,
             iso_mass=self.iso_mass,
-            extremes=_extremes(states),
+            extremes=self._extremes(states, points),
             mobility=states["mobility"],
-            warnings=(*self.warnings, *doubts_of_point(points)),
+            warnings=(*self.warnings, *doubts_of_point(points, self.reach)),
         )
 
     def extremes(
@@ -270,7 +293,7 @@ class Arm(Facts):
             Masses and directions; the worst mass is inf where a direction is unbounded.
         """
         poses, points = poses_of(joints, self.joint_names), vectors_of("point", point)
-        return _extremes(self._states(poses, points, link, check_limits, threads))
+        return self._extremes(self._states(poses, points, link, check_limits, threads), points)
 
     def mobility(
         self,
@@ -363,7 +386,7 @@ class Arm(Facts):
         rule: str = "larger",
         check_limits: bool = True,
         threads: int | None = None,
-    ) -> Array:
+    ) -> EffectiveMass:
         """Return the mass of the robot by a rule.
 
         Parameters
@@ -375,14 +398,19 @@ class Arm(Facts):
 
         Returns
         -------
-        ndarray (...)
-            Masses in kg.
+        EffectiveMass
+            Masses in kg with the doubts that are left with this rule: what only concerns masses along a direction,
+            such as missing motor inertias, lies on the safe side where the mass of ISO/TS 15066 governs, which no
+            motor changes. With the larger one of both that is where the directional mass is below a third of it.
         """
         word("rule", rule, RULES)
-        mass = self.effective_mass(
-            joints, link=link, point=point, direction=direction, check_limits=check_limits, threads=threads
+        points = vectors_of("point", point)
+        mass = self._along(
+            poses_of(joints, self.joint_names), points, vectors_of("direction", direction), link, check_limits, threads
         )
-        return mass_by_rule(rule, np.asarray(mass), self.iso_mass)
+        doubts = (*for_rule(self.warnings, rule, mass, self.iso_mass), *doubts_of_point(points, self.reach))
+        chosen = mass_by_rule(rule, mass, self.iso_mass)
+        return EffectiveMass(chosen if chosen.ndim else float(chosen), rule, self.iso_mass, doubts)
 
     def skeleton(self, joints: object = None, *, check_limits: bool = True) -> Array:
         """Return the origins of all links and of the links before them, for pictures.
@@ -422,6 +450,14 @@ class Arm(Facts):
             "threads": thread_count(threads),
         }
 
+    def _along(
+        self, poses: Array, points: Array, directions: Array, link: object, check_limits: object, threads: object
+    ) -> Array:
+        """Return masses along directions."""
+        shape, (rows, spots, ways) = broadcast(MOST_MASSES, joints=poses, point=points, direction=directions)
+        given = self._given(link, rows, spots, shape, check_limits, threads)
+        return self._native.effective_mass(given, ways).reshape(shape)
+
     def _states(
         self, poses: Array, points: Array, link: object, check_limits: object, threads: object
     ) -> dict[str, Array]:
@@ -430,6 +466,11 @@ class Arm(Facts):
         states = self._native.point_states(given)
         return {name: values.reshape((*shape, *values.shape[1:])) for name, values in states.items()}
 
-
-def _extremes(states: dict[str, Array]) -> Extremes:
-    return Extremes(*(states[name] for name in Extremes._fields))
+    def _extremes(self, states: dict[str, Array], points: Array) -> Extremes:
+        return Extremes(
+            worst_mass=states["worst_mass"],
+            worst_direction=states["worst_direction"],
+            least_mass=states["least_mass"],
+            least_direction=states["least_direction"],
+            warnings=(*self.warnings, *doubts_of_point(points, self.reach)),
+        )

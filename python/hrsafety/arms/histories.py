@@ -11,10 +11,11 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, instance, vector, word
 from hrsafety._records import dataclass
 from hrsafety.arms.arm import Arm
-from hrsafety.arms.inputs import doubts_of_point, poses_of, vectors_of
+from hrsafety.arms.doubts import DIRECTIONAL, doubts_of_point, for_rule, governs
+from hrsafety.arms.inputs import poses_of, vectors_of
 from hrsafety.arms.masses import RULES, mass_by_rule
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.plausibility import ResultWarning
+from hrsafety.plausibility import ResultWarning, unsafe_doubts
 from hrsafety.standards import ContactLimit
 from hrsafety.tables import Columns, Table
 
@@ -51,7 +52,8 @@ class MassHistory(Table):
         Share of the force limit that is left, negative beyond it.
     verdict : ndarray (n,) of str or None
         ``"within_limits"``, ``"exceeds"``, ``"not_permitted"`` or ``"not_checked"`` for the force; the pressure is not
-        checked, for it needs a contact area.
+        checked, for it needs a contact area. A doubt whose error may lie on the unsafe side leaves no
+        ``"within_limits"``; one about motor inertias does so at the instants whose mass depends on them.
     limit : ContactLimit or None
         The limit of the forces.
     warnings : tuple of ResultWarning
@@ -147,7 +149,8 @@ def along(
     >>> time = np.linspace(0.0, 1.0, 101)
     >>> joints = {"shoulder": 0.3 * np.sin(time), "elbow": 1.4 - 0.5 * time}
     >>> limit = standards.limits().contact("chest", "transient")
-    >>> history = arms.along(arms.Arm.example(), time, joints, link="tool", limit=limit)
+    >>> arm = arms.Arm.example(armature=[1.2, 1.2, 1.0, 0.3, 0.3, 0.3])
+    >>> history = arms.along(arm, time, joints, link="tool", limit=limit)
     >>> str(history.verdict[history.worst])
     'within_limits'
     """
@@ -165,9 +168,12 @@ def along(
     moving = speed > 0.0
     mass = arm.extremes(poses, **place).worst_mass.copy()
     if moving.any():
-        mass[moving] = arm.effective_mass(poses[moving], direction=velocity[moving], **place)
+        mass[moving] = arm.effective_mass(poses[moving], direction=velocity[moving], **place).mass
     chosen = mass_by_rule(robot_mass, mass, arm.iso_mass)
     force = None if limit is None else _bare_force(limit, speed, chosen)
+    # Motors count where something moves: at rest there is no force.
+    governs_where = moving & governs(robot_mass, mass, arm.iso_mass)
+    doubts = (*for_rule(arm.warnings, robot_mass, mass[moving], arm.iso_mass), *doubts_of_point(spot, arm.reach))
     return MassHistory(
         time=clock,
         position=arm.position(poses, **place),
@@ -179,10 +185,21 @@ def along(
         status=np.where(moving, np.where(np.isinf(mass), "unbounded_mass", "moving"), "at_rest"),
         force=force,
         margin=None if limit is None or force is None else limit.force_margin(force),
-        verdict=None if limit is None or force is None else limit.force_verdict(force),
+        verdict=None if limit is None or force is None else _verdicts(limit, force, doubts, governs_where),
         limit=limit,
-        warnings=(*arm.warnings, *doubts_of_point(point)),
+        warnings=doubts,
     )
+
+
+def _verdicts(
+    limit: ContactLimit, force: Array, doubts: tuple[ResultWarning, ...], governed: npt.NDArray[np.bool_]
+) -> Words:
+    """Return what forces mean for a limit beside the doubts about the masses that they come from."""
+    words = np.asarray(limit.force_verdict(force))
+    unsafe = unsafe_doubts(doubts)
+    everywhere = any(each.code not in DIRECTIONAL for each in unsafe)
+    doubted = np.full(len(words), everywhere) | (governed if unsafe else False)
+    return np.where(doubted & (words == "within_limits"), "not_checked", words)
 
 
 def plane_of(name: str, values: Array, unit: str) -> list[tuple[str, Array]]:

@@ -11,13 +11,11 @@ import numpy as np
 
 from hrsafety._arguments import Array, checked_text, meant, number, numbers, readable, sequence
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.plausibility import ResultWarning, implausible
 
 __all__ = [
     "Rows",
     "armature_of",
     "broadcast",
-    "doubts_of_point",
     "locked_of",
     "poses_of",
     "urdf_text",
@@ -27,11 +25,6 @@ __all__ = [
 Rows = tuple[Array, list[int]]
 MOST_BYTES = 2**25
 """Largest URDF that is read."""
-
-
-def doubts_of_point(point: object) -> tuple[ResultWarning, ...]:
-    """Return a warning of a point too far from its link: far away a mass seems smaller than it is."""
-    return implausible({"point": point}, {"point": "point_of_link"})
 
 
 def urdf_text(source: object) -> tuple[str, str]:

@@ -9,11 +9,12 @@ import numpy as np
 from hrsafety._arguments import Array, word
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
+from hrsafety.arms.doubts import for_rule
+from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["NO_MOTOR_INERTIA", "RULES", "Extremes", "PointMasses", "mass_by_rule"]
+__all__ = ["RULES", "EffectiveMass", "Extremes", "PointMasses", "mass_by_rule"]
 
-NO_MOTOR_INERTIA = "no motor inertia given{}: effective masses are lower bounds, on the unsafe side"
 RULES = ("larger", "iso", "directional")
 
 
@@ -31,12 +32,59 @@ class Extremes(NamedTuple):
         Least effective mass in kg.
     least_direction : ndarray (..., 3)
         Unit vector along it in world axes, its largest component positive.
+    warnings : tuple of ResultWarning
+        Why masses may not be what they seem.
     """
 
     worst_mass: Array
     worst_direction: Array
     least_mass: Array
     least_direction: Array
+    warnings: tuple[ResultWarning, ...] = ()
+
+
+@displayed
+@dataclass(frozen=True, slots=True, eq=False)
+class EffectiveMass:
+    """Masses of a point of an arm for whom it hits, with the doubts about them.
+
+    Parameters
+    ----------
+    mass : ndarray (...) or float
+        In kg; inf where no motion of the joints moves the point along the direction. A number for one pose, point and
+        direction.
+    rule : {"directional", "larger", "iso"}
+        Mass along the direction, or the larger one of that and the mass of ISO/TS 15066, or the latter.
+    iso_mass : float
+        Half of the moving mass plus the payload, in kg.
+    warnings : tuple of ResultWarning
+        Why the masses may not be what they seem: no motor inertia, links that are hardly real.
+
+    Examples
+    --------
+    >>> from hrsafety import arms
+    >>> arm = arms.Arm.example(armature=0.3)
+    >>> found = arm.effective_mass({"elbow": 1.4}, link="tool", direction=(0, 0, 1))
+    >>> float(found) == found.mass
+    True
+    """
+
+    mass: Array | float
+    rule: str
+    iso_mass: float
+    warnings: tuple[ResultWarning, ...]
+
+    @property
+    def unbounded(self) -> Array:
+        """Whether no motion of the joints moves the point along the direction."""
+        return np.isinf(self.mass)
+
+    def __float__(self) -> float:
+        """Return the mass of one pose, point and direction, in kg."""
+        if np.ndim(self.mass):
+            rule = "be that of one pose, point and direction to become a number"
+            raise InvalidParameterError("mass", rule, np.shape(self.mass), "take .mass, an array")
+        return float(self.mass)
 
 
 @displayed
@@ -83,7 +131,7 @@ class PointMasses:
         """Whether no motion of the joints moves the point along the direction."""
         return np.isinf(self.effective_mass)
 
-    def robot_mass(self, rule: str = "larger") -> Array:
+    def robot_mass(self, rule: str = "larger") -> EffectiveMass:
         """Return the mass of the robot by a rule.
 
         Parameters
@@ -93,10 +141,12 @@ class PointMasses:
 
         Returns
         -------
-        ndarray (...)
-            Masses in kg.
+        EffectiveMass
+            Masses in kg with the doubts that are left with this rule.
         """
-        return mass_by_rule(rule, self.effective_mass, self.iso_mass)
+        mass = mass_by_rule(rule, self.effective_mass, self.iso_mass)
+        doubts = for_rule(self.warnings, rule, self.effective_mass, self.iso_mass)
+        return EffectiveMass(mass if mass.ndim else float(mass), rule, self.iso_mass, doubts)
 
     def __str__(self) -> str:
         """Return both masses and the warnings."""

@@ -12,8 +12,9 @@ from hrsafety._arguments import Array, callback, checked_seed, count, instance, 
 from hrsafety._bounds import MOST_POINT_STATES
 from hrsafety._records import dataclass
 from hrsafety.arms.arm import Arm
+from hrsafety.arms.doubts import doubts_of_point
 from hrsafety.arms.histories import plane_of
-from hrsafety.arms.inputs import doubts_of_point, vectors_of
+from hrsafety.arms.inputs import vectors_of
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, unit_suffix
@@ -163,7 +164,7 @@ def workspace(
         mass=mass,
         direction=along,
         iso_mass=arm.iso_mass,
-        warnings=(*arm.warnings, *doubts_of_point(point)),
+        warnings=(*arm.warnings, *doubts_of_point(vectors_of("point", point), arm.reach)),
     )
 
 
@@ -179,7 +180,7 @@ def _masses(arm: Arm, poses: Array, place: dict[str, Any], direction: Array | No
     extremes = arm.extremes(poses, **place)
     if direction is None:
         return position, extremes.worst_mass, extremes.worst_direction
-    mass = np.asarray(arm.effective_mass(poses, direction=direction, **place))
+    mass = np.asarray(arm.effective_mass(poses, direction=direction, **place).mass)
     return position, mass, np.broadcast_to(direction, extremes.worst_direction.shape)
 
 

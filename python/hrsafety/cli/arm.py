@@ -48,7 +48,7 @@ def show_arm(options: argparse.Namespace) -> None:
     print()
     for path in _write(arm, poses, masses, list(directions), place, Path(options.out)):
         print(f"wrote {path}")
-    output.report_warnings(arm.warnings, options.strict)
+    output.report_warnings(masses.warnings, options.strict)
 
 
 def _arm(options: argparse.Namespace) -> arms.Arm:
@@ -63,9 +63,17 @@ def _arm(options: argparse.Namespace) -> arms.Arm:
     locked = options.lock or None
     with output.located(options.robot):
         try:
-            return arms.Arm.from_urdf(Path(options.robot), payload=payload, armature=armature or None, locked=locked)
+            return arms.Arm.from_urdf(
+                Path(options.robot),
+                payload=payload,
+                armature=armature or None,
+                locked=locked,
+                repair_inertia=options.repair_inertia,
+                type_plate_mass=options.type_plate,
+            )
         except InvalidParameterError as error:
             named = {"locked": "--lock", "payload.link": "--payload-link", "path_or_text": "path"}
+            named["type_plate_mass"] = "--type-plate"
             raise error.renamed(named.get(error.argument, error.argument)) from None
 
 
@@ -142,6 +150,8 @@ def _summary(arm: arms.Arm, options: argparse.Namespace, link: str | None) -> It
         yield f"locked         {', '.join(arm.locked)}"
     yield f"point          ({point}) m on {link}"
     payload = f", payload {arm.payload_mass:g} kg" if arm.payloads else ""
+    plate = "compare with the type plate" if arm.type_plate_mass is None else f"type plate {arm.type_plate_mass:g} kg"
+    yield f"all links      {arm.total_mass:g} kg ({plate})"
     yield f"moving mass    {arm.moving_mass:g} kg{payload}"
     yield f"ISO mass       {arm.iso_mass:g} kg (half of the moving mass, and the payload)"
 

@@ -308,6 +308,10 @@ def _add_arm(commands: Any) -> None:
     arm.add_argument(
         "--armature", metavar="NAME=VALUE", action="append", help="reflected motor inertia in kg m^2; can be repeated"
     )
+    arm.add_argument("--type-plate", type=_number, metavar="KG", help="mass on the type plate, without the payload")
+    arm.add_argument(
+        "--repair-inertia", action="store_true", help="replace inertias that no body has by the nearest ones"
+    )
     arm.add_argument("--lock", metavar="NAME", action="append", help="joint that keeps its value; can be repeated")
 
 

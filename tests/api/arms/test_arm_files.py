@@ -32,7 +32,7 @@ TOML = (
 def masses(arm: arms.Arm) -> np.ndarray:
     """Masses of the last link in two poses, some of them unbounded."""
     poses = np.array([[0.0], [0.7]]) * np.ones(len(arm.joint_names))
-    return arm.effective_mass(poses, link=arm.link_names[-1], point=(0.1, 0.02, 0.03), **PLACE)
+    return arm.effective_mass(poses, link=arm.link_names[-1], point=(0.1, 0.02, 0.03), **PLACE).mass
 
 
 def read(content: bytes, path: Path) -> arms.Arm | None:

@@ -34,6 +34,7 @@ impl Arm {
         payloads: Vec<Load>,
         armature: Vec<(String, f64)>,
         locked: Vec<String>,
+        repair_inertia: bool,
     ) -> PyResult<Self> {
         let payload = |(link, mass, center, rows): Load| arm::Payload {
             link,
@@ -47,6 +48,7 @@ impl Arm {
             payloads: payloads.into_iter().map(payload).collect(),
             armature,
             locked,
+            repair_inertia,
         };
         let arm = arm::Arm::from_urdf(urdf, &options).map_err(CoreError::from)?;
         Ok(Self(arm))
@@ -79,6 +81,49 @@ impl Arm {
             .map(|link| link.segment.is_some())
             .collect();
         fields.value("moved", moved)?;
+        let segments: Vec<Option<usize>> = arm.links.iter().map(|link| link.segment).collect();
+        fields.value("segments", segments)?;
+        let carriers: Vec<Option<usize>> = arm.segments.iter().map(|each| each.parent).collect();
+        fields.value("segment_parents", carriers)?;
+        fields.vector(
+            "link_masses",
+            arm.links.iter().map(|link| link.mass).collect(),
+        )?;
+        let moments = arm.links.iter().flat_map(|link| link.moments);
+        fields.matrix("link_moments", moments.collect(), arm.links.len(), 3)?;
+        let sizes = || {
+            let all = arm.links.iter();
+            all.map(|link| {
+                link.size
+                    .map_or([f64::NAN; 2], |size| [size.volume, size.diagonal])
+            })
+        };
+        fields.vector("link_volumes", sizes().map(|size| size[0]).collect())?;
+        fields.vector("link_diagonals", sizes().map(|size| size[1]).collect())?;
+        let whole: Vec<bool> = arm
+            .links
+            .iter()
+            .map(|link| link.size.is_some_and(|size| size.whole))
+            .collect();
+        fields.value("link_whole", whole)?;
+        fields.value(
+            "chained",
+            arm.segments.iter().any(|each| each.parent.is_some()),
+        )?;
+        fields.vector("largest_own", arm.survey.largest_own.clone())?;
+        fields.value("reach", arm.survey.reach)?;
+        fields.value("massless_joints", &arm.survey.massless)?;
+        fields.value("wheels", &arm.survey.wheels)?;
+        fields.value("floors", &arm.survey.floors)?;
+        let projected: Vec<(&str, f64, [f64; 2])> = arm
+            .projected
+            .iter()
+            .map(|each| (each.link.as_str(), each.violation, each.traces))
+            .collect();
+        fields.value("projected", projected)?;
+        fields.value("not_used", &arm.not_used)?;
+        fields.value("passed_over", &arm.passed_over)?;
+        fields.value("total_mass", arm.total_mass)?;
         fields.value("moving_mass", arm.moving_mass)?;
         fields.value("payload_mass", arm.payload_mass)?;
         fields.value("iso_mass", arm.iso_mass())?;
@@ -218,6 +263,24 @@ impl Given<'_> {
 #[pyfunction]
 pub fn urdf_joint_names(urdf: &str) -> PyResult<Vec<String>> {
     Ok(arm::build::joint_names(urdf).map_err(CoreError::from)?)
+}
+
+/// The nearest inertia that a rigid body can have, and by how much of its trace a given one misses that.
+#[pyfunction]
+pub fn nearest_inertia(inertia: [[f64; 3]; 3]) -> PyResult<([[f64; 3]; 3], f64)> {
+    let body = Body {
+        inertia: Matrix3::from_fn(|row, column| inertia[row][column]),
+        ..Body::default()
+    };
+    let body = body.finite().map_err(CoreError::from)?;
+    let violation = body.violation();
+    let found = if violation > arm::body::ROUNDING {
+        body.nearest().inertia
+    } else {
+        body.inertia
+    };
+    let rows = std::array::from_fn(|row| std::array::from_fn(|column| found[(row, column)]));
+    Ok((rows, violation))
 }
 
 /// Contact forces of closing speeds on a linear region without a covering.

@@ -5,8 +5,9 @@ use numeric::error::{Given, Result, finite, not_negative};
 
 use crate::error::Failure;
 
-/// By how much of its trace an inertia may miss the triangle inequality.
-const TRIANGLE: f64 = 1e-6;
+/// By how much of its trace an inertia may miss what a rigid body has, and count as right: half of what its largest
+/// principal moment may exceed the sum of the others by.
+pub const ROUNDING: f64 = 0.5e-6;
 
 /// A moving body of a radius of gyration below this is hardly what its maker meant (m).
 pub const LEAST_GYRATION: f64 = 0.002;
@@ -26,9 +27,21 @@ impl Body {
     /// Returns the body if a rigid body may be so.
     ///
     /// # Errors
-    /// Negative mass, numbers that are not finite, an inertia that is not positive semidefinite or
-    /// whose principal moments break the triangle inequality.
+    /// As `finite`, and an inertia that is not positive semidefinite or whose principal moments
+    /// break the triangle inequality.
     pub fn checked(self) -> Result<Self> {
+        let body = self.finite()?;
+        if body.violation() > ROUNDING {
+            return Err(body.no_rigid_body());
+        }
+        Ok(body)
+    }
+
+    /// Returns the body if its numbers are finite, its mass is not negative and its inertia is symmetric.
+    ///
+    /// # Errors
+    /// They are not.
+    pub fn finite(self) -> Result<Self> {
         not_negative("mass", self.mass)?;
         for value in &self.center {
             finite("center", *value)?;
@@ -49,19 +62,59 @@ impl Body {
                 Given::Number(trace),
             ));
         }
-        let slack = TRIANGLE * trace.abs();
-        if least < -slack || trace < 0.0 {
-            let rule = "be positive semidefinite (least principal moment)";
-            return Err(Failure::invalid("inertia", rule, Given::Number(least)));
-        }
-        if least + middle < largest - slack {
-            let rule = format!(
-                "have principal moments of which none exceeds the sum of the others ({:.6} kg m^2)",
-                least + middle
-            );
-            return Err(Failure::invalid("inertia", rule, Given::Number(largest)));
-        }
         Ok(self)
+    }
+
+    /// The error about an inertia that no rigid body has.
+    #[must_use]
+    pub fn no_rigid_body(&self) -> Failure {
+        let [least, middle, largest] = self.principal_moments();
+        if least < -2.0 * ROUNDING * (least + middle + largest).abs() {
+            let rule = "be positive semidefinite (least principal moment)";
+            return Failure::invalid("inertia", rule, Given::Number(least));
+        }
+        let rule = format!(
+            "have principal moments of which none exceeds the sum of the others ({:.6} kg m^2)",
+            least + middle
+        );
+        Failure::invalid("inertia", rule, Given::Number(largest))
+    }
+
+    /// By how much of its trace the inertia `I` misses that of a rigid body: minus the least
+    /// eigenvalue of `S = tr(I)/2 - I`, the second moments of its mass, over `tr I`; 0 for an
+    /// inertia that a body can have, infinite without a positive trace.
+    #[must_use]
+    pub fn violation(&self) -> f64 {
+        let [least, middle, largest] = self.principal_moments();
+        let trace = least + middle + largest;
+        let second = 0.5 * trace - largest;
+        // Rounding of an inertia of zero is no violation: 1 um^2 of the mass.
+        if second >= -1e-12 * self.mass {
+            0.0
+        } else if trace > 0.0 {
+            -second / trace
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// The body with the nearest inertia that a rigid body can have: eigenvalues of
+    /// `S = tr(I)/2 - I` below 0 become 0, and `I' = tr(S') - S'`. It is nearest in the Frobenius
+    /// norm of `S`, and `I' - I` is positive semidefinite: no effective mass becomes less.
+    #[must_use]
+    pub fn nearest(&self) -> Self {
+        let unit = Matrix3::identity();
+        let mut found = SymmetricEigen::new(unit * (0.5 * self.inertia.trace()) - self.inertia);
+        if found.eigenvalues.min() >= 0.0 {
+            return *self;
+        }
+        found.eigenvalues.apply(|value| *value = value.max(0.0));
+        let second = found.recompose();
+        let inertia = unit * second.trace() - second;
+        Self {
+            inertia: 0.5 * (inertia + inertia.transpose()),
+            ..*self
+        }
     }
 
     /// Principal moments about the center of mass, the least one first (kg m^2).
@@ -205,7 +258,7 @@ impl Symmetric {
 #[cfg(test)]
 mod tests {
     use super::{Body, Symmetric};
-    use nalgebra::{Matrix3, Vector3};
+    use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
     fn body(moments: [f64; 3]) -> Body {
         Body {
@@ -224,6 +277,28 @@ mod tests {
         assert!(body([0.0, 0.0, 0.0]).checked().is_ok());
         assert!(body([f64::NAN, 1.0, 1.0]).checked().is_err());
         assert!(body([f64::MAX, f64::MAX, f64::MAX]).checked().is_err());
+    }
+
+    #[test]
+    fn the_nearest_inertia_of_a_body_is_larger_and_stays() {
+        for moments in [
+            [0.01, 0.01, 0.0202],
+            [0.1, 0.1, 0.6],
+            [-0.01, 0.02, 0.02],
+            [-1.0, -2.0, -3.0],
+        ] {
+            let given = body(moments);
+            let nearest = given.nearest();
+            assert!(given.violation() > 0.0 && nearest.checked().is_ok());
+            let grown = SymmetricEigen::new(nearest.inertia - given.inertia).eigenvalues;
+            assert!(grown.min() >= -1e-15);
+            assert!((nearest.nearest().inertia - nearest.inertia).amax() <= 1e-16);
+        }
+        assert_eq!(body([1.0, 1.0, 2.0]).nearest(), body([1.0, 1.0, 2.0]));
+        let nearest = body([0.1, 0.1, 0.6]).nearest().inertia;
+        assert!((nearest - Matrix3::from_diagonal(&[0.3, 0.3, 0.6].into())).amax() < 1e-15);
+        assert!((body([0.1, 0.1, 0.6]).violation() - 0.25).abs() < 1e-15);
+        assert_eq!(body([-1.0, -2.0, -3.0]).violation(), f64::INFINITY);
     }
 
     #[test]

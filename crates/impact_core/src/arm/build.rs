@@ -3,11 +3,18 @@
 use nalgebra::{Isometry3, Matrix3, Rotation3, Vector3};
 use numeric::error::{Failure, Given, Result, not_negative};
 
-use super::body::{Body, LEAST_GYRATION, Symmetric};
-use super::description::{Description, Kind};
-use super::model::{Arm, Joint, JointKind, Link, MOST_MOVING, Segment, sized};
+use super::body::{Body, LEAST_GYRATION, ROUNDING, Symmetric};
+use super::description::{Description, Kind, LinkText, about};
+use super::model::{Arm, Joint, JointKind, Link, MOST_MOVING, Projected, Segment, sized};
 use super::pose;
+use super::survey::Survey;
 use super::tree::Tree;
+
+/// Up to this share of its trace an inertia that no rigid body has is replaced by the nearest one unasked.
+const MOST_VIOLATION: f64 = 0.1;
+
+/// Below this share of the moving mass the inertia of a link hardly counts.
+const SMALL_SHARE: f64 = 0.01;
 
 /// Something that a link carries.
 #[derive(Clone, Debug)]
@@ -27,6 +34,8 @@ pub struct Options {
     pub armature: Vec<(String, f64)>,
     /// Joints that keep their value.
     pub locked: Vec<String>,
+    /// Whether any inertia that no rigid body has is replaced by the nearest one.
+    pub repair_inertia: bool,
 }
 
 /// Names of the joints of a URDF that take values, in the order of the file.
@@ -54,6 +63,7 @@ impl Arm {
         let mut builder = Builder::new(&description, &tree, options)?;
         builder.hang()?;
         let mut arm = builder.finish()?;
+        arm.survey.largest_own = sized!(arm, SIZE => pose::largest_own::<SIZE>(&arm));
         arm.load(&options.payloads)?;
         sized!(arm, SIZE => pose::refuse_massless::<SIZE>(&arm))?;
         Ok(arm)
@@ -202,52 +212,104 @@ impl<'a> Builder<'a> {
     /// Puts the inertias of the links where they hang.
     fn finish(mut self) -> Result<Arm> {
         let (mut suspicious, mut without_mass) = (Vec::new(), Vec::new());
-        let mut moving_mass = 0.0;
-        for (text, (segment, frame)) in self.description.links.iter().zip(&self.places) {
-            let Some(segment) = segment else { continue };
-            self.segments[*segment].add(&text.body.placed(frame));
-            moving_mass += text.body.mass;
-            if text
-                .body
+        let (mut projected, mut not_used) = (Vec::new(), Vec::new());
+        let texts = &self.description.links;
+        let sum = |chosen: &dyn Fn(usize) -> bool| -> f64 {
+            let all = texts.iter().enumerate();
+            all.filter(|(index, _)| chosen(*index))
+                .fold(0.0, |sum, (_, text)| sum + text.body.mass)
+        };
+        let moving_mass = sum(&|index| self.places[index].0.is_some());
+        let total_mass = sum(&|_| true);
+        numeric::error::finite("mass of all links", total_mass)?;
+        let mut bodies = Vec::with_capacity(texts.len());
+        for (text, (segment, frame)) in texts.iter().zip(&self.places) {
+            let Some(segment) = segment else {
+                if text.body.violation() > ROUNDING {
+                    not_used.push(text.name.clone());
+                }
+                bodies.push(text.body);
+                continue;
+            };
+            let body = self.possible(text, moving_mass, &mut projected)?;
+            self.segments[*segment].add(&body.placed(frame));
+            if body
                 .gyration()
                 .is_some_and(|radius| radius < LEAST_GYRATION)
             {
                 suspicious.push(text.name.clone());
             }
-            if text.shape_without_mass {
+            // An `inertial` of no mass is as good as none.
+            if text.shaped && body.mass == 0.0 {
                 without_mass.push(text.name.clone());
             }
+            bodies.push(body);
         }
-        numeric::error::finite("mass of all links", moving_mass)?;
-        let links = self.description.links.iter().zip(self.places);
-        let mut parents = vec![None; self.description.links.len()];
+        let mut parents = vec![None; texts.len()];
         for (child, parent) in self.tree.child.iter().zip(&self.tree.parent) {
             parents[*child] = Some(*parent);
         }
+        let links: Vec<Link> = (0..texts.len())
+            .map(|index| Link {
+                name: texts[index].name.clone(),
+                parent: parents[index],
+                segment: self.places[index].0,
+                frame: self.places[index].1,
+                mass: bodies[index].mass,
+                moments: bodies[index].principal_moments(),
+                shaped: texts[index].shaped,
+                size: texts[index].size,
+            })
+            .collect();
+        let survey = Survey::of(&self.segments, &self.joints, &links, &bodies);
+        let free = self.joints.iter().filter(|joint| joint.column.is_some());
         Ok(Arm {
             name: self.description.name.clone(),
-            free: self
-                .joints
-                .iter()
-                .filter(|joint| joint.column.is_some())
-                .count(),
+            free: free.count(),
             joints: self.joints,
-            links: links
-                .zip(parents)
-                .map(|((text, (segment, frame)), parent)| Link {
-                    name: text.name.clone(),
-                    parent,
-                    segment,
-                    frame,
-                })
-                .collect(),
+            links,
             segments: self.segments,
             moving_mass,
+            total_mass,
             payload_mass: 0.0,
             suspicious,
             without_mass,
             has_armature: self.options.armature.iter().any(|(_, value)| *value > 0.0),
+            projected,
+            not_used,
+            passed_over: self.description.passed_over.clone(),
+            survey,
         })
+    }
+
+    /// The body of a moving link, with the nearest inertia that a rigid body can have where that is a small change,
+    /// or was asked for.
+    fn possible(
+        &self,
+        text: &LinkText,
+        moving_mass: f64,
+        projected: &mut Vec<Projected>,
+    ) -> Result<Body> {
+        let violation = text.body.violation();
+        if violation <= ROUNDING {
+            return Ok(text.body);
+        }
+        let small = text.body.mass < SMALL_SHARE * moving_mass;
+        if !(violation <= MOST_VIOLATION || small || self.options.repair_inertia) {
+            let failure = about(text.body.no_rigid_body(), &text.name);
+            return Err(failure.mended_by(format!(
+                "it is {:.0} % of its trace off: correct it, or give repair_inertia = true for the nearest inertia \
+                 that a body can have",
+                100.0 * violation
+            )));
+        }
+        let body = text.body.nearest();
+        projected.push(Projected {
+            link: text.name.clone(),
+            violation,
+            traces: [text.body.inertia.trace(), body.inertia.trace()],
+        });
+        Ok(body)
     }
 }
 

@@ -6,6 +6,8 @@ use roxmltree::{Document, Node, ParsingOptions};
 
 use super::body::Body;
 use super::element::{Element, elements};
+use super::foreign;
+use super::shape::{self, Size};
 
 /// Most bytes of a URDF: a thousand times what an arm needs.
 pub const MOST_BYTES: usize = 1 << 25;
@@ -18,10 +20,12 @@ pub const MOST_LINKS: usize = 10_000;
 pub struct LinkText {
     /// Name.
     pub name: String,
-    /// Inertia in the frame of the link; none without `inertial`.
+    /// Inertia in the frame of the link; none without `inertial`. Whether a rigid body may have it is not checked.
     pub body: Body,
-    /// Whether it has a shape to see or to touch, but no mass.
-    pub shape_without_mass: bool,
+    /// Whether it has a shape to see or to touch.
+    pub shaped: bool,
+    /// Size of that shape, if it is of primitives.
+    pub size: Option<Size>,
 }
 
 /// How a joint moves.
@@ -76,6 +80,8 @@ pub struct Description {
     pub links: Vec<LinkText>,
     /// Joints in the order of the file.
     pub joints: Vec<JointText>,
+    /// Attributes that URDF does not have and that change nothing.
+    pub passed_over: Vec<String>,
 }
 
 const ROBOT: [&str; 5] = ["link", "joint", "material", "transmission", "gazebo"];
@@ -108,16 +114,22 @@ impl Description {
     /// It is no XML, no URDF, or an element of it breaks a rule, which the error names.
     pub fn read(text: &str) -> Result<Self> {
         at_most("urdf", text.len(), MOST_BYTES)?;
-        let options = ParsingOptions {
+        let options = || ParsingOptions {
             nodes_limit: 1 << 22,
             ..ParsingOptions::default()
         };
-        let document =
-            Document::parse_with_options(text, options).map_err(|error| no_xml(&error))?;
+        let declared;
+        let document = match Document::parse_with_options(text, options()) {
+            Err(roxmltree::Error::UnknownNamespace(..)) if !foreign::is_xacro(text) => {
+                declared = foreign::declared(text);
+                Document::parse_with_options(&declared, options())
+            }
+            read => read,
+        };
+        let document = document.map_err(|error| no_xml(&error, text))?;
         let root = document.root_element();
         if root.tag_name().name() != "robot" {
-            let given = Given::Word(root.tag_name().name().to_owned());
-            return Err(Failure::invalid("root element", "be <robot>", given));
+            return Err(foreign::refused(root.tag_name().name()));
         }
         refuse_xacro(&document)?;
         Element::root(root).spelled(&ROBOT)?;
@@ -125,19 +137,29 @@ impl Description {
             |kind: &'static str| elements(root).filter(move |each| each.tag_name().name() == kind);
         at_most("number of links", all("link").count(), MOST_LINKS)?;
         at_most("number of joints", all("joint").count(), MOST_LINKS)?;
+        if all("link").count() == 0 && (all("group").count() > 0 || all("group_state").count() > 0)
+        {
+            return Err(foreign::refused("srdf"));
+        }
+        let mut notes = Vec::new();
         Ok(Self {
             name: root.attribute("name").unwrap_or_default().to_owned(),
-            links: all("link").map(link).collect::<Result<_>>()?,
-            joints: all("joint").map(joint).collect::<Result<_>>()?,
+            links: all("link")
+                .map(|node| link(node, &mut notes))
+                .collect::<Result<_>>()?,
+            joints: all("joint")
+                .map(|node| joint(node, &mut notes))
+                .collect::<Result<_>>()?,
+            passed_over: notes,
         })
     }
 }
 
-fn no_xml(error: &roxmltree::Error) -> Failure {
+fn no_xml(error: &roxmltree::Error, text: &str) -> Failure {
     let found = Given::Found(error.to_string().into());
     let failure = Failure::invalid("urdf", "be well-formed XML without a document type", found);
     match error {
-        roxmltree::Error::UnknownNamespace(prefix, _) if prefix == "xacro" => {
+        roxmltree::Error::UnknownNamespace(..) if foreign::is_xacro(text) => {
             failure.mended_by("expand xacro first: xacro robot.urdf.xacro > robot.urdf")
         }
         _ => failure,
@@ -162,12 +184,12 @@ fn refuse_xacro(document: &Document<'_>) -> Result<()> {
         let line = document.text_pos_at(node.range().start).row;
         let place = format!("{} in line {line}", node.tag_name().name());
         let failure = Failure::invalid(place, "hold no macros of xacro", Given::Word(found));
-        return Err(failure.mended_by("expand them first: xacro robot.urdf.xacro > robot.urdf"));
+        return Err(failure.mended_by(foreign::EXPAND));
     }
     Ok(())
 }
 
-fn link(node: Node<'_, '_>) -> Result<LinkText> {
+fn link(node: Node<'_, '_>, notes: &mut Vec<String>) -> Result<LinkText> {
     let (element, name) = Element::named(node)?;
     element.spelled(&LINK)?;
     let inertial = element.child("inertial")?;
@@ -175,55 +197,62 @@ fn link(node: Node<'_, '_>) -> Result<LinkText> {
     let shaped =
         children.any(|child| child.has_tag_name("visual") || child.has_tag_name("collision"));
     let body = match inertial {
-        Some(inertial) => body(&inertial).map_err(|failure| about(failure, &name))?,
+        Some(inertial) => body(&inertial, notes).map_err(|failure| about(failure, &name))?,
         None => Body::default(),
     };
     Ok(LinkText {
         name,
-        // An `inertial` of no mass is as good as none.
-        shape_without_mass: shaped && body.mass == 0.0,
         body,
+        shaped,
+        size: shape::size(node),
     })
 }
 
 /// Puts the name of its link before what only knows that a number is wrong.
-fn about(failure: Failure, link: &str) -> Failure {
+pub(super) fn about(failure: Failure, link: &str) -> Failure {
     match failure {
         Failure::InvalidParameter(ref invalid) if invalid.name.starts_with("link") => failure,
         other => other.within(&format!("link {link:?}")),
     }
 }
 
-fn body(inertial: &Element<'_, '_>) -> Result<Body> {
+fn body(inertial: &Element<'_, '_>, notes: &mut Vec<String>) -> Result<Body> {
     inertial.spelled(&["origin", "mass", "inertia"])?;
     let mass = inertial.needed("mass")?;
-    mass.only(&["value"])?;
+    mass.only(&["value"], notes)?;
     let inertia = inertial.needed("inertia")?;
-    inertia.only(&["ixx", "ixy", "ixz", "iyy", "iyz", "izz"])?;
+    inertia.only(&["ixx", "ixy", "ixz", "iyy", "iyz", "izz"], notes)?;
     let [xx, xy, xz] = ["ixx", "ixy", "ixz"].map(|name| inertia.number(name));
     let [yy, yz, zz] = ["iyy", "iyz", "izz"].map(|name| inertia.number(name));
     let (xx, xy, xz, yy, yz, zz) = (xx?, xy?, xz?, yy?, yz?, zz?);
+    for (name, other, value) in [("iyx", "ixy", xy), ("izx", "ixz", xz), ("izy", "iyz", yz)] {
+        let across = inertia.number_or(name, value)?;
+        if (across - value).abs() > 1e-6 * (xx.abs() + yy.abs() + zz.abs()) {
+            let rule = format!("be equal to {other} ({value:?})");
+            return Err(inertia.refused(name, rule, Given::Number(across)));
+        }
+    }
     let own = Body {
         mass: mass.number("value")?,
         center: Vector3::zeros(),
         inertia: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
     };
-    Ok(own.checked()?.placed(&origin(inertial)?))
+    Ok(own.finite()?.placed(&origin(inertial, notes)?))
 }
 
 /// Where something stands: `rpy` turns about the fixed axes x, y, z in this order.
-fn origin(owner: &Element<'_, '_>) -> Result<Isometry3<f64>> {
+fn origin(owner: &Element<'_, '_>, notes: &mut Vec<String>) -> Result<Isometry3<f64>> {
     let Some(origin) = owner.child("origin")? else {
         return Ok(Isometry3::identity());
     };
-    origin.only(&["xyz", "rpy"])?;
+    origin.only(&["xyz", "rpy"], notes)?;
     let place = origin.vector_or("xyz", Vector3::zeros())?;
     let turn = origin.vector_or("rpy", Vector3::zeros())?;
     let turned = UnitQuaternion::from_euler_angles(turn.x, turn.y, turn.z);
     Ok(Isometry3::from_parts(Translation3::from(place), turned))
 }
 
-fn joint(node: Node<'_, '_>) -> Result<JointText> {
+fn joint(node: Node<'_, '_>, notes: &mut Vec<String>) -> Result<JointText> {
     let (element, name) = Element::named(node)?;
     element.spelled(&JOINT)?;
     let word = element.word("type")?;
@@ -242,31 +271,31 @@ fn joint(node: Node<'_, '_>) -> Result<JointText> {
     };
     Ok(JointText {
         kind,
-        parent: linked(&element, "parent")?,
-        child: linked(&element, "child")?,
-        origin: origin(&element)?,
-        axis: axis(&element, kind)?,
-        limits: limits(&element, &word)?,
-        mimic: mimic(&element)?,
+        parent: linked(&element, "parent", notes)?,
+        child: linked(&element, "child", notes)?,
+        origin: origin(&element, notes)?,
+        axis: axis(&element, kind, notes)?,
+        limits: limits(&element, &word, notes)?,
+        mimic: mimic(&element, notes)?,
         name,
     })
 }
 
-fn linked(joint: &Element<'_, '_>, end: &str) -> Result<String> {
+fn linked(joint: &Element<'_, '_>, end: &str, notes: &mut Vec<String>) -> Result<String> {
     let end = joint.needed(end)?;
-    end.only(&["link"])?;
+    end.only(&["link"], notes)?;
     end.word("link")
 }
 
 /// Unit axis, x by default.
-fn axis(joint: &Element<'_, '_>, kind: Kind) -> Result<Vector3<f64>> {
+fn axis(joint: &Element<'_, '_>, kind: Kind, notes: &mut Vec<String>) -> Result<Vector3<f64>> {
     let Some(axis) = joint.child("axis")? else {
         return Ok(Vector3::x());
     };
     if kind == Kind::Fixed {
         return Ok(Vector3::x());
     }
-    axis.only(&["xyz"])?;
+    axis.only(&["xyz"], notes)?;
     let given = axis.vector_or("xyz", Vector3::x())?;
     // Scaled first, so that the square of a small or large number is a number.
     let largest = given.amax();
@@ -277,11 +306,15 @@ fn axis(joint: &Element<'_, '_>, kind: Kind) -> Result<Vector3<f64>> {
     Ok((given / largest).normalize())
 }
 
-fn limits(joint: &Element<'_, '_>, kind: &str) -> Result<Option<[f64; 2]>> {
+fn limits(
+    joint: &Element<'_, '_>,
+    kind: &str,
+    notes: &mut Vec<String>,
+) -> Result<Option<[f64; 2]>> {
     let Some(limit) = joint.child("limit")? else {
         return Ok(None);
     };
-    limit.only(&LIMIT)?;
+    limit.only_of(&LIMIT, &["lower", "upper"], notes)?;
     let [lower, upper] = [
         limit.number_or("lower", 0.0)?,
         limit.number_or("upper", 0.0)?,
@@ -296,11 +329,11 @@ fn limits(joint: &Element<'_, '_>, kind: &str) -> Result<Option<[f64; 2]>> {
     Ok(Some([lower, upper]))
 }
 
-fn mimic(joint: &Element<'_, '_>) -> Result<Option<Mimic>> {
+fn mimic(joint: &Element<'_, '_>, notes: &mut Vec<String>) -> Result<Option<Mimic>> {
     let Some(mimic) = joint.child("mimic")? else {
         return Ok(None);
     };
-    mimic.only(&["joint", "multiplier", "offset"])?;
+    mimic.only(&["joint", "multiplier", "offset"], notes)?;
     Ok(Some(Mimic {
         joint: mimic.word("joint")?,
         multiplier: mimic.number_or("multiplier", 1.0)?,
@@ -313,17 +346,19 @@ mod tests {
     use super::Description;
 
     #[test]
-    fn a_shape_with_an_inertial_of_no_mass_has_no_mass() {
-        let link = |mass: &str| {
-            format!(
-                r#"<robot name="r"><link name="a"><visual/><inertial><mass value="{mass}"/>
-                <inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link></robot>"#
-            )
+    fn attributes_that_change_nothing_are_noted_and_others_refused() {
+        let read = |inner: &str| {
+            let text = format!(
+                r#"<robot name="r"><link name="a"><inertial><mass value="1"/>
+                <inertia ixx="1" ixy="0.1" ixz="0" iyy="1" iyz="0" izz="1" {inner}/></inertial></link></robot>"#
+            );
+            Description::read(&text).map(|read| read.passed_over)
         };
-        for (mass, without) in [("0", true), ("0.1", false)] {
-            let read = Description::read(&link(mass));
-            let found = read.map(|read| read.links[0].shape_without_mass);
-            assert_eq!(found, Ok(without));
-        }
+        assert_eq!(read(""), Ok(vec![]));
+        let noted = r#""iyx" of link "a": inertial: inertia"#;
+        assert_eq!(read(r#"iyx="0.1""#), Ok(vec![noted.to_owned()]));
+        assert!(read(r#"iyx="0.2""#).is_err());
+        assert!(read(r#"unit="g""#).is_err());
+        assert!(read(r#"note="new""#).is_ok());
     }
 }

@@ -1,8 +1,11 @@
-//! Elements of a URDF with checked attributes: what is not known is refused, never passed over.
+//! Elements of a URDF with checked attributes: what is not known and may change a number is refused.
 
 use nalgebra::Vector3;
 use numeric::error::{Failure, Given, Result};
 use roxmltree::Node;
+
+/// Parts of names of attributes that would change what the numbers beside them mean.
+const MEANINGS: [&str; 4] = ["unit", "scale", "quat", "wxyz"];
 
 /// An element with the words that name it in messages, such as `link "hand": inertial`.
 #[derive(Clone)]
@@ -39,14 +42,40 @@ impl<'a, 'input> Element<'a, 'input> {
         Failure::invalid(name, rule.into(), value)
     }
 
-    /// Refuses attributes outside a list.
-    pub fn only(&self, attributes: &[&str]) -> Result<()> {
+    /// Notes attributes outside a list that change nothing. Those that may are refused: any beside known ones of which
+    /// one is missing, and units, scales and quaternions.
+    pub fn only(&self, known: &[&str], notes: &mut Vec<String>) -> Result<()> {
+        let whole = known.iter().all(|each| self.node.has_attribute(*each));
+        self.noted(known, notes, |_| whole)
+    }
+
+    /// As `only`, where few of the known attributes are read, and need not be there: names near one of those that is
+    /// missing are refused.
+    pub fn only_of(&self, known: &[&str], read: &[&str], notes: &mut Vec<String>) -> Result<()> {
+        self.noted(known, notes, |name| {
+            let mut missing = read.iter().filter(|each| !self.node.has_attribute(**each));
+            !missing.any(|each| near(each, name))
+        })
+    }
+
+    fn noted(
+        &self,
+        known: &[&str],
+        notes: &mut Vec<String>,
+        harmless: impl Fn(&str) -> bool,
+    ) -> Result<()> {
         let plain = |name: &roxmltree::Attribute<'_, '_>| name.namespace().is_none();
         for attribute in self.node.attributes().filter(plain) {
-            if !attributes.contains(&attribute.name()) {
-                let rule = format!("have no other attributes than {}", attributes.join(", "));
-                return Err(self.refused("", rule, Given::Word(attribute.name().to_owned())));
+            let name = attribute.name();
+            if known.contains(&name) {
+                continue;
             }
+            let lower = name.to_lowercase();
+            if !harmless(name) || MEANINGS.iter().any(|word| lower.contains(word)) {
+                let rule = format!("have no other attributes than {}", known.join(", "));
+                return Err(self.refused("", rule, Given::Word(name.to_owned())));
+            }
+            notes.push(format!("{name:?} of {}", self.place));
         }
         Ok(())
     }

@@ -6,9 +6,9 @@
 //! (R. Featherstone, *Rigid Body Dynamics Algorithms*, 2008, section 6.2), `J` the Jacobian of
 //! the velocity of the point. Joints that mimic others fold both: `M' = G^T M G`, `J' = J G`.
 //!
-//! `element` reads XML elements, `description` what a URDF says, `tree` checks how its links hang
-//! together, `body` holds inertias, `build` makes
-//! the `model` of the arm; `pose` is the kernel, `mobility`
+//! `element` reads XML elements, `foreign` knows other formats, `description` what a URDF says, `shape` how
+//! large its links are, `tree` checks how they hang together, `body` holds inertias, `build` makes
+//! the `model` of the arm; `survey` finds what tells whether it may be real, `pose` is the kernel, `mobility`
 //! what follows from $L$, `batch` does both for arrays.
 
 pub mod batch;
@@ -16,9 +16,12 @@ pub mod body;
 pub mod build;
 pub mod description;
 mod element;
+mod foreign;
 pub mod mobility;
 pub mod model;
 pub mod pose;
+pub mod shape;
+pub mod survey;
 mod tree;
 
 pub use batch::{Broadcast, Places};

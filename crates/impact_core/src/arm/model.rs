@@ -4,6 +4,8 @@ use nalgebra::{Isometry3, Matrix3, Vector3};
 use numeric::error::{Failure, Given, Result};
 
 use super::body::{Body, Symmetric};
+use super::shape::Size;
+use super::survey::Survey;
 
 /// How a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,6 +40,25 @@ pub struct Link {
     pub segment: Option<usize>,
     /// Where it stands in the frame of the segment, or in the world.
     pub frame: Isometry3<f64>,
+    /// Mass (kg).
+    pub mass: f64,
+    /// Principal moments of the inertia that it is computed with, the least one first (kg m^2).
+    pub moments: [f64; 3],
+    /// Whether it has a shape.
+    pub shaped: bool,
+    /// Size of that shape, if it is of primitives.
+    pub size: Option<Size>,
+}
+
+/// A moving link whose inertia no rigid body has, with the nearest one in its place.
+#[derive(Clone, Debug)]
+pub struct Projected {
+    /// Name.
+    pub link: String,
+    /// By how much the inertia missed that of a body, as a share of its trace.
+    pub violation: f64,
+    /// Trace of the inertia before and after (kg m^2).
+    pub traces: [f64; 2],
 }
 
 /// Links that a joint moves as one body. The axis of the joint is the z axis of its frame.
@@ -88,6 +109,8 @@ pub struct Arm {
     pub free: usize,
     /// Mass of all links that some joint moves, locked or not, without payload (kg).
     pub moving_mass: f64,
+    /// Mass of all links, moved or not, without payload (kg).
+    pub total_mass: f64,
     /// Mass of the payload (kg).
     pub payload_mass: f64,
     /// Links whose radius of gyration is below 2 mm.
@@ -96,6 +119,14 @@ pub struct Arm {
     pub without_mass: Vec<String>,
     /// Whether some joint has a motor inertia.
     pub has_armature: bool,
+    /// Moving links with another inertia than in the file.
+    pub projected: Vec<Projected>,
+    /// Links that stand still with an inertia that no rigid body has.
+    pub not_used: Vec<String>,
+    /// Attributes that URDF does not have and that change nothing.
+    pub passed_over: Vec<String>,
+    /// What tells whether the arm may be real.
+    pub survey: Survey,
 }
 
 impl Arm {

@@ -280,6 +280,56 @@ fn component(segment: &Segment, frame: &Frame, force: &Vector3<f64>, moment: &Ve
     }
 }
 
+/// Poses in which the inertia that joints move is looked at.
+const SURVEYED: u32 = 64;
+
+/// The largest inertia that each free joint of an arm moves without motors (kg m^2, or kg where it slides), over zero and
+/// further poses between the limits; joints without limits take one turn, or 1 m, around 0.
+#[must_use]
+pub fn largest_own<const N: usize>(arm: &Arm) -> Vec<f64> {
+    let mut bare = arm.clone();
+    for segment in &mut bare.segments {
+        segment.armature = 0.0;
+    }
+    let mut pose = Pose::<N>::new(&bare);
+    let mut found = vec![0.0_f64; bare.free];
+    for step in 0..SURVEYED {
+        let values: Vec<f64> = bare
+            .joints
+            .iter()
+            .zip(1_u32..)
+            .map(|(joint, number)| {
+                let reach = match joint.kind {
+                    JointKind::Turning => std::f64::consts::PI,
+                    JointKind::Sliding => 0.5,
+                };
+                let low = if joint.limits[0].is_finite() {
+                    joint.limits[0]
+                } else {
+                    -reach
+                };
+                let high = if joint.limits[1].is_finite() {
+                    joint.limits[1]
+                } else {
+                    reach
+                };
+                // Multiples of square roots spread evenly; the first pose is zero where limits allow it.
+                let share = (f64::from(step) * f64::from(number + 1).sqrt()).fract();
+                if step == 0 {
+                    0.0_f64.max(low).min(high)
+                } else {
+                    low + share * (high - low)
+                }
+            })
+            .collect();
+        pose.place(&values);
+        for (column, largest) in found.iter_mut().enumerate() {
+            *largest = largest.max(pose.masses[(column, column)]);
+        }
+    }
+    found
+}
+
 /// Refuses an arm with a joint that moves no inertia in any pose.
 ///
 /// # Errors
@@ -336,5 +386,8 @@ pub fn singular(arm: &Arm, column: usize, pose: &str) -> Failure {
         "move an inertia of its own",
         found,
     )
-    .mended_by("give its links an inertia or the joint an armature, or lock it")
+    .mended_by(
+        "give its links the masses and inertias that they have, or lock it; an armature alone leaves the arm without \
+         mass",
+    )
 }

@@ -1,0 +1,114 @@
+"""The robot of a cell file: what is doubted of its masses, and on which side."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from api.arms.arm_models import EXAMPLE
+from hrsafety import arms
+from hrsafety.cli.cell.robot import RobotFacts, robot_of
+from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import unsafe_doubts
+
+MOTORS = {"turn": 1.2, "shoulder": 1.2, "elbow": 1.0, "wrist_1": 0.3, "wrist_2": 0.3, "wrist_3": 0.3}
+POSES = [{"shoulder": 0.4, "elbow": 1.4}]
+TOOL = {"urdf": "arm.urdf", "link": "tool", "direction": [1.0, 0.0, 0.0], "poses": POSES}
+
+
+@pytest.fixture
+def read(tmp_path: Path) -> Any:
+    """Return a function that reads the robot of a table beside the example arm, or another one."""
+
+    def robot(table: dict[str, Any], text: str = EXAMPLE) -> RobotFacts:
+        (tmp_path / "arm.urdf").write_text(text, encoding="utf-8")
+        return robot_of(table, tmp_path)
+
+    return robot
+
+
+def codes(robot: RobotFacts) -> list[str]:
+    return [each.code for each in unsafe_doubts(robot.warnings)]
+
+
+def test_an_ordinary_arm_with_motors_is_not_doubted(read: Any) -> None:
+    robot = read(TOOL | {"armature": MOTORS, "type_plate_mass": 31.0})
+    assert robot.warnings == ()
+    assert (robot.total_mass, robot.moving_mass, robot.quantile_mass) == (29.0, 29.0, None)
+    assert read(TOOL | {"armature": 0.4}).directional_mass > read(TOOL).directional_mass
+
+
+@pytest.mark.parametrize(("rule", "unsafe"), [("larger", True), ("iso", False), ("directional", True)])
+def test_missing_motors_are_unsafe_where_they_may_change_the_mass(read: Any, rule: str, unsafe: bool) -> None:
+    robot = read(TOOL | {"robot_mass": rule})
+    assert robot.directional_mass > robot.iso_mass / 3
+    assert codes(robot) == ["no_motor_inertia"] * unsafe
+    rotor = read(TOOL | {"robot_mass": rule, "armature": 5e-5})
+    assert codes(rotor) == ["armature_suspicious"] * unsafe
+    assert read(TOOL | {"mass_rule": rule}) == robot
+    with pytest.raises(InvalidParameterError, match="be left out beside mass_rule"):
+        read(TOOL | {"mass_rule": rule, "robot_mass": rule})
+
+
+def test_an_arm_without_inertials_is_doubted_or_refused(read: Any) -> None:
+    bare = re.sub(r"<inertial>.*?</inertial>", "", EXAMPLE, flags=re.DOTALL)
+    assert "link_without_mass" in codes(read(TOOL | {"armature": MOTORS}, bare))
+    with pytest.raises(InvalidParameterError, match="urdf must have links with masses for the rule 'iso'"):
+        read(TOOL | {"armature": MOTORS, "mass_rule": "iso"}, bare)
+
+
+@pytest.mark.parametrize(
+    ("more", "code"),
+    [
+        ({"type_plate_mass": 40.0}, "mass_below_type_plate"),
+        ({"payload": {"link": "tool", "mass": 1200.0}}, "implausible"),
+        ({"payload": {"link": "tool", "mass": 2.0, "center": [0.0, 0.0, 60.0]}}, "implausible"),
+        ({"point": [0.0, 0.0, 60.0]}, "implausible"),
+    ],
+)
+def test_masses_that_are_no_data_reach_the_robot(read: Any, more: dict[str, Any], code: str) -> None:
+    assert codes(read(TOOL | {"armature": MOTORS} | more)) == [code]
+
+
+def test_without_poses_the_worst_draw_is_named_as_singular_with_a_quantile_beside(read: Any) -> None:
+    robot = read({"urdf": "arm.urdf", "armature": MOTORS})
+    drawn = arms.workspace(arms.Arm.example(armature=MOTORS), link="tool", samples=2000, seed=0)
+    assert robot.near_singular
+    assert robot.directional_mass == drawn.mass.max()
+    assert np.quantile(drawn.mass, 0.99, method="higher") == robot.quantile_mass < 0.1 * robot.directional_mass
+    (told,) = robot.warnings
+    assert (told.code, told.safe_side) == ("near_singular", True)
+    assert re.search(r"2000 drawn ones is near a singular pose.*99 % of them: at most .* give the poses", told.message)
+    assert not read(TOOL | {"armature": MOTORS}).near_singular
+
+
+def test_robots_that_hardly_weigh_anything_are_doubted(read: Any) -> None:
+    assert codes(read({"mass": 0.008})) == ["implausible"]
+    assert read({"mass": 8.0}).warnings == ()
+    assert codes(read({"mass": 16350.0})) == []
+    assert len(read({"mass": 16350.0}).warnings) == 1
+
+
+def test_a_rolling_base_without_the_inertia_of_its_motors_is_a_lower_bound(read: Any) -> None:
+    base = {"base": "differential", "mass": 20.0, "inertia": 0.8, "point": [0.2, 0.1], "normal": [0.8, 0.6]}
+    assert codes(read(base)) == ["no_motor_inertia"]
+    wheels = {"wheel_inertia": 0.001, "wheel_radius": 0.08, "half_track": 0.2}
+    assert codes(read(base | wheels)) == []
+    sideways = base | {"point": [0.0, 0.1], "normal": [0.0, 1.0]}
+    assert math.isinf(read(sideways).mass)
+    assert codes(read(sideways)) == []
+    assert codes(read(base | wheels | {"inertia": 8e-7})) == ["implausible"]
+    assert set(codes(read(base | wheels | {"point": [200.0, 100.0]}))) == {"implausible"}
+
+
+def test_inertias_that_no_body_has_are_repaired_on_request(read: Any) -> None:
+    wrong = EXAMPLE.replace('ixx="0.42"', 'ixx="0.9"')
+    with pytest.raises(InvalidParameterError, match="repair_inertia = true"):
+        read(TOOL | {"armature": MOTORS}, wrong)
+    assert codes(read(TOOL | {"armature": MOTORS, "repair_inertia": True}, wrong)) == ["inertia_projected"]
+    assert codes(read(TOOL | {"armature": MOTORS, "repair_inertia": True, "mass_rule": "iso"}, wrong)) == []
