@@ -116,7 +116,7 @@ def test_the_arm_of_the_examples(judged: Any) -> None:
         link="tool",
         direction=(1, 0, 0),
     )
-    assert report["robot"]["directional_mass"] == masses.max()
+    assert report["robot"]["directional_mass"] == masses.mass.max()
     assert report["robot"]["iso_mass"] == report["robot"]["mass"] == arm.iso_mass == 16.5
     assert report["audit"]["urdf_sha256"] == arm.sha256
     assert "no motor inertia given" in page

@@ -63,37 +63,33 @@ fn primitive(part: Node<'_, '_>) -> Option<(f64, Vector3<f64>, Isometry3<f64>)> 
         let value = form.attribute(name)?.trim().parse::<f64>().ok()?;
         (value > 0.0 && value.is_finite()).then_some(value)
     };
-    let (volume, half) = match form.tag_name().name() {
-        "box" => {
-            let edges = vector(form.attribute("size")?)?;
-            if edges.min() <= 0.0 {
-                return None;
-            }
-            (edges.product(), turn.abs() * edges * 0.5)
+    let axis: Vector3<f64> = turn.column(2).into();
+    let kind = form.tag_name().name();
+    let (volume, half) = if kind == "box" {
+        let edges = vector(form.attribute("size")?).filter(|edges| edges.min() > 0.0)?;
+        (edges.product(), turn.abs() * edges * 0.5)
+    } else if kind == "sphere" {
+        let radius = positive("radius")?;
+        (ball(radius), Vector3::repeat(radius))
+    } else if kind == "cylinder" || kind == "capsule" {
+        let (radius, length) = (positive("radius")?, positive("length")?);
+        let tube = std::f64::consts::PI * radius * radius * length;
+        let half = axis.abs() * (0.5 * length);
+        let across = axis.map(|along| radius * (1.0 - along * along).max(0.0).sqrt());
+        if kind == "capsule" {
+            (tube + ball(radius), half.add_scalar(radius))
+        } else {
+            (tube, half + across)
         }
-        "sphere" => {
-            let radius = positive("radius")?;
-            let volume = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
-            (volume, Vector3::repeat(radius))
-        }
-        kind @ ("cylinder" | "capsule") => {
-            let (radius, length) = (positive("radius")?, positive("length")?);
-            let circle = std::f64::consts::PI * radius * radius;
-            let axis: Vector3<f64> = turn.column(2).into();
-            if kind == "capsule" {
-                let half = axis.abs() * (0.5 * length);
-                (
-                    circle * (length + 4.0 / 3.0 * radius),
-                    half.add_scalar(radius),
-                )
-            } else {
-                let across = axis.map(|along| radius * (1.0 - along * along).max(0.0).sqrt());
-                (circle * length, axis.abs() * (0.5 * length) + across)
-            }
-        }
-        _ => return None,
+    } else {
+        return None;
     };
     Some((volume, half, place))
+}
+
+/// Volume of a sphere (m^3).
+fn ball(radius: f64) -> f64 {
+    4.0 / 3.0 * std::f64::consts::PI * radius.powi(3)
 }
 
 fn place(part: Node<'_, '_>) -> Option<Isometry3<f64>> {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import field
 from pathlib import Path
 from types import MappingProxyType
@@ -11,11 +11,13 @@ from typing import Any
 import numpy as np
 
 from hrsafety import arms, contact
+from hrsafety._arguments import Array
 from hrsafety._records import dataclass
+from hrsafety.arms.doubts import doubts_of_point, for_rule
 from hrsafety.arms.inputs import poses_of
 from hrsafety.arms.masses import RULES, mass_by_rule
 from hrsafety.errors import InvalidParameterError
-from hrsafety.plausibility import ResultWarning
+from hrsafety.plausibility import RANGES, ResultWarning
 from hrsafety.scenarios import keys as kind
 from hrsafety.scenarios.keys import Keys, checked, one_of
 
@@ -23,6 +25,19 @@ __all__ = ["RobotFacts", "robot_of"]
 
 MOST_POSES = 10_000
 MOST_SAMPLES = 1_000_000
+LEAST_MASS = 0.3
+"""A robot that weighs less, in kg, is hardly one that works beside people."""
+SINGULAR = 10.0
+"""A drawn pose whose mass is so many times the median is near a singular one."""
+QUANTILE = 0.99
+
+
+def _motors(name: str, value: Any) -> Any:
+    """Return motor inertias: one number for every joint, or a table by joint."""
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return kind.number(name, value)
+    return {each: kind.number(f"{name}.{each}", inertia) for each, inertia in kind.table(name, value).items()}
+
 
 _GIVEN: Keys = MappingProxyType({"mass": kind.number})
 _ARM: Keys = MappingProxyType(
@@ -36,8 +51,11 @@ _ARM: Keys = MappingProxyType(
         "samples": kind.integer,
         "seed": kind.integer,
         "payload": kind.table,
-        "armature": kind.table,
+        "armature": _motors,
         "locked": kind.words,
+        "robot_mass": kind.word,
+        "type_plate_mass": kind.number,
+        "repair_inertia": kind.boolean,
     }
 )
 _PAYLOAD: Keys = MappingProxyType({"link": kind.word, "mass": kind.number, "center": kind.triple})
@@ -66,8 +84,12 @@ class RobotFacts:
         Which of both masses that is.
     directional_mass, iso_mass : float or None
         Effective mass in the worst pose, and that of ISO/TS 15066, in kg.
-    moving_mass, payload_mass : float or None
-        Of an arm, in kg.
+    total_mass, moving_mass, payload_mass : float or None
+        Of an arm, in kg: all links, those that joints move, and what it carries.
+    quantile_mass : float or None
+        Of drawn poses, 99 % have at most this directional mass, in kg.
+    near_singular : bool
+        Whether the worst pose was drawn and weighs more than ten times the median of the draws.
     pose : dict of str to float or None
         The worst pose, values by joint.
     position, direction : tuple of float or None
@@ -87,8 +109,11 @@ class RobotFacts:
     rule: str
     directional_mass: float | None = None
     iso_mass: float | None = None
+    total_mass: float | None = None
     moving_mass: float | None = None
     payload_mass: float | None = None
+    quantile_mass: float | None = None
+    near_singular: bool = False
     pose: Mapping[str, float] | None = None
     position: tuple[float, ...] | None = None
     direction: tuple[float, ...] | None = None
@@ -122,7 +147,20 @@ def robot_of(table: Mapping[str, Any], folder: Path) -> RobotFacts:
     mass = checked("", table, _GIVEN, required=("mass",))["mass"]
     if not 0.0 < mass < float("inf"):
         raise InvalidParameterError("mass", "be finite and positive", mass, "or give urdf, or base")
-    return RobotFacts(kind="mass", mass=mass, rule="given")
+    return RobotFacts(kind="mass", mass=mass, rule="given", warnings=tuple(_unlikely(mass)))
+
+
+def _unlikely(mass: float) -> Iterator[ResultWarning]:
+    """Yield a doubt about a mass that hardly any robot has; a heavier robot than meant is the more careful one."""
+    most = RANGES["effective_mass"].most
+    if mass < LEAST_MASS:
+        message = (
+            f"the robot weighs {mass:.3g} kg, less than {LEAST_MASS:g} kg: t given for kg, or masses that are no data?"
+        )
+        yield ResultWarning("implausible", "robot.mass", message)
+    elif most < mass < float("inf"):
+        message = f"the robot weighs {mass:g} kg, more than {most:g} kg: g given for kg?"
+        yield ResultWarning("implausible", "robot.mass", message, safe_side=True)
 
 
 def _base(values: dict[str, Any]) -> RobotFacts:
@@ -136,6 +174,7 @@ def _base(values: dict[str, Any]) -> RobotFacts:
     length = float(np.hypot(*normal))
     return RobotFacts(
         kind="base",
+        warnings=tuple(_doubts_of_base(base, point, mass)),
         mass=mass,
         rule="directional",
         directional_mass=mass,
@@ -145,39 +184,88 @@ def _base(values: dict[str, Any]) -> RobotFacts:
     )
 
 
-def _arm(values: dict[str, Any], folder: Path) -> RobotFacts:
+def _doubts_of_base(
+    base: contact.HolonomicBase | contact.DifferentialBase, point: tuple[float, float], mass: float
+) -> Iterator[ResultWarning]:
+    """Yield what is hardly meant of a mobile base."""
+    yield from _unlikely(mass)
+    gyration = (base.inertia / base.mass) ** 0.5
+    if not 0.03 <= gyration <= 5.0:
+        message = (
+            f"the base has a radius of gyration of {gyration:.3g} m by inertia and mass, outside the plausible 0.03 to "
+            "5 m: another unit than kg m^2?"
+        )
+        yield ResultWarning("implausible", "robot.inertia", message, safe_side=gyration > 5.0)
+    away = float(np.hypot(*point))
+    if away > 5.0:
+        message = f"the point is {away:g} m from the middle of the base: mm or cm given for m?"
+        yield ResultWarning("implausible", "robot.point", message)
+    if isinstance(base, contact.DifferentialBase) and base.wheel_inertia == 0.0 and mass < float("inf"):
+        message = (
+            "no inertia of wheels and motors given: the mass of a base that rolls is a lower bound, on the unsafe "
+            "side; give wheel_inertia (with the motor behind its gear, n^2 J_m), wheel_radius and half_track"
+        )
+        yield ResultWarning("no_motor_inertia", "robot.wheel_inertia", message)
+
+
+def _read(values: Mapping[str, Any], folder: Path) -> arms.Arm:
+    """Return the arm of a table."""
     payload = None
     if "payload" in values:
-        given = checked("payload", values["payload"], _PAYLOAD, required=("link", "mass"))
-        payload = arms.Payload(**given)
-    motors = {name: kind.number(f"armature.{name}", value) for name, value in values.get("armature", {}).items()}
-    options: dict[str, Any] = {"payload": payload, "armature": motors or None, "locked": values.get("locked") or None}
+        payload = arms.Payload(**checked("payload", values["payload"], _PAYLOAD, required=("link", "mass")))
+    options: dict[str, Any] = {name: values.get(name) for name in ("armature", "locked", "type_plate_mass")}
+    options = {name: None if each in ({}, ()) else each for name, each in options.items()}
+    repair = values.get("repair_inertia", False)
     try:
-        arm = arms.Arm.from_urdf(folder / values["urdf"], **options)
+        arm = arms.Arm.from_urdf(folder / values["urdf"], payload=payload, repair_inertia=repair, **options)
     except InvalidParameterError as error:
         raise error.renamed("urdf" if error.argument == "path_or_text" else error.argument) from None
     if not arm.moved_links:
         raise InvalidParameterError("urdf", "have a link that some joint moves", values["urdf"])
-    rule = one_of("mass_rule", values.get("mass_rule", "larger"), RULES)
+    return arm
+
+
+def _rule(values: Mapping[str, Any]) -> str:
+    if "robot_mass" in values and "mass_rule" in values:
+        raise InvalidParameterError("robot_mass", "be left out beside mass_rule", values["robot_mass"])
+    name = "robot_mass" if "robot_mass" in values else "mass_rule"
+    return one_of(name, values.get(name, "larger"), RULES)
+
+
+def _arm(values: dict[str, Any], folder: Path) -> RobotFacts:
+    arm, rule = _read(values, folder), _rule(values)
     place: dict[str, Any] = {"link": values.get("link", arm.moved_links[-1]), "point": values.get("point", (0.0,) * 3)}
     poses, more = _poses(arm, values, place)
-    if "direction" in values:
-        masses = np.atleast_1d(arm.effective_mass(poses, direction=values["direction"], **place))
-        length = float(np.linalg.norm(values["direction"]))
-        directions = np.broadcast_to(np.asarray(values["direction"]) / length, (len(poses), 3))
-    else:
-        found = arm.extremes(poses, **place)
-        masses, directions = found.worst_mass, found.worst_direction
+    masses, directions = _masses(arm, poses, values, place)
     worst = int(np.argmax(masses))
+    mass = float(mass_by_rule(rule, masses[worst], arm.iso_mass))
+    if mass <= 0.0:
+        raise InvalidParameterError(
+            "urdf", f"have links with masses for the rule {rule!r}", f"{mass:g} kg", "give each link its inertial"
+        )
+    drawn = "samples" in more
+    median = float(np.quantile(masses, 0.5, method="higher"))
+    quantile = float(np.quantile(masses, QUANTILE, method="higher"))
+    singular = drawn and not masses[worst] <= SINGULAR * median
     pose = dict(zip(arm.joint_names, poses[worst].tolist(), strict=True))
+    doubts = [
+        *for_rule(arm.warnings, rule, masses[worst], arm.iso_mass),
+        *doubts_of_point(place["point"], arm.reach),
+        *(() if singular else _unlikely(mass)),
+    ]
+    if singular:
+        doubts.append(_near_singular(float(masses[worst]), quantile, len(poses)))
     return RobotFacts(
         kind="arm",
-        mass=float(mass_by_rule(rule, masses[worst], arm.iso_mass)),
+        mass=mass,
         rule=rule,
         directional_mass=float(masses[worst]),
         iso_mass=arm.iso_mass,
+        total_mass=arm.total_mass,
         moving_mass=arm.moving_mass,
         payload_mass=arm.payload_mass,
+        quantile_mass=quantile if drawn else None,
+        near_singular=singular,
         pose=pose,
         position=tuple(arm.position(poses[worst], **place).tolist()),
         direction=tuple(directions[worst].tolist()),
@@ -185,9 +273,30 @@ def _arm(values: dict[str, Any], folder: Path) -> RobotFacts:
         file=values["urdf"],
         sha256=arm.sha256,
         name=arm.name,
-        warnings=arm.warnings,
+        warnings=tuple(doubts),
         inputs={"link": place["link"], "point": list(place["point"]), "mass_rule": rule, **more},
     )
+
+
+def _masses(arm: arms.Arm, poses: Array, values: Mapping[str, Any], place: Mapping[str, Any]) -> tuple[Array, Array]:
+    """Return directional masses in some poses and their directions: the given one, or the heaviest of each."""
+    if "direction" not in values:
+        found = arm.extremes(poses, **place)
+        return found.worst_mass, found.worst_direction
+    masses = np.atleast_1d(arm.effective_mass(poses, direction=values["direction"], **place).mass)
+    length = float(np.linalg.norm(values["direction"]))
+    return masses, np.broadcast_to(np.asarray(values["direction"]) / length, (len(poses), 3))
+
+
+def _near_singular(worst: float, quantile: float, poses: int) -> ResultWarning:
+    """Return the note that the worst drawn pose is one in which an arm hardly yields."""
+    shown = "unbounded" if np.isinf(worst) else f"{worst:.4g} kg"
+    others = "unbounded" if np.isinf(quantile) else f"at most {quantile:.4g} kg"
+    message = (
+        f"no poses given: the worst of {poses} drawn ones is near a singular pose, in which the point hardly yields "
+        f"({shown}; {100 * QUANTILE:g} % of them: {others}): give the poses of the task as poses"
+    )
+    return ResultWarning("near_singular", "robot.poses", message, safe_side=True)
 
 
 def _poses(arm: arms.Arm, values: Mapping[str, Any], place: Mapping[str, Any]) -> tuple[Any, dict[str, Any]]:
