@@ -195,7 +195,10 @@ def _verdicts(
     limit: ContactLimit, force: Array, doubts: tuple[ResultWarning, ...], governed: npt.NDArray[np.bool_]
 ) -> Words:
     """Return what forces mean for a limit beside the doubts about the masses that they come from."""
-    words = np.asarray(limit.force_verdict(force))
+    if not limit.permitted or limit.force is None:
+        return np.full(len(force), "not_checked" if limit.permitted else "not_permitted")
+    # Small forces are those of slow instants here, and no other unit.
+    words = np.where(force <= limit.force, "within_limits", "exceeds")
     unsafe = unsafe_doubts(doubts)
     everywhere = any(each.code not in DIRECTIONAL for each in unsafe)
     doubted = np.full(len(words), everywhere) | (governed if unsafe else False)

@@ -12,6 +12,7 @@ import pytest
 
 from api.arms.arm_models import EXAMPLE
 from hrsafety import arms
+from hrsafety.cli import main
 from hrsafety.cli.cell.robot import RobotFacts, robot_of
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import unsafe_doubts
@@ -112,3 +113,24 @@ def test_inertias_that_no_body_has_are_repaired_on_request(read: Any) -> None:
         read(TOOL | {"armature": MOTORS}, wrong)
     assert codes(read(TOOL | {"armature": MOTORS, "repair_inertia": True}, wrong)) == ["inertia_projected"]
     assert codes(read(TOOL | {"armature": MOTORS, "repair_inertia": True, "mass_rule": "iso"}, wrong)) == []
+
+
+def test_a_cell_without_poses_tells_of_its_singular_draw_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    motors = ", ".join(f"{name} = {value}" for name, value in MOTORS.items())
+    (tmp_path / "arm.urdf").write_text(EXAMPLE, encoding="utf-8")
+    cell = tmp_path / "cell.toml"
+    contacts = "".join(f'[[contacts]]\nregion = "{each}"\n' for each in ("hand_finger", "chest", "thigh_knee"))
+    cell.write_text(
+        'title = "t"\nspeed = 0.05\ncontact_area = 1e-4\n[robot]\nurdf = "arm.urdf"\n'
+        f"armature = {{ {motors} }}\n{contacts}",
+        encoding="utf-8",
+    )
+    main(["contact", str(cell), "--out", str(tmp_path / "report")])
+    told = capsys.readouterr().err
+    assert told.count("near a singular pose") == 1
+    assert "g or t given" not in told
+    page = (tmp_path / "report" / "report.html").read_text(encoding="utf-8")
+    assert ", near a singular one" in page
+    assert "Effective mass of 99 % of the drawn poses" in page

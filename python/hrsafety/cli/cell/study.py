@@ -435,11 +435,17 @@ def _warnings(
         limit = each.planned.limit
         careful = () if each.chosen is None else (doubt for doubt in each.chosen.warnings if doubt.safe_side)
         for found in (*each.doubts, *careful):
-            if found in cell.robot.warnings or found.code in {"not_permitted", "region_unknown"}:
+            if found in cell.robot.warnings or found.code in {"not_permitted", "region_unknown"} or _told(found):
                 continue
             place = f"{limit.region}, {limit.contact}"
             yield replace(found, message=f"{place}: {found.message}")
     for region, by_label in impacts.items():
         for label, impact in by_label.items():
             for found in impact.warnings:
-                yield replace(found, message=f"{region}, {label}, at the planned speed: {found.message}")
+                if not _told(found):
+                    yield replace(found, message=f"{region}, {label}, at the planned speed: {found.message}")
+
+
+def _told(doubt: ResultWarning) -> bool:
+    """Whether a doubt about a contact is one about the mass of the robot, which says so once and knows the cause."""
+    return doubt.code == "implausible" and doubt.subject == "robot_mass"
