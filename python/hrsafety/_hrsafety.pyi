@@ -1775,8 +1775,11 @@ class StaticMap:
         polylines: Sequence[tuple[_Array, float]],
         polygons: Sequence[_Array],
         discs: _Array,
-        grids: Sequence[tuple[_Occupied, float, _Pair, float]],
+        grids: Sequence[tuple[_Occupied, float, _Pair, float, bool]],
     ) -> Self: ...
+    def knows(self, points: _Array) -> list[bool]:
+        """Return whether something is known of points (n, 2)."""
+
     def clearance(self, points: _Array) -> _Array:
         """Return distances of points (n, 2), zero inside, in m."""
 

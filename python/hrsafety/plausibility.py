@@ -186,6 +186,7 @@ RANGES: dict[str, Range] = {
     "time_limit": Range(0.1, 86400.0, "s", "one evasion to one day", "ms given for s"),
     "arrival_tolerance": Range(1e-4, 5.0, "m", "accurate docking to large vehicles", "mm or cm given for m"),
     "floor_position": Range(-10000.0, 10000.0, "m", "the largest sites", "mm given for m"),
+    "map_resolution": Range(0.005, 1.0, "m", "fine to coarse grids of floors", "mm, or cells per meter, given for m"),
     "obstacle_size": Range(0.005, 1000.0, "m", "thin poles to long walls", "mm or cm given for m"),
     "person_radius": Range(0.1, 1.0, "m", "a child to a long step with room around it", "mm or cm given for m"),
     "person_speed": Range(

@@ -43,8 +43,8 @@ pub struct StaticMap(pub map::StaticMap);
 
 #[pymethods]
 impl StaticMap {
-    /// Polylines with radii, polygons, discs as rows (x, y, radius), grids with resolution, origin and
-    /// yaw, all in the order given.
+    /// Polylines with radii, polygons, discs as rows (x, y, radius), grids with resolution, origin, yaw
+    /// and whether nothing is known outside, all in the order given.
     #[new]
     #[pyo3(signature = (*, polylines, polygons, discs, grids))]
     #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
@@ -53,7 +53,7 @@ impl StaticMap {
         polylines: Vec<(Rows<'_>, f64)>,
         polygons: Vec<Rows<'_>>,
         discs: Rows<'_>,
-        grids: Vec<(Cells<'_>, f64, [f64; 2], f64)>,
+        grids: Vec<(Cells<'_>, f64, [f64; 2], f64, bool)>,
     ) -> PyResult<Self> {
         let mut shapes = MapShapes::new();
         let owned = |kind: &str, index: usize| {
@@ -73,7 +73,7 @@ impl StaticMap {
             let added = shapes.disc([*x, *y], *radius);
             added.map_err(owned("discs", index))?;
         }
-        for (cells, resolution, origin, yaw) in &grids {
+        for (cells, resolution, origin, yaw, limits) in &grids {
             let columns = cells.as_array().ncols();
             let place = GridPlace {
                 resolution: *resolution,
@@ -82,7 +82,12 @@ impl StaticMap {
             };
             let cells = cells.as_slice()?;
             watched(py, Report::none(), |control| {
-                shapes.grid(cells, columns, place, &|| control.interrupted())
+                let interrupted = || control.interrupted();
+                if *limits {
+                    shapes.limiting_grid(cells, columns, place, &interrupted)
+                } else {
+                    shapes.grid(cells, columns, place, &interrupted)
+                }
             })?;
         }
         Ok(Self(py.detach(|| shapes.map())))
@@ -135,6 +140,13 @@ impl StaticMap {
         let position = position.into();
         self.0.boundary_points(position, reach, kappa, &mut points);
         two_columns(py, points.into_iter())
+    }
+
+    /// Whether something is known of points.
+    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
+    fn knows(&self, points: Rows<'_>) -> PyResult<Vec<bool>> {
+        let points = pairs(&points)?.iter();
+        Ok(points.map(|point| self.0.knows((*point).into())).collect())
     }
 
     /// Ends and radii of the segments, a row each.

@@ -247,7 +247,8 @@ class Trajectory(Table):
         if self.scenario is None:
             return ()
         found = run_warnings.of_run(self.scenario, self.law, self.built, self.motion_step)
-        return (*run_warnings.of_commands(self.law, self.commanded_periods), *found)
+        way = run_warnings.of_way(self.law, self.position)
+        return (*run_warnings.of_commands(self.law, self.commanded_periods), *found, *way)
 
     @property
     def sensing(self) -> Sensing:

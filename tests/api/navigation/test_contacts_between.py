@@ -23,7 +23,14 @@ def episode(seed: int, period: tuple[float, float] = (0.0, 0.0)) -> nav.metrics.
     walk[5:9, 3] = np.nan
     own = np.cumsum(rng.normal(0.0, 0.3, (20, 2)), axis=0)
     return nav.metrics.Episode(
-        position=own, step=STEP, goal=(50.0, 0.0), robot_radius=0.2, people=walk, person_radius=0.2, period=period
+        position=own,
+        step=STEP,
+        goal=(50.0, 0.0),
+        robot_radius=0.2,
+        people=walk,
+        person_radius=0.2,
+        period=period,
+        simulated=True,
     )
 
 
@@ -136,7 +143,7 @@ def test_a_table_tells_what_each_of_its_episodes_tells() -> None:
         *(episode(seed) for seed in range(30)),
         *(episode(seed, (5.0, 0.0)) for seed in range(30)),
         *(walled(seed) for seed in range(40)),
-        *(nav.metrics.Episode(**{**rules, **given}) for given in (*odd, *far, near, both)),
+        *(nav.metrics.Episode(**{**rules, "simulated": True, **given}) for given in (*odd, *far, near, both)),
     ]
     alone = [(f"episodes[{index}]", nav.metrics.evaluate(each).warnings) for index, each in enumerate(episodes)]
     expected = gathered(alone, "episodes")

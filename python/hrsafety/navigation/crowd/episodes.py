@@ -60,6 +60,7 @@ def episodes_in(world: World, robot_position: Array, position: Array, radius: Ar
             arrival_tolerance=robot.arrival_tolerance,
             max_speed=robot.robot.max_speed,
             period=world.period,
+            simulated=True,
             **beside,
         )
         for index, robot in enumerate(world.robots)

@@ -15,6 +15,8 @@ from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.maps.parts import checked_place, checked_points
 from hrsafety.navigation.maps.static_map import StaticMap
+from hrsafety.navigation.maps.unknown import over_unknown
+from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Guide", "LocalGoal", "Plan"]
 
@@ -51,6 +53,8 @@ class Plan:
         The goal in m.
     radius : float
         Radius of the robot in m.
+    warnings : tuple of ResultWarning
+        Doubts of the map, and how far the path from the start leads over unknown ground.
 
     Examples
     --------
@@ -65,6 +69,7 @@ class Plan:
     radius: float
     _native: _hrsafety.Plan = field(repr=False, compare=False)
     _made_from: tuple[Guide, StaticMap, Pair] = field(repr=False, compare=False)
+    warnings: tuple[ResultWarning, ...] = field(default=(), compare=False)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return what makes the plan again: its costs may fill many megabytes."""
@@ -155,7 +160,7 @@ class Guide(Parameters):
         How far along the path the local goal of the law may lie, in m.
     box : ((float, float), (float, float)) or None
         Lower and upper corner of the nodes in m. ``None``: map, start and goal, and the radius of the robot and
-        1 m around.
+        1 m around; in a map outside of whose images nothing is known the images, and no way leads out of them.
     takeover_progress : float
         Fall of the cost in m that counts as progress.
     takeover_window : float
@@ -216,13 +221,15 @@ class Guide(Parameters):
         Raises
         ------
         InvalidParameterError
-            If start or goal lie outside of the box or nearer to the map than the radius, there is no way between
-            them, or the box has too many nodes.
+            If start or goal lie outside of the box, or of the image of the map without one, or nearer to the map than
+            the radius, there is no way between them, or the box has too many nodes.
         """
         native = instance("map", map, StaticMap)._native
         size = number("radius", radius)
         ends = checked_place("start", start), checked_place("goal", goal)
-        return Plan(ends[1], size, self._native.plan(native, size, *ends), (self, map, ends[0]))
+        plan = self._native.plan(native, size, *ends)
+        doubts = (*map.warnings, *over_unknown(map, plan.path(ends[0]), "the plan"))
+        return Plan(ends[1], size, plan, (self, map, ends[0]), doubts)
 
 
 def _planned(guide: Guide, map: StaticMap, radius: float, start: Pair, goal: Pair) -> Plan:

@@ -1,126 +1,276 @@
-"""Maps of the ROS map server: a YAML file beside a PGM image."""
+"""Maps of the ROS map server: a YAML file beside an image."""
 
 from __future__ import annotations
 
 import math
-import re
+from collections.abc import Iterator
 from os import PathLike
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import positive, readable, word
+from hrsafety._arguments import count, meant, positive, readable, word
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.navigation.maps.pgm import read_pgm
+from hrsafety.navigation.maps.pgm import Picture
+from hrsafety.navigation.maps.pictures import read_picture
+from hrsafety.navigation.maps.yaml_entries import yaml_entries
+from hrsafety.plausibility import ResultWarning, implausible
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["ServedMap", "read_map_server"]
+__all__ = ["BETWEEN", "FREE", "OCCUPIED", "UNKNOWN", "ServedMap", "cell_classes", "read_map_server"]
 
-MOST_BYTES = 1 << 20  # of a YAML file
 CELLS_AT_ONCE = 1 << 23
-_ENTRY = r"(\w+)\s*:\s*(.*)"
+FREE, UNKNOWN, OCCUPIED, BETWEEN = range(4)
+"""What a cell is: `BETWEEN` has a value from 1 to 99 of 100."""
+SAVED_UNKNOWN = 205
+"""Gray value that map savers write for unknown cells."""
 _NEEDED = ("image", "resolution", "origin", "occupied_thresh", "free_thresh")
+_MODES = ("trinary", "scale", "raw")
+_TRUTH = {"true": 1.0, "yes": 1.0, "on": 1.0, "false": 0.0, "no": 0.0, "off": 0.0}
+
+Bits = npt.NDArray[np.bool_]
+Classes = npt.NDArray[np.uint8]
 
 
 class ServedMap(NamedTuple):
-    """An occupancy grid with its place."""
+    """An occupancy grid with its place.
 
-    occupied: npt.NDArray[np.bool_]
+    Attributes
+    ----------
+    occupied : ndarray of bool, shape (rows, columns)
+        What cells count as; row 0 has the lowest y.
+    unseen : ndarray of bool, shape (rows, columns), or None
+        Cells that count as free though nobody has seen them; ``None`` if there are none.
+    resolution : float
+        Side of a cell in m.
+    origin : tuple of float
+        Lower left corner in m.
+    yaw : float
+        Angle by which the grid is turned around it, in rad.
+    warnings : tuple of ResultWarning
+        Why the cells may not be what they seem to.
+    """
+
+    occupied: Bits
+    unseen: Bits | None
     resolution: float
     origin: tuple[float, float]
     yaw: float
+    warnings: tuple[ResultWarning, ...]
 
 
-def read_map_server(path: str | PathLike[str], *, unknown: str = "occupied") -> ServedMap:
-    """Return the grid that a YAML file describes; row 0 has the lowest y."""
+class _Rules(NamedTuple):
+    """What a YAML file and the arguments say about gray values."""
+
+    mode: str
+    negate: bool
+    free: float
+    occupied: float
+    letter: bool
+    occupied_from: int | None
+
+
+def read_map_server(
+    path: str | PathLike[str],
+    *,
+    unknown: str = "occupied",
+    rule: str = "saved",
+    occupied_from: int | None = None,
+    trust_path: bool = False,
+) -> ServedMap:
+    """Return the grid that a YAML file describes; see `StaticMap.from_map_server`."""
     fills = word("unknown", unknown, ("occupied", "free")) == "occupied"
+    letter = word("rule", rule, ("saved", "nav2")) == "nav2"
+    least = None if occupied_from is None else count("occupied_from", occupied_from, least=1, most=100)
+    file, entries = _entries(path)
+    rules = _rules(entries, letter=letter, occupied_from=least)
+    resolution = positive("resolution", _number(entries, "resolution"))
+    x, y, yaw = _origin(entries["origin"])
+    picture = read_picture(_image(file, str(entries["image"]), trust_path=trust_path))
+    classes, freed = _classes(picture.most, rules)
+    seen = _histogram(picture)
+    kept = _kept(classes, rules, picture.most, fills)
+    found = (
+        *_doubts_of_place(resolution, yaw),
+        *_doubts_of_cells(picture, rules, classes, freed, kept, seen, fills=fills),
+    )
+    trusted = ((classes == UNKNOWN) & (kept == FREE)) | (freed & letter)
+    some = bool(seen[trusted].any()) or not (fills or picture.hidden is None)
+    unseen = _upwards(picture, trusted, hidden=not fills) if some else None
+    return ServedMap(_upwards(picture, kept != FREE, hidden=fills), unseen, resolution, (x, y), yaw, found)
+
+
+def cell_classes(path: str | PathLike[str]) -> Classes:
+    """Return what each cell of a map is, whatever it counts as; row 0 has the lowest y."""
+    file, entries = _entries(path)
+    picture = read_picture(_image(file, str(entries["image"]), trust_path=False))
+    classes, _ = _classes(picture.most, _rules(entries))
+    found: Classes = classes[picture.values[::-1]]
+    if picture.hidden is not None:
+        found[picture.hidden[::-1]] = UNKNOWN
+    return found
+
+
+def _entries(path: str | PathLike[str]) -> tuple[Path, dict[str, Any]]:
     file = readable("path", path)
-    entries = _entries(file)
+    entries = yaml_entries(file)
     for key in _NEEDED:
         if key not in entries:
             raise InvalidParameterError(key, f"stand in {file.name}", Shown("nothing"))
-    if entries.get("mode", "trinary") not in ("trinary", "scale"):
-        raise InvalidParameterError("mode", 'be "trinary" or "scale"', entries["mode"])
-    resolution = positive("resolution", _number(entries, "resolution"))
+    return file, entries
+
+
+def _rules(entries: dict[str, Any], *, letter: bool = False, occupied_from: int | None = None) -> _Rules:
+    mode = entries.get("mode", "trinary")
+    if mode not in _MODES:
+        raise InvalidParameterError("mode", 'be "trinary", "scale" or "raw"', mode, meant(mode, _MODES))
     free, occupied = _number(entries, "free_thresh"), _number(entries, "occupied_thresh")
-    if not 0.0 <= free <= occupied <= 1.0:
+    if not 0.0 <= free < occupied <= 1.0:
         shown = Shown(f"free_thresh {free!r} and occupied_thresh {occupied!r}")
-        raise InvalidParameterError("thresholds", "be 0 <= free_thresh <= occupied_thresh <= 1", shown)
-    x, y, yaw = _origin(entries["origin"])
-    negate = _number(entries, "negate") if "negate" in entries else 0.0
-    if negate not in (0.0, 1.0):
-        raise InvalidParameterError("negate", "be 0 or 1", negate)
-    picture = read_pgm(_image(file, str(entries["image"])))
-    share = picture.gray / 255.0 if negate else (255.0 - picture.gray) / 255.0
-    cells = share >= free if fills else share > occupied
+        raise InvalidParameterError("thresholds", "be 0 <= free_thresh < occupied_thresh <= 1", shown)
+    return _Rules(str(mode), _truth(entries, "negate"), free, occupied, letter, occupied_from)
+
+
+# ---- gray values -----------------------------------------------------------------------------------
+
+
+def _classes(most: int, rules: _Rules) -> tuple[Classes, Bits]:
+    """Return what each gray value is, and which of them the letter of the file frees though savers mean unknown."""
+    gray = np.arange(most + 1) * (255.0 / most)
+    share = gray / 255.0 if rules.negate else (255.0 - gray) / 255.0
+    found = np.full(most + 1, UNKNOWN, dtype=np.uint8)
+    if rules.mode == "raw":
+        percent = np.round(gray)
+        found[percent <= 100] = BETWEEN
+        found[percent == 0], found[percent == 100] = FREE, OCCUPIED
+        return found, np.zeros(most + 1, dtype=np.bool_)
+    if rules.mode == "scale":
+        found[:] = np.where(_percent(most, rules) >= 100.0, OCCUPIED, BETWEEN)
+    found[share >= rules.occupied] = OCCUPIED
+    found[share <= rules.free if rules.letter else share < rules.free] = FREE
+    freed = (np.abs(gray - SAVED_UNKNOWN) < 0.5) & (found == FREE)
+    if not rules.letter:
+        found[freed] = UNKNOWN
+    return found, freed
+
+
+def _percent(most: int, rules: _Rules) -> npt.NDArray[np.float64]:
+    """Return the occupancy from 0 to 100 of each gray value between free and occupied."""
+    gray = np.arange(most + 1) * (255.0 / most)
+    if rules.mode == "raw":
+        return np.round(gray)
+    share = gray / 255.0 if rules.negate else (255.0 - gray) / 255.0
+    return np.round(100.0 * (share - rules.free) / (rules.occupied - rules.free))
+
+
+def _kept(classes: Classes, rules: _Rules, most: int, fills: bool) -> Classes:
+    """Return what each gray value counts as, free or occupied."""
+    kept = np.where((classes == OCCUPIED) | (classes == BETWEEN), OCCUPIED, FREE).astype(np.uint8)
+    if rules.occupied_from is not None:
+        kept[(classes == BETWEEN) & (_percent(most, rules) < rules.occupied_from)] = FREE
     if fills:
-        # Between the thresholds and on them nothing is known; above them it is occupied.
-        cells |= share > occupied
-    return ServedMap(_upwards(cells, picture.values), resolution, (x, y), yaw)
+        kept[classes == UNKNOWN] = OCCUPIED
+    return kept
 
 
-def _upwards(cells: npt.NDArray[np.bool_], values: npt.NDArray[np.uint8]) -> npt.NDArray[np.bool_]:
-    """Return the cell of each value, the lowest row first; some rows at a time, so that Ctrl-C is answered."""
-    rows, columns = values.shape
-    found = np.empty((rows, columns), dtype=np.bool_)
+def _histogram(picture: Picture) -> npt.NDArray[np.int64]:
+    """Return how many opaque pixels have each gray value."""
+    found = np.zeros(picture.most + 1, dtype=np.int64)
+    for part in _parts(picture):
+        values = picture.values[part]
+        some = values.ravel() if picture.hidden is None else values[~picture.hidden[part]]
+        found += np.bincount(some, minlength=len(found))
+    return found
+
+
+def _parts(picture: Picture) -> Iterator[slice]:
+    """Yield some rows at a time, so that Ctrl-C is answered and little memory is taken."""
+    rows, columns = picture.values.shape
     step = max(CELLS_AT_ONCE // columns, 1)
     for first in range(0, rows, step):
-        last = min(first + step, rows)
-        found[rows - last : rows - first] = cells[values[first:last]][::-1]
+        yield slice(first, min(first + step, rows))
+
+
+def _upwards(picture: Picture, chosen: Bits, *, hidden: bool) -> Bits:
+    """Return which cells have one of the chosen gray values, the lowest row first."""
+    rows, columns = picture.values.shape
+    found = np.empty((rows, columns), dtype=np.bool_)
+    for part in _parts(picture):
+        cells = chosen[picture.values[part]]
+        if picture.hidden is not None:
+            cells[picture.hidden[part]] = hidden
+        found[rows - part.stop : rows - part.start] = cells[::-1]
     return found
 
 
-def _entries(file: Path) -> dict[str, Any]:
-    """Return keys and values of a flat YAML file; a value is a word or a list of words."""
-    try:
-        if file.stat().st_size > MOST_BYTES:
-            raise InvalidParameterError("path", f"be a YAML file of at most {MOST_BYTES} bytes", file.name)
-        text = file.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InvalidParameterError("path", "be a YAML file", Shown(f"{file.name} ({error})")) from None
-    found: dict[str, Any] = {}
-    listed = pending = ""
-    for index, line in enumerate(text.splitlines(), start=1):
-        bare = _without_comment(line).strip()
-        if not bare or bare in ("---", "..."):
-            continue
-        if pending:  # a list in brackets over several lines
-            bare = f"{pending}: {' '.join(found.pop(pending))} {bare}"
-            pending = ""
-        match = re.fullmatch(_ENTRY, bare)
-        if match:
-            key, value = match.groups()
-            listed = "" if value else key
-            if value.startswith("[") and not value.endswith("]"):
-                found[key], pending = [value], key
-            elif value.startswith("["):
-                found[key] = [_unquoted(each) for each in value[1:-1].split(",")]
-            else:
-                found[key] = _unquoted(value) if value else []
-        elif bare.startswith("-") and listed:
-            found[listed].append(_unquoted(bare[1:]))
-        else:
-            shown = Shown(f"{line.strip()[:80]!r} in line {index}")
-            raise InvalidParameterError(f"{file.name}", "be lines 'key: value' of a map", shown)
-    return found
+# ---- doubts ----------------------------------------------------------------------------------------
 
 
-def _without_comment(line: str) -> str:
-    return re.sub(r"(^|\s)#.*", "", line)
+def _doubts_of_place(resolution: float, yaw: float) -> Iterator[ResultWarning]:
+    yield from implausible({"resolution": resolution}, {"resolution": "map_resolution"})
+    yield from implausible({"yaw of origin": yaw}, {"yaw of origin": "heading"})
 
 
-def _unquoted(value: str) -> str:
-    value = value.strip()
-    return value[1:-1] if len(value) > 1 and value[0] == value[-1] and value[0] in "'\"" else value
+def _doubts_of_cells(
+    picture: Picture,
+    rules: _Rules,
+    classes: Classes,
+    freed: Bits,
+    kept: Classes,
+    seen: npt.NDArray[np.int64],
+    *,
+    fills: bool,
+) -> Iterator[ResultWarning]:
+    """Yield why cells may not be what they seem to."""
+    cells = picture.values.size
+    if picture.spare:
+        message = f"{picture.spare} bytes stand after the last gray value of the image: it may be another picture"
+        yield ResultWarning("trailing_bytes", "image", message)
+    gray = int(seen[freed].sum())
+    if gray:
+        does = "taken as free as the file says" if rules.letter else f"taken as unknown, {_as(fills)}"
+        message = (
+            f"{gray} of {cells} cells ({100.0 * gray / cells:.3g} %) have the gray {SAVED_UNKNOWN} that map savers "
+            f"write for unknown, which free_thresh {rules.free:g} makes free: {does}; write free_thresh: 0.196"
+        )
+        yield ResultWarning("unknown_gray", "free_thresh", message)
+    dark = 0 if picture.hidden is None else int(picture.hidden.sum())
+    unknown = int(seen[classes == UNKNOWN].sum()) + dark
+    if unknown and not fills:
+        message = (
+            f"{unknown} of {cells} cells ({100.0 * unknown / cells:.3g} %) are unknown and taken as free: nobody has "
+            'seen what stands there; unknown="occupied" keeps robots away'
+        )
+        yield ResultWarning("unknown_ground", "unknown", message)
+    between = int(seen[(classes == BETWEEN) & (kept == OCCUPIED)].sum())
+    if between and rules.occupied_from is None:
+        message = (
+            f"{between} of {cells} cells ({100.0 * between / cells:.3g} %) lie between free and occupied and are taken "
+            "as occupied; occupied_from=50 takes those above 50 of 100 only"
+        )
+        yield ResultWarning("between_counts_as_occupied", "mode", message, safe_side=True)
+    if rules.mode == "scale" and rules.free == 0.0 and rules.occupied == 1.0:
+        message = (
+            "thresholds 0 and 1 with mode scale are those of a mask of speeds or of a filter, not of what stands "
+            "there: give the map itself"
+        )
+        yield ResultWarning("mask_as_map", "mode", message)
+
+
+def _as(fills: bool) -> str:
+    return "which counts as occupied" if fills else "which counts as free"
+
+
+# ---- keys ------------------------------------------------------------------------------------------
 
 
 def _number(entries: dict[str, Any], key: str) -> float:
     given = entries[key]
     try:
-        value = float(given)
+        value = float(given.replace(".nan", "nan").replace(".inf", "inf") if isinstance(given, str) else given)
     except (TypeError, ValueError):
         raise InvalidParameterError(key, "be a number", given) from None
     if not math.isfinite(value):
@@ -128,10 +278,23 @@ def _number(entries: dict[str, Any], key: str) -> float:
     return value
 
 
+def _truth(entries: dict[str, Any], key: str) -> bool:
+    """Return a value of 0 or 1, or a word for it; 0 where there is none."""
+    given = entries.get(key, "0")
+    value = _TRUTH.get(given.lower()) if isinstance(given, str) else None
+    if value is None:
+        value = _number(entries, key) if key in entries else 0.0
+    if value not in (0.0, 1.0):
+        raise InvalidParameterError(key, "be 0 or 1", value)
+    return bool(value)
+
+
 def _origin(given: Any) -> tuple[float, float, float]:
     rule = "be three numbers, x, y and yaw"
     try:
-        x, y, yaw = (float(each) for each in given)
+        if isinstance(given, str):
+            raise TypeError
+        x, y, yaw = (float(each.replace(".nan", "nan").replace(".inf", "inf")) for each in given)
     except (TypeError, ValueError):
         raise InvalidParameterError("origin", rule, given) from None
     if not all(map(math.isfinite, (x, y, yaw))):
@@ -139,13 +302,14 @@ def _origin(given: Any) -> tuple[float, float, float]:
     return x, y, yaw
 
 
-def _image(file: Path, name: str) -> Path:
-    """Return the image of a map, which lies in its folder."""
+def _image(file: Path, name: str, *, trust_path: bool) -> Path:
+    """Return the image of a map, which lies in its folder unless another place is trusted."""
     folder = file.resolve().parent
     try:
         image = (folder / name).resolve()
     except (OSError, ValueError) as error:
         raise InvalidParameterError("image", "name a file", Shown(f"{name[:80]!r} ({error})")) from None
-    if not image.is_relative_to(folder):
-        raise InvalidParameterError("image", "lie in the folder of the YAML file", name)
+    if not trust_path and not image.is_relative_to(folder):
+        remedy = "trust_path=True reads it from there"
+        raise InvalidParameterError("image", "lie in the folder of the YAML file", name, remedy)
     return readable("image", image)

@@ -52,6 +52,10 @@ class Cells(NamedTuple):
         Lower left corner of the first cell, in m.
     yaw : float
         Angle by which the grid is turned around it, in rad.
+    limits : bool
+        Whether nothing is known of what lies outside of it, and of other such grids.
+    unseen_bits : bytes
+        Cells that count as free though nobody has seen them, like ``bits``; empty without any.
     """
 
     bits: bytes
@@ -59,13 +63,40 @@ class Cells(NamedTuple):
     resolution: float
     origin: tuple[float, float]
     yaw: float
+    limits: bool = False
+    unseen_bits: bytes = b""
 
     @property
     def occupied(self) -> npt.NDArray[np.bool_]:
         """Which cells are occupied, (rows, columns)."""
+        return _unpacked(self.bits, self.shape)
+
+    @property
+    def unseen(self) -> npt.NDArray[np.bool_]:
+        """Which cells count as free though nobody has seen them, (rows, columns)."""
+        return _unpacked(self.unseen_bits, self.shape) if self.unseen_bits else np.zeros(self.shape, dtype=np.bool_)
+
+    def unseen_at(self, point: Array) -> npt.NDArray[np.bool_]:
+        """Return whether points (n, 2) lie in cells that count as free though nobody has seen them."""
         rows, columns = self.shape
-        bits = np.unpackbits(np.frombuffer(self.bits, dtype=np.uint8), count=rows * columns)
-        return bits.astype(np.bool_).reshape(rows, columns)
+        found = np.zeros(len(point), dtype=np.bool_)
+        if not self.unseen_bits:
+            return found
+        cosine, sine = math.cos(self.yaw), math.sin(self.yaw)
+        away = (point - self.origin) / self.resolution
+        cell = np.floor(np.stack([away @ (cosine, sine), away @ (-sine, cosine)], axis=1))
+        inside = ((cell >= 0.0) & (cell < (columns, rows))).all(axis=1)
+        column, row = cell[inside].astype(np.int64).T
+        at = row * columns + column
+        bits = np.frombuffer(self.unseen_bits, dtype=np.uint8)
+        found[inside] = bits[at // 8] >> (7 - at % 8) & 1 == 1
+        return found
+
+
+def _unpacked(bits: bytes, shape: tuple[int, int]) -> npt.NDArray[np.bool_]:
+    rows, columns = shape
+    found = np.unpackbits(np.frombuffer(bits, dtype=np.uint8), count=rows * columns)
+    return found.astype(np.bool_).reshape(rows, columns)
 
 
 def counted(word: str, many: int) -> str:

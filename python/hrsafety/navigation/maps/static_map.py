@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Parameters, empty, instance, not_negative, number, numbers, pair, points
+from hrsafety._arguments import Array, Parameters, empty, instance, not_negative, number, numbers, pair, points, word
 from hrsafety._records import dataclass
 from hrsafety.errors import ShapeError
 from hrsafety.navigation.maps.barn import barn_discs
@@ -31,6 +31,7 @@ from hrsafety.navigation.maps.parts import (
     outline,
 )
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
+from hrsafety.plausibility import ResultWarning
 
 __all__ = ["StaticMap"]
 
@@ -52,6 +53,8 @@ class StaticMap(Parameters):
         Centers and radii of filled discs, in m.
     grids : sequence of Cells
         Occupancy grids; see `from_grid`.
+    warnings : sequence of ResultWarning
+        Why the map may not be what it seems to; runs in it carry them.
 
     Raises
     ------
@@ -72,6 +75,7 @@ class StaticMap(Parameters):
     polygons: Sequence[npt.ArrayLike] = ()
     discs: npt.ArrayLike = ()
     grids: Sequence[Cells] = ()
+    warnings: Sequence[ResultWarning] = field(default=(), compare=False)
     _native: _hrsafety.StaticMap = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -84,7 +88,11 @@ class StaticMap(Parameters):
         if discs.ndim != 2 or discs.shape[1] != 3:
             raise ShapeError("discs", "(n, 3)", discs.shape)
         grids = [instance(f"grids[{i}]", each, Cells) for i, each in enumerate(items("grids", self.grids))]
+        doubts = items("warnings", self.warnings)
+        for index, doubt in enumerate(doubts):
+            instance(f"warnings[{index}]", doubt, ResultWarning)
         self._set(
+            warnings=tuple(doubts),
             walls=tuple(Wall(outline(corners), radius) for corners, radius in walls),
             polygons=tuple(outline(corners) for corners in polygons),
             discs=tuple((float(x), float(y), float(radius)) for x, y, radius in discs),
@@ -93,7 +101,7 @@ class StaticMap(Parameters):
                 polylines=walls,
                 polygons=polygons,
                 discs=discs,
-                grids=[(each.occupied, each.resolution, each.origin, each.yaw) for each in grids],
+                grids=[(each.occupied, each.resolution, each.origin, each.yaw, each.limits) for each in grids],
             ),
         )
 
@@ -198,8 +206,9 @@ class StaticMap(Parameters):
         resolution: float,
         origin: tuple[float, float] = (0.0, 0.0),
         yaw: float = 0.0,
+        outside: str = "free",
     ) -> Self:
-        """Return the map of an occupancy grid; what lies outside of it is free.
+        """Return the map of an occupancy grid.
 
         Parameters
         ----------
@@ -211,6 +220,8 @@ class StaticMap(Parameters):
             Lower left corner of the first cell, in m.
         yaw : float
             Angle by which the grid is turned around it, in rad.
+        outside : {"free", "unknown"}
+            What lies outside of the grid. A guide plans no way through what is unknown, unless its box is given.
 
         Returns
         -------
@@ -232,35 +243,68 @@ class StaticMap(Parameters):
         cells = occupied_cells("occupied", occupied)
         rows, columns = cells.shape
         size = number("resolution", resolution)
-        grid = Cells(np.packbits(cells).tobytes(), (rows, columns), size, pair("origin", origin), number("yaw", yaw))
+        limits = word("outside", outside, ("free", "unknown")) == "unknown"
+        bits = np.packbits(cells).tobytes()
+        grid = Cells(bits, (rows, columns), size, pair("origin", origin), number("yaw", yaw), limits)
         return cls(grids=[grid])
 
     @classmethod
-    def from_map_server(cls, path: str | PathLike[str], *, unknown: str = "occupied") -> Self:
-        """Return the map that a YAML file of the ROS map server describes, with its PGM image.
+    def from_map_server(
+        cls,
+        path: str | PathLike[str],
+        *,
+        unknown: str = "occupied",
+        outside: str = "unknown",
+        rule: str = "saved",
+        occupied_from: int | None = None,
+        trust_path: bool = False,
+    ) -> Self:
+        """Return the map that a YAML file of the ROS map server describes, with its image.
 
-        Occupied is ``p > occupied_thresh``, free ``p < free_thresh``, with ``p = (255 - x)/255`` of the gray
-        value ``x``, or ``x/255`` with ``negate``; everything else is unknown.
+        With ``p = (255 - x)/255`` of the gray value ``x`` (scaled to 0 to 255), or ``x/255`` with ``negate``, a cell
+        is occupied for ``p >= occupied_thresh``, free for ``p < free_thresh``, else unknown (``mode: trinary``) or in
+        between (``mode: scale``); with ``mode: raw`` the gray value is the occupancy from 0 to 100, and unknown above.
+        What is not opaque is unknown, and so is the gray 205 that map savers write for unknown cells, also where
+        ``free_thresh: 0.25`` makes it free.
 
         Parameters
         ----------
         path : path
-            The YAML file. Its image (P2 or P5, at most 8 bits) is read from the same folder or one below.
+            The YAML file, in block or flow style. Its image, PGM with up to 16 bits or PNG (with Pillow), is read from
+            the same folder or one below.
         unknown : {"occupied", "free"}
             What unknown cells count as.
+        outside : {"unknown", "free"}
+            What lies outside of the image. A guide plans no way through what is unknown, unless its box is given.
+        rule : {"saved", "nav2"}
+            Whether the gray 205 stays unknown, or the file is followed by the letter, as Nav2 does: free for
+            ``p <= free_thresh``.
+        occupied_from : int or None
+            Occupancy from 1 to 100 from which a cell in between counts as occupied; ``None``: all of them do.
+        trust_path : bool
+            Whether the image may lie in another folder.
 
         Returns
         -------
         StaticMap
-            The map, at the origin and yaw of the file.
+            The map, at the origin and yaw of the file. Its warnings: ``unknown_gray`` and ``unknown_ground`` with the
+            share of cells, ``between_counts_as_occupied``, ``mask_as_map``, ``trailing_bytes``, and ``implausible`` for
+            a resolution outside 0.005 to 1 m or a yaw beyond one turn.
 
         Raises
         ------
         InvalidParameterError
-            If a file cannot be read, a key is missing or out of range, or the image is of another kind or size.
+            If a file cannot be read, a key is missing, stands twice or is out of range, or the image is of another
+            kind or size.
+        MissingExtraError
+            If the image is PNG and Pillow is not installed.
         """
-        read = read_map_server(path, unknown=unknown)
-        return cls.from_grid(read.occupied, resolution=read.resolution, origin=read.origin, yaw=read.yaw)
+        limits = word("outside", outside, ("unknown", "free")) == "unknown"
+        read = read_map_server(path, unknown=unknown, rule=rule, occupied_from=occupied_from, trust_path=trust_path)
+        bits = np.packbits(read.occupied).tobytes()
+        unseen = b"" if read.unseen is None else np.packbits(read.unseen).tobytes()
+        grid = Cells(bits, read.occupied.shape, read.resolution, read.origin, read.yaw, limits, unseen)
+        return cls(grids=[grid], warnings=read.warnings)
 
     @classmethod
     def from_barn(cls, source: str | PathLike[str] | Mapping[str, Any], world: int) -> Self:
@@ -417,6 +461,37 @@ class StaticMap(Parameters):
         place = checked_place("point", point)
         return self._native.boundary_points(place, not_negative("reach", reach), number("kappa", kappa))
 
+    def unseen(self, point: npt.ArrayLike) -> Any:
+        """Return whether nobody has seen what stands at points: unknown cells, and what lies outside of the image.
+
+        Parameters
+        ----------
+        point : array_like, shape (2,) or (n, 2)
+            One point or several, in m.
+
+        Returns
+        -------
+        bool or ndarray of bool, shape (n,)
+            Whether it is unknown and not counted as occupied.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the points are no points.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav
+        >>> room = nav.maps.StaticMap.from_grid([[0, 0], [0, 1]], resolution=1.0, outside="unknown")
+        >>> room.unseen([(0.5, 0.5), (2.5, 0.5)])
+        array([False,  True])
+        """
+        places = checked_points(point)
+        found = ~np.array(in_parts(self._native.knows, places), dtype=np.bool_)
+        for grid in self.grids:
+            found |= grid.unseen_at(places)
+        return bool(found[0]) if np.ndim(point) == 1 else found
+
     @property
     def segments(self) -> Array:
         """All segments with their radii, rows (x, y, x, y, radius) in m, (n, 5)."""
@@ -437,7 +512,7 @@ class StaticMap(Parameters):
             return NotImplemented
         names = ("walls", "polygons", "discs", "grids")
         joined: dict[str, Any] = {name: (*getattr(self, name), *getattr(other, name)) for name in names}
-        return StaticMap(**joined)
+        return StaticMap(**joined, warnings=tuple(dict.fromkeys((*self.warnings, *other.warnings))))
 
     def __repr__(self) -> str:
         """Return what is in the map and how far it reaches."""

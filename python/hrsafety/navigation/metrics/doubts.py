@@ -11,9 +11,10 @@ import numpy.typing as npt
 from hrsafety._arguments import Array
 from hrsafety.navigation.metrics.between import doubts_between
 from hrsafety.navigation.metrics.episode import Episode
+from hrsafety.navigation.metrics.sources import track_doubts
 from hrsafety.plausibility import RANGES, ResultWarning, implausible
 
-__all__ = ["ENDS", "contacts_between", "implausible_numbers", "may_be_implausible"]
+__all__ = ["ENDS", "contacts_between", "implausible_numbers", "may_be_implausible", "of_tracks"]
 
 ENDS = ("arrival_time", "min_time_to_collision", "wall_clearance")
 """Metrics that `doubts_between` needs."""
@@ -34,6 +35,15 @@ def implausible_numbers(episode: Episode, max_speed: float) -> tuple[ResultWarni
         way = np.hypot(*(people[-1] - people[0]).T)
         values["speed of the people"] = way / ((len(people) - 1) * episode.step)
     return implausible(values, _QUANTITIES)
+
+
+def of_tracks(episode: Episode) -> tuple[ResultWarning, ...]:
+    """Return doubts about positions that were measured: jumps, exchanged ids and noise, of the robot and of people."""
+    if episode.simulated or episode._resampled or episode.period != (0.0, 0.0):
+        return ()
+    remedy = "metrics.Episode(...).smoothed(0.6) takes the noise out"
+    robot, people = episode.ways()
+    return (*track_doubts(robot, "the robot", remedy), *track_doubts(people, "people", remedy))
 
 
 _QUANTITIES = {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from typing import Any, Protocol, Self
 
 import numpy as np
@@ -16,6 +16,7 @@ from hrsafety._arguments import (
     Parameters,
     empty,
     instance,
+    not_negative,
     number,
     numbers,
     pair,
@@ -24,7 +25,9 @@ from hrsafety._arguments import (
     sequence,
 )
 from hrsafety._records import dataclass
+from hrsafety._tracks import WINDOW, Ways, smoothed_ways
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
+from hrsafety.navigation.metrics.sights import unseen_instants
 from hrsafety.navigation.metrics.sources import at_instants, doubts_of_run, steps_of_run
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.navigation.trajectory import Trajectory
@@ -66,7 +69,7 @@ class Episode(Parameters):
     robot_radius : float
         Radius of the robot in m.
     people : array_like, shape (T + 1, n, 2)
-        Positions of the people in m; NaN while one is absent.
+        Positions of the people in m; NaN while one is absent, or not seen.
     person_radius : float or array_like, shape (n,)
         Radii of the people in m.
     groups : array_like of int, shape (n,)
@@ -91,6 +94,26 @@ class Episode(Parameters):
         Lengths in m after which the world repeats along x and y; 0: it does not.
     warnings : sequence of ResultWarning
         Why the positions may not mean what they seem to; the metrics carry them.
+    simulated : bool
+        Whether the positions come from a simulation: who has no position is away, and nothing is measured.
+    unseen : array_like of bool, shape (T + 1, n), or None
+        When people are not seen and may be there. ``None``: between two sights, for 2 s before the first and after
+        the last one, and always for who is never seen; never if ``simulated``.
+    person_speed : float
+        Greatest speed of people while they are not seen, in m/s.
+
+    Notes
+    -----
+    Absence is not clearance. Somebody last seen at ``x_a`` and next at ``x_b`` is, within the speed ``v``, in both
+    discs around them with radii ``v (t - t_a)`` and ``v (t_b - t)``; ``v`` is `person_speed`, or
+    ``|x_b - x_a|/(t_b - t_a)`` if that is larger. The surfaces of robot and person are then at least
+
+        g(t) = max(|p - x_a| - v (t - t_a), |p - x_b| - v (t_b - t)) - R - rho
+
+    apart, with the term that is known where only one is. A contact is possible where ``g < 0``: `success` is false
+    then. Every metric that could be different with somebody at ``g`` is NaN (``min_clearance`` where ``g`` is below it,
+    ``personal_share`` where ``g + rho`` is below 1.2 m, times to collision by ``g/(v + |V|)`` ...), and a warning
+    ``not_scored`` names person, times and metrics. Numbers of contacts count what is seen.
 
     Raises
     ------
@@ -130,7 +153,11 @@ class Episode(Parameters):
     shortest_length: float | None = None
     period: Pair = (0.0, 0.0)
     warnings: Sequence[ResultWarning] = ()
+    simulated: bool = False
+    unseen: npt.ArrayLike | None = None
+    person_speed: float = 1.6
     _native: _hrsafety.CrowdEpisode = field(init=False, repr=False, compare=False)
+    _resampled: bool = field(init=False, repr=False, default=False)
 
     def __post_init__(self) -> None:
         """Check the values and keep copies of the arrays."""
@@ -167,8 +194,78 @@ class Episode(Parameters):
         }
         flat |= dict.fromkeys(missing)
         native = _hrsafety.CrowdEpisode(**({**rules, **arrays} | flat | wall_rows(walls)))
+        arrays["unseen"] = self._unseen(people, rules["step"])
+        self._set(person_speed=not_negative("person_speed", self.person_speed))
         kept = {name: None if array is None else _frozen(array) for name, array in arrays.items()}
         self._set(**rules, **kept, walls=tuple(walls), warnings=tuple(doubts), _native=native)
+
+    def _unseen(self, people: Array, step: float) -> npt.NDArray[np.bool_] | None:
+        """Return when people are not seen and may be there, ``None`` without people and in a simulation."""
+        if type(self.simulated) is not bool:
+            raise InvalidParameterError("simulated", "be True or False", self.simulated)
+        if self.unseen is None:
+            found = None if self.simulated or not people.size else unseen_instants(people, step)
+        else:
+            found = np.asarray(self.unseen)
+            if found.dtype != np.bool_:
+                raise InvalidParameterError(
+                    "unseen", "be an array of truth values", Shown(f"an array of {found.dtype}")
+                )
+            if found.shape != people.shape[:2]:
+                raise ShapeError("unseen", str(people.shape[:2]), found.shape)
+            found = found & np.isnan(people).any(axis=2)
+        return found
+
+    def ways(self) -> tuple[Ways, Ways]:
+        """Return the positions of the robot, and those of the people without the instants at which they are absent."""
+        own, people = np.asarray(self.position, dtype=np.float64), np.asarray(self.people, dtype=np.float64)
+        time = self.step * np.arange(len(own), dtype=np.float64)
+        robot = Ways(time, np.zeros(len(own), dtype=np.int64), own)
+        who, when = np.nonzero(~np.isnan(people).any(axis=2).T)
+        return robot, Ways(time[when], who.astype(np.int64), people[when, who])
+
+    def smoothed(self, window: float = WINDOW) -> Self:
+        """Return the episode with positions of local quadratic fits, which takes noise out of them.
+
+        As `hrsafety.datasets.Recording.smoothed`: with ``N`` instants in a window motions below ``1.07/(N step)`` Hz
+        stay.
+
+        Parameters
+        ----------
+        window : float
+            Length of the window in s.
+
+        Returns
+        -------
+        Episode
+            The same one otherwise.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the window is not finite and positive, or the world repeats itself.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from hrsafety import navigation as nav
+        >>> walk = 0.02 * np.arange(200)[:, None] * (1.0, 0.0)
+        >>> noisy = walk + np.random.default_rng(1).normal(0.0, 0.02, walk.shape)
+        >>> seen = nav.metrics.Episode(position=noisy, step=0.02, goal=(9.0, 0.0), robot_radius=0.3)
+        >>> [round(nav.metrics.evaluate(each).path_length, 1) for each in (seen, seen.smoothed())]
+        [7.0, 4.0]
+        """
+        length = positive("window", window)
+        if self.period != (0.0, 0.0):
+            raise InvalidParameterError("period", "be (0, 0) for what is smoothed", self.period)
+        robot, walks = self.ways()
+        own, walked = (
+            smoothed_ways(each, length, each.breaks() | (np.diff(each.time) > 1.5 * self.step))
+            for each in (robot, walks)
+        )
+        people = np.asarray(self.people, dtype=np.float64).copy()
+        people[np.rint(walks.time / self.step).astype(np.int64), walks.who] = walked
+        return replace(self, position=own, people=people)
 
     @classmethod
     def from_trajectory(cls, trajectory: Trajectory, **options: Any) -> Self:
@@ -206,14 +303,14 @@ class Episode(Parameters):
         """
         found = steps_of_run(instance("trajectory", trajectory, Trajectory))
         doubts = doubts_of_run(trajectory, walls="walls" not in options, people="people" not in options)
-        return cls(**({**found, "warnings": (*trajectory.warnings, *doubts)} | options))
+        return cls(**({**found, "warnings": (*trajectory.warnings, *doubts), "simulated": True} | options))
 
     @classmethod
     def from_recording(cls, recording: Recorded, robot: int | npt.ArrayLike, *, step: float, **options: Any) -> Self:
         """Return recorded people as an episode, one of whom, or a path of one's own, is the robot.
 
-        Positions are linear between the rows of a person; a person is absent before the first and after the
-        last row. The episode lasts as long as the robot is there.
+        Positions are linear between the rows of a person up to three median steps apart; between others the person is
+        not seen, and absent before the first and after the last row. The episode lasts as long as the robot is there.
 
         Parameters
         ----------
@@ -247,7 +344,10 @@ class Episode(Parameters):
         0.618
         """
         found = at_instants(recording, robot, positive("step", step))
-        return cls(**({**found, "step": step, "warnings": getattr(recording, "warnings", ())} | options))
+        doubts = (*getattr(recording, "warnings", ()), *found.pop("warnings"))
+        episode = cls(**({**found, "step": step, "warnings": doubts} | options))
+        episode._set(_resampled=True)
+        return episode
 
 
 _NOWHERE = np.empty((0, 2))

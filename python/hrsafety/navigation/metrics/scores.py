@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,8 +14,15 @@ from hrsafety._statistics import Share, wilson
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.metrics.between import doubts_between
 from hrsafety.navigation.metrics.declared import METRICS, WORLD_METRICS, Measured, MeasuredWorld, Metric, with_metrics
-from hrsafety.navigation.metrics.doubts import ENDS, contacts_between, implausible_numbers, may_be_implausible
+from hrsafety.navigation.metrics.doubts import (
+    ENDS,
+    contacts_between,
+    implausible_numbers,
+    may_be_implausible,
+    of_tracks,
+)
 from hrsafety.navigation.metrics.episode import Episode, Recorded
+from hrsafety.navigation.metrics.unseen import unscored
 from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plausibility import ResultWarning, gathered
 from hrsafety.tables import Columns, Table, unit_suffix
@@ -159,7 +166,10 @@ def evaluate(
     """Return the social metrics of a run, a recording, or positions of any origin.
 
     Velocities, accelerations and jerks are forward differences of the positions. The end is the first
-    instant within the tolerance of the goal, else the last one; what concerns the robot counts up to it.
+    instant within the tolerance of the goal, else the last one; what concerns the robot counts up to it. People who are
+    not seen for a while may be near: what that leaves open is NaN, and `success` is false where a contact was possible,
+    with a warning ``not_scored``; the formula stands at `Episode`. Jumps (``teleport``), exchanged ids
+    (``identity_switch``) and noise (``noisy_positions``) of measured positions are warnings, too.
 
     Parameters
     ----------
@@ -195,7 +205,9 @@ def evaluate(
     found, _ = _hrsafety.crowd_metrics([episode._native], 1, None)
     values = {name: column[0].item() for name, column in found.items()}
     doubts = doubts_between(episode, *(values[name] for name in ENDS))
-    return EpisodeMetrics(values, (*episode.warnings, *implausible_numbers(episode, values["max_speed"]), *doubts))
+    told = (*episode.warnings, *implausible_numbers(episode, values["max_speed"]), *of_tracks(episode), *doubts)
+    changed, unscored_ones = unscored(episode, values)
+    return EpisodeMetrics(values | changed, (*told, *unscored_ones))
 
 
 def _episode(run: Any, people: npt.ArrayLike | None, options: dict[str, Any]) -> Episode:
@@ -257,13 +269,24 @@ def evaluate_many(
     speeds = found["max_speed"]
     doubtful = np.flatnonzero(may_be_implausible(speeds, extremes)).tolist()
     doubts = {index: implausible_numbers(scored[index], float(speeds[index])) for index in doubtful}
-    own = (
-        (_name(index), (*each.warnings, *doubts.get(index, ())))
-        for index, each in enumerate(scored)
-        if each.warnings or index in doubts
-    )
+    own = [
+        (_name(index), (*each.warnings, *doubts.get(index, ()), *of_tracks(each))) for index, each in enumerate(scored)
+    ]
     between = contacts_between(scored, _name, found, extremes)
-    return MetricTable(found, (*gathered(own, "episodes"), *gathered(between, "episodes")))
+    told = (*gathered(own, "episodes"), *gathered(between, "episodes"))
+    return MetricTable(found, (*told, *gathered(_left_open(scored, found), "episodes")))
+
+
+def _left_open(
+    episodes: Sequence[Episode], found: Mapping[str, npt.NDArray[Any]]
+) -> Iterator[tuple[str, tuple[ResultWarning, ...]]]:
+    """Put NaN and false where unseen people leave metrics open, and yield the warnings that say so."""
+    for index, episode in enumerate(episodes):
+        if episode.unseen is not None:
+            changed, told = unscored(episode, {name: values[index].item() for name, values in found.items()})
+            for name, value in changed.items():
+                found[name][index] = value
+            yield _name(index), told
 
 
 def table_of(

@@ -11,17 +11,21 @@ import numpy.typing as npt
 
 from hrsafety._arguments import Array, count, numbers, whole_steps
 from hrsafety._bounds import MOST_PATH_NUMBERS
+from hrsafety._tracks import Ways
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.free_space import distance
+from hrsafety.navigation.metrics.sights import LOST
 from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["at_instants", "doubts_of_run", "steps_of_run"]
+__all__ = ["at_instants", "doubts_of_run", "steps_of_run", "track_doubts"]
 
 # Instants of a run that differ by less are the same, relative to the step.
 _ROUNDING = 1e-9
+MOST_STEPS = 3.0
+"""Between rows that are more than so many median steps apart somebody is not seen."""
 
 
 def steps_of_run(run: Trajectory) -> dict[str, Any]:
@@ -105,8 +109,12 @@ def _whole_last_step(time: Array, places: Array, step: float) -> Array:
 
 
 def at_instants(recording: Any, robot: int | npt.ArrayLike, step: float) -> dict[str, Any]:
-    """Return positions of a robot and of all others while it is there, and its last position as goal."""
+    """Return positions of a robot and of all others while it is there, and when they are not seen.
+
+    Its last position is the goal; a path of the robot that is none of the recording has doubts of its own.
+    """
     ids = np.unique(recording.person)
+    doubts: tuple[ResultWarning, ...] = ()
     if isinstance(robot, (int, np.integer)):
         who = count("robot", robot, least=-(2**63))
         if who not in ids:
@@ -115,14 +123,46 @@ def at_instants(recording: Any, robot: int | npt.ArrayLike, step: float) -> dict
         ids = ids[ids != who]
     else:
         time, path = _given_path(robot)
+        doubts = track_doubts(Ways(time, np.zeros(len(time), dtype=np.int64), path), "the robot", _PATH_SMOOTHING)
     most = MOST_PATH_NUMBERS // (2 * len(ids) + 2)
     steps = int(whole_steps("step", float(time[-1] - time[0]), step, most) + _ROUNDING)
     instants = time[0] + step * np.arange(steps + 1)
     people = np.empty((len(instants), len(ids), 2))
+    unseen = np.zeros((len(instants), len(ids)), dtype=np.bool_)
     for index, person in enumerate(ids):
-        people[:, index] = _between(*_track(recording, int(person)), instants)
+        rows, places = _track(recording, int(person))
+        people[:, index] = _between(rows, places, instants)
+        gap = _within_gaps(rows, instants)
+        people[gap, index] = np.nan
+        around = (instants > rows[0] - LOST) & (instants < rows[-1] + LOST)
+        # Who is seen at no instant was there before or after.
+        here = not np.isnan(people[:, index]).all()
+        unseen[:, index] = gap | (around & np.isnan(people[:, index, 0]) & here)
     own = _between(time, path, np.minimum(instants, time[-1]))
-    return {"position": own, "people": people, "goal": tuple(path[-1].tolist())}
+    return {"position": own, "people": people, "goal": tuple(path[-1].tolist()), "unseen": unseen, "warnings": doubts}
+
+
+_PATH_SMOOTHING = "Episode.smoothed(0.6) takes the noise out"
+
+
+def track_doubts(ways: Ways, name: str, smoothing: str) -> tuple[ResultWarning, ...]:
+    """Return doubts about jumps, exchanged ids and noise of ways; several are told apart by their number."""
+    named = (lambda index: f"{name}[{index}]") if name == "people" else (lambda _: name)
+    found = ways.doubts(named, moving=name, of_frames="", smoothing=smoothing, units=False)
+    return tuple(each for each in found if each.code != "gap_in_track")
+
+
+def _within_gaps(time: Array, instants: Array) -> npt.NDArray[np.bool_]:
+    """Return which instants lie between rows that are more than three median steps apart."""
+    steps = np.diff(time)
+    if len(steps) == 0:
+        return np.zeros(len(instants), dtype=np.bool_)
+    after = np.clip(np.searchsorted(time, instants, "left"), 1, len(time) - 1)
+    inside = (instants > time[after - 1] + _ROUNDING) & (instants < time[after] - _ROUNDING)
+    found: npt.NDArray[np.bool_] = inside & (
+        steps[after - 1] > MOST_STEPS * float(np.median(steps)) * (1.0 + _ROUNDING)
+    )
+    return found
 
 
 def _given_path(robot: npt.ArrayLike) -> tuple[Array, Array]:

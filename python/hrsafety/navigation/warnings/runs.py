@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from hrsafety._arguments import Array
 from hrsafety.navigation.knowledge import late_cameras, warnings_of
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation
+from hrsafety.navigation.maps.unknown import over_unknown
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.warnings.scenarios import BELOW_SAFE, GOAL_IN_REGION, IN_CRITICAL_REGION
 from hrsafety.navigation.warnings.shields import ASSUMES_LESS, maps_of, of_order, of_shield, shield_of
 from hrsafety.plausibility import ResultWarning, gathered
 
-__all__ = ["of_commands", "of_run", "of_runs", "of_scenes"]
+__all__ = ["of_commands", "of_run", "of_runs", "of_scenes", "of_way"]
 
 UNKNOWN_MAP = "unknown_map"
 """Code of a law that does not know the walls of the laws that it is compared with."""
@@ -43,18 +45,31 @@ def of_run(
     """
     brakes = law.law if isinstance(law, SafeNavigation) and law.shield is None else law
     by_regions = isinstance(brakes, VirtualForceField)
+    of_map = (each for map in maps_of(law) for each in map.warnings)
     about_regions = () if by_regions else (BELOW_SAFE, IN_CRITICAL_REGION)
     # A law that cannot reach a goal in a region is refused, so whatever runs can.
     of_scene = (each for each in scenario.warnings if each.code not in (*about_regions, GOAL_IN_REGION))
     of_sensors = () if built is None else (*warnings_of(scenario, built), *_late(scenario, built, by_regions))
     shield, walls = shield_of(law)
     if shield is None:
-        return (*of_scene, *of_sensors)
-    return (*of_scene, *of_sensors, *of_order(law), *of_shield(scenario, shield, built, motion_step, walls=walls))
+        return (*of_scene, *of_sensors, *of_map)
+    return (
+        *of_scene,
+        *of_sensors,
+        *of_map,
+        *of_order(law),
+        *of_shield(scenario, shield, built, motion_step, walls=walls),
+    )
 
 
 def _late(scenario: Scenario, built: AsBuilt, by_regions: bool) -> Iterator[ResultWarning]:
     return late_cameras(scenario, built) if by_regions else iter(())
+
+
+def of_way(law: Law, position: Array) -> Iterator[ResultWarning]:
+    """Warn of a run that leads over ground that nobody has seen, of all maps that its law knows."""
+    for map in maps_of(law):
+        yield from over_unknown(map, position, "the run")
 
 
 def of_commands(law: Law, periods: int) -> Iterator[ResultWarning]:

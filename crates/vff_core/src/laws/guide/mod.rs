@@ -38,7 +38,8 @@ pub struct Guide {
     /// How far ahead along the path the local goal may lie, in m.
     pub look_ahead: f64,
     /// Lower and upper corner of the box of the nodes, in m; by default map, start and goal with
-    /// the radius of the robot and 1 m around.
+    /// the radius of the robot and 1 m around, or the grids outside of which nothing is known, where ways
+    /// stay.
     pub bounds: Option<[[f64; 2]; 2]>,
 }
 
@@ -94,6 +95,12 @@ impl Guide {
         finite_pair("goal", goal)?;
         let nodes = self.checked()?.nodes(map, robot_radius, [start, goal])?;
         for (name, place) in [("start", start), ("goal", goal)] {
+            if self.bounds.is_none() && !map.knows(place.into()) {
+                let rule = "lie within the image of the map: nothing is known of what lies outside";
+                let advice =
+                    "a box of the guide, or a map with outside=\"free\", allows ways there";
+                return Err(Failure::invalid(name, rule, Given::Pair(place)).mended_by(advice));
+            }
             check_place(name, place, &nodes, map, robot_radius)?;
         }
         let plan = Plan::new(*self, nodes, map, robot_radius, goal.into(), stop)?;
@@ -108,6 +115,9 @@ impl Guide {
     fn nodes(&self, map: &StaticMap, robot_radius: f64, places: [[f64; 2]; 2]) -> Result<Nodes> {
         let bounds = self.bounds.map(|corners| corners.map(Vector2::from));
         let [lower, upper] = bounds.unwrap_or_else(|| {
+            if let Some(known) = map.known_bounds() {
+                return known;
+            }
             let [start, goal] = places.map(Vector2::from);
             let [lower, upper] = map.bounds().unwrap_or([start, goal]);
             let room = Vector2::repeat(robot_radius + ROOM);

@@ -105,12 +105,13 @@ impl Planning {
         goal: Vector2<f64>,
     ) -> Result<Self> {
         let least = robot_radius + guide.margin;
-        let first = goal_node(&nodes, map, least, goal)?;
         let room = Room {
             map: map.clone(),
             robot_radius,
             least,
+            within_known: guide.bounds.is_none(),
         };
+        let first = goal_node(&nodes, &room, goal)?;
         Ok(Self {
             guide,
             nodes,
@@ -315,16 +316,12 @@ fn seen_clearance(map: &StaticMap, least: f64, position: Vector2<f64>) -> f64 {
 }
 
 /// The nearest free node that sees the goal, and its distance from it.
-fn goal_node(
-    nodes: &Nodes,
-    map: &StaticMap,
-    least: f64,
-    goal: Vector2<f64>,
-) -> Result<(usize, f64)> {
+fn goal_node(nodes: &Nodes, room: &Room, goal: Vector2<f64>) -> Result<(usize, f64)> {
+    let (map, least) = (&room.map, room.least);
     let seen = seen_clearance(map, least, goal);
     let near = nodes.square(goal, GOAL_REACH).filter_map(|node| {
         let place = nodes.place(node);
-        let free = map.clearance_up_to(place, least) >= least;
+        let free = room.clearance(place, least) >= least;
         (free && map.segment_keeps(goal, place, seen)).then(|| (node, (place - goal).norm()))
     });
     let nearest = near.min_by(|one, two| one.1.total_cmp(&two.1).then(one.0.cmp(&two.0)));

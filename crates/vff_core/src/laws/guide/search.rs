@@ -19,6 +19,19 @@ pub(super) struct Room {
     pub robot_radius: f64,
     /// Least clearance `rho + m_p` of nodes and links, in m.
     pub least: f64,
+    /// Whether ways stay where something is known.
+    pub within_known: bool,
+}
+
+impl Room {
+    /// Clearance of a place up to a distance in m, zero where no way leads.
+    pub fn clearance(&self, place: Vector2<f64>, far: f64) -> f64 {
+        if self.within_known && !self.map.knows(place) {
+            0.0
+        } else {
+            self.map.clearance_up_to(place, far)
+        }
+    }
 }
 
 /// Cost-to-go `G` of every node, infinite where there is no plan, and the next node on the way.
@@ -116,10 +129,7 @@ impl Search {
     fn clearance_of(&mut self, node: usize) -> f64 {
         let known = &mut self.clearance[node];
         if known.is_nan() {
-            *known = self
-                .room
-                .map
-                .clearance_up_to(self.nodes.place(node), self.far);
+            *known = self.room.clearance(self.nodes.place(node), self.far);
         }
         *known
     }

@@ -11,6 +11,9 @@ use crate::world::map::capsule::Capsule;
 /// Most cells of a grid.
 pub const MOST_CELLS: usize = 1 << 28;
 
+/// Share of a cell by which rounding may move a point beyond the edge.
+const EDGE: f64 = 1e-9;
+
 /// Where a grid lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GridPlace {
@@ -31,6 +34,8 @@ pub(super) struct Cells {
     rows: usize,
     resolution: f64,
     frame: Frame,
+    /// Whether nothing is known of what lies outside.
+    limits: bool,
 }
 
 impl Cells {
@@ -62,7 +67,35 @@ impl Cells {
             rows: occupied.len() / columns,
             resolution: place.resolution,
             frame,
+            limits: false,
         })
+    }
+
+    /// Cells outside of which nothing is known.
+    pub fn limiting(self) -> Self {
+        Self {
+            limits: true,
+            ..self
+        }
+    }
+
+    /// Whether nothing is known of what lies outside.
+    pub fn limits(&self) -> bool {
+        self.limits
+    }
+
+    /// Whether a point lies within the grid or on its edge.
+    pub fn covers(&self, point: Vector2<f64>) -> bool {
+        let local = self.frame.inward(point - self.frame.position) / self.resolution;
+        let within = |value: f64, count: usize| value >= -EDGE && value <= count as f64 + EDGE;
+        within(local.x, self.columns) && within(local.y, self.rows)
+    }
+
+    /// Its four corners, in m.
+    pub fn corners(&self) -> [Vector2<f64>; 4] {
+        let (columns, rows) = (self.columns, self.rows);
+        [(0, 0), (columns, 0), (columns, rows), (0, rows)]
+            .map(|(column, row)| self.corner(column, row))
     }
 
     fn occupied(&self, column: usize, row: usize) -> bool {

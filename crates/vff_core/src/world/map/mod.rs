@@ -128,7 +128,26 @@ impl MapShapes {
         place: GridPlace,
         interrupted: Interrupted<'_>,
     ) -> Result<()> {
-        let cells = Cells::new(occupied, columns, place)?;
+        self.add_cells(Cells::new(occupied, columns, place)?, interrupted)
+    }
+
+    /// Adds a grid as [`MapShapes::grid`] does; nothing is known of what lies outside of it, and of
+    /// other such grids.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn limiting_grid(
+        &mut self,
+        occupied: &[bool],
+        columns: usize,
+        place: GridPlace,
+        interrupted: Interrupted<'_>,
+    ) -> Result<()> {
+        let cells = Cells::new(occupied, columns, place)?.limiting();
+        self.add_cells(cells, interrupted)
+    }
+
+    fn add_cells(&mut self, cells: Cells, interrupted: Interrupted<'_>) -> Result<()> {
         self.room_for("segments", cells.count_boundary(interrupted)?)?;
         cells.boundary(&mut self.capsules, interrupted)?;
         self.grids.push(cells);
@@ -172,6 +191,29 @@ impl StaticMap {
     pub fn bounds(&self) -> Option<[Vector2<f64>; 2]> {
         let bounds = self.parts.index.bounds()?;
         Some([bounds.lower, bounds.upper])
+    }
+
+    fn limits(&self) -> impl Iterator<Item = &Cells> {
+        self.parts.grids.iter().filter(|cells| cells.limits())
+    }
+
+    /// Whether something is known of a place: it lies in a grid outside of which nothing is known, or there is
+    /// no such grid.
+    #[must_use]
+    pub fn knows(&self, place: Vector2<f64>) -> bool {
+        let mut limits = self.limits().peekable();
+        limits.peek().is_none() || limits.any(|cells| cells.covers(place))
+    }
+
+    /// Lower and upper corner of the box around all grids outside of which nothing is known, in m; `None`
+    /// without such grids.
+    #[must_use]
+    pub fn known_bounds(&self) -> Option<[Vector2<f64>; 2]> {
+        let corners = self.limits().flat_map(Cells::corners);
+        corners.fold(None, |bounds: Option<[Vector2<f64>; 2]>, corner| {
+            let [lower, upper] = bounds.unwrap_or([corner, corner]);
+            Some([lower.inf(&corner), upper.sup(&corner)])
+        })
     }
 
     /// The map with discs and rectangles added to it.
