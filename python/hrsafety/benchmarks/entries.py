@@ -160,4 +160,5 @@ def _law(name: str, word: str) -> nav.Law:
         if plain == known or plain in kind.OTHER_NAMES:
             return kind()
     names = [*_OWN, *LAWS]
-    raise InvalidParameterError("laws", f"name {', '.join(names)}", word, meant(plain, names))
+    others = [name for kind in LAWS.values() for name in kind.OTHER_NAMES]
+    raise InvalidParameterError("laws", f"name {', '.join(names)}", word, meant(plain, [*names, *others]))

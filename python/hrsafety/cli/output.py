@@ -156,7 +156,9 @@ def located(file: str) -> Iterator[None]:
             raise
         if error.argument == Path(file).name:
             raise error.renamed(file) from None
-        raise error.renamed(f"{file}: {error.argument}") from None
+        # A reader knows the file, too: its name stands once.
+        inside = error.argument.removeprefix(f"{file}: ").removeprefix(f"{Path(file).name}: ")
+        raise error.renamed(f"{file}: {inside}") from None
 
 
 def planned_folder(path: str) -> Path:

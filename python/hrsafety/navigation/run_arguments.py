@@ -98,7 +98,7 @@ def named_laws(laws: object) -> dict[str, Law]:
     InvalidParameterError
         If there is none, or one is of another kind.
     """
-    single = isinstance(laws, Law) or callable(laws) or hasattr(laws, "command") or hasattr(laws, "velocity")
+    single = isinstance(laws, Law | str) or callable(laws) or hasattr(laws, "command") or hasattr(laws, "velocity")
     given = listed("laws", "be a law, a sequence of laws or a mapping of names to laws", [laws] if single else laws)
     found = [(key, as_law(each, "laws" if single else f"laws[{shown}]")) for key, shown, each in given]
     if isinstance(laws, Mapping):

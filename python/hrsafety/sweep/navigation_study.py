@@ -15,7 +15,7 @@ import numpy.typing as npt
 from hrsafety import navigation as nav
 from hrsafety._arguments import Array, flag, positive, sequence, word
 from hrsafety._records import dataclass
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.obstacles.moving_rectangle import Mobile
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.performance import check_weights
@@ -62,7 +62,12 @@ _FIRST = (
 _LAST = (
     Column(name="entered_active", kind="integer"),
     Column(name="contacts_moving", kind="integer"),
+    Column(name="contacts_toward", kind="integer"),
+    Column(name="contacts_away", kind="integer"),
     Column(name="contacts_standing", kind="integer"),
+    Column(name="contacts_at_fault", kind="integer"),
+    Column(name="contacts_apart", kind="integer"),
+    Column(name="wall_contacts", kind="integer"),
     Column(name="performance_total"),
     Column(name="performance_arrival_time"),
     Column(name="performance_avoidance"),
@@ -109,7 +114,8 @@ class NavigationStudy(Study):
     outputs : sequence of str or None
         Columns to keep; all when ``None``: ``outcome``, ``end_time``, ``arrival_time``,
         ``energy``, ``path_length``, ``min_clearance``, ``entered_active``,
-        ``contacts_moving``, ``contacts_standing``, the four of the performance,
+        ``contacts_moving``, ``contacts_toward``, ``contacts_away``, ``contacts_standing``, ``contacts_at_fault``,
+        ``contacts_apart``, ``wall_contacts``, the four of the performance,
         ``force_evaluations``, and, without ``scenario``, ``min_distance_0`` and so on.
 
     Raises
@@ -169,11 +175,11 @@ class NavigationStudy(Study):
             if names is not None:
                 raise InvalidParameterError("names", "be None when the scenarios have names", names)
             names, given = tuple(given), tuple(given.values())
-        scenes = (given,) if isinstance(given, nav.Scenario) else given
+        scenes = (given,) if isinstance(given, nav.Scenario | nav.crowd.World) else given
         scenes = tuple(sequence("scenarios", "be a sequence or a mapping of Scenario", scenes))
         for index, scene in enumerate(scenes):
             if not isinstance(scene, nav.Scenario):
-                raise InvalidParameterError(f"scenarios[{index}]", "be a Scenario", scene)
+                raise InvalidParameterError(f"scenarios[{index}]", "be a Scenario", *_no_scenario(scene))
         if self.scenario is not None and not callable(self.scenario):
             raise InvalidParameterError("scenario", "be callable or None", self.scenario)
         if (self.scenario is None) == (not scenes):
@@ -285,10 +291,21 @@ class NavigationStudy(Study):
         if self.scenario is None:
             return [_changed(scene, values) for scene in self.scenarios]
         made = self.scenario(values)
-        scenes = [made] if isinstance(made, nav.Scenario) else list(made)
-        if len(scenes) != each or not all(isinstance(scene, nav.Scenario) for scene in scenes):
-            raise InvalidParameterError("scenario", f"return {each} Scenario", made)
+        single = isinstance(made, nav.Scenario) or not isinstance(made, Sequence)
+        scenes = [made] if single else list(made)  # type: ignore[arg-type]  # one or several
+        strange = next((scene for scene in scenes if not isinstance(scene, nav.Scenario)), None)
+        if strange is not None:
+            raise InvalidParameterError("scenario", f"return {each} Scenario", *_no_scenario(strange))
+        if len(scenes) != each:
+            raise InvalidParameterError("scenario", f"return {each} Scenario", Shown(f"{len(scenes)}"))
         return scenes
+
+
+def _no_scenario(given: object) -> tuple[object, str | None]:
+    """Return what an error shows of something that is no Scenario, and the advice for it."""
+    if isinstance(given, nav.crowd.World):
+        return Shown("a World"), "worlds of people that react are run by nav.simulate_many and nav.compare"
+    return given, None
 
 
 class _Batch(NamedTuple):

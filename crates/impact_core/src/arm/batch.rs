@@ -237,9 +237,14 @@ fn within(limits: &[f64; 2], value: f64, name: impl Fn() -> String) -> Result<()
     };
     let rule = format!("be from {lower:?} to {upper:?}");
     let failure = Failure::invalid(name(), rule, Given::Number(value));
-    Err(failure.mended_by(format!(
-        "it is {past:.3e} outside the limits of the joint; check_limits=False leaves them unchecked"
-    )))
+    let radians = value.to_radians();
+    // Nobody turns a joint by more than a turn and means radians if the same number of degrees is within its limits.
+    let degrees = value.abs() > std::f64::consts::TAU && radians >= lower && radians <= upper;
+    Err(failure.mended_by(if degrees {
+        format!("joints are in rad, sliding ones in m: {value:?} degrees are {radians:.4} rad")
+    } else {
+        format!("it is {past:.3e} outside the limits of the joint; check_limits=False leaves them unchecked")
+    }))
 }
 
 fn check_rows(name: &str, given: &Broadcast<'_>, shape: &[usize]) -> Result<()> {

@@ -14,11 +14,12 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, numbers
 from hrsafety._records import dataclass
+from hrsafety._words import nearest
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.laws.situation import PointMass, Situation, fixed, situation_of
 
-__all__ = ["AnyLaw", "ForceLaw", "PythonLaw", "VelocityLaw", "as_law", "law_with_gains"]
+__all__ = ["AnyLaw", "ForceLaw", "PythonLaw", "VelocityLaw", "as_law", "class_of", "law_with_gains"]
 
 RULE = (
     "be a Law, a function that takes a Situation and returns a force in N, or an object with the method `command` "
@@ -110,10 +111,28 @@ def as_law(law: object, name: str = "law") -> Law:
     """Return a law of the package as it is, and wrap one in Python."""
     if isinstance(law, Law):
         return law
+    if isinstance(law, str):
+        raise InvalidParameterError(name, RULE, law, class_of(law))
     try:
         return PythonLaw(function=law)
     except InvalidParameterError as error:
         raise error.renamed(name) from None
+
+
+def class_of(word: str) -> str:
+    """Return the advice which class a word means, as files and the command line name laws."""
+    from hrsafety.navigation.laws.known import LAWS  # for errors only: all laws are loaded there
+
+    words = {other: kind for known, kind in LAWS.items() for other in (known, *kind.OTHER_NAMES)}
+    words["field"] = LAWS["virtual_force_field"]
+    words |= {kind.__name__.lower(): kind for kind in LAWS.values()}
+    name, *parts = word.lower().split("+")
+    near = nearest(name, words)
+    if near is None:
+        return f"give an object such as nav.{LAWS['virtual_force_field'].__name__}()"
+    made = f"nav.{words[near].__name__}()"
+    said = f'"{word}" is a word of files and of the command line' if near == name and not parts else f'for "{word}"'
+    return f"{said}: give {made if not parts else f'nav.SafeNavigation({made}, ...)'}"
 
 
 def law_with_gains(law: object, name: str = "law") -> Law:
@@ -122,7 +141,7 @@ def law_with_gains(law: object, name: str = "law") -> Law:
         return law
     if isinstance(law, Law) or callable(law):
         raise InvalidParameterError(name, "be a Law with gains", law, "a law in Python has none to search")
-    raise InvalidParameterError(name, "be a Law", law)
+    raise InvalidParameterError(name, "be a Law", law, class_of(law) if isinstance(law, str) else None)
 
 
 def _method(function: object) -> tuple[Callable[[Situation], object], bool]:

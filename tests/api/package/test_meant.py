@@ -1,0 +1,85 @@
+"""Words, files and poses that are not what was meant are answered with what is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from hrsafety import arms, scenarios, sweep
+from hrsafety import navigation as nav
+from hrsafety.benchmarks import benchmark
+from hrsafety.cli import main
+from hrsafety.errors import InvalidParameterError
+
+SCENE = scenarios.configuration("c1")
+
+
+@pytest.mark.parametrize(
+    ("word", "advice"),
+    [
+        (
+            "orca",
+            r'"orca" is a word of files and of the command line: give nav.OptimalReciprocalCollisionAvoidance\(\)',
+        ),
+        ("field", r"give nav.VirtualForceField\(\)"),
+        ("orka", r"give nav.OptimalReciprocalCollisionAvoidance\(\)"),
+        ("VirtualForceField", r"give nav.VirtualForceField\(\)"),
+        ("orca+shield", r"give nav.SafeNavigation\(nav.OptimalReciprocalCollisionAvoidance\(\), ...\)"),
+        ("??", r"give an object such as nav.VirtualForceField\(\)"),
+    ],
+)
+def test_the_word_of_a_law_names_its_class(word: str, advice: str) -> None:
+    calls = (
+        lambda: nav.simulate(SCENE, word),
+        lambda: nav.compare([SCENE], word),
+        lambda: nav.simulate_many([SCENE], [word]),
+        lambda: nav.metrics.falsify(SCENE, word),
+        lambda: nav.Run(SCENE, word),
+    )
+    for call in calls:
+        with pytest.raises(InvalidParameterError, match=advice):
+            call()
+
+
+@pytest.mark.parametrize(("word", "near"), [("orka", "orca"), ("feild", "field"), ("masud", "masoud")])
+def test_an_unknown_law_of_a_suite_is_answered_with_the_nearest(word: str, near: str) -> None:
+    with pytest.raises(InvalidParameterError, match=f'did you mean "{near}"'):
+        benchmark("s4", [word])
+
+
+def test_a_study_of_worlds_says_what_runs_worlds() -> None:
+    world = scenarios.circle_crossing(0, law=nav.VirtualForceField())
+    made = sweep.NavigationStudy(scenario=lambda row: world, axis_units={"a": "m"})
+    calls = (
+        lambda: sweep.NavigationStudy(scenarios=world),
+        lambda: sweep.NavigationStudy(scenarios=[world]),
+        lambda: made.compute({"a": [1.0]}),
+    )
+    for call in calls:
+        with pytest.raises(InvalidParameterError, match=r"got a World; worlds of people .* nav.simulate_many"):
+            call()
+
+
+def test_a_robot_model_in_place_of_a_toml_file_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "own.urdf"
+    file.write_text('<?xml version="1.0"?>\n<robot name="own"></robot>\n', encoding="utf-8")
+    for command in ("simulate", "contact", "sweep", "optimize"):
+        assert main([command, str(file)]) == 2
+        told = capsys.readouterr().err
+        assert "got a robot model in XML; hrsafety arm reads a model (.urdf) by itself" in told
+        assert told.count("own.urdf") == 1
+    assert main(["arm", str(file)]) == 2
+    assert capsys.readouterr().err.count("own.urdf") == 1
+
+
+def test_a_pose_in_degrees_is_answered_with_radians_and_not_with_the_check_off() -> None:
+    arm = arms.Arm.example()
+    pose = [0.0] * len(arm.joint_names)
+    pose[0] = 90.0
+    with pytest.raises(InvalidParameterError, match=r"joints are in rad, .*: 90.0 degrees are 1.5708 rad") as caught:
+        arm.position(pose)
+    assert "check_limits" not in str(caught.value)
+    pose[0] = 500.0
+    with pytest.raises(InvalidParameterError, match="check_limits=False"):
+        arm.position(pose)
