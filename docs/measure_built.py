@@ -156,7 +156,7 @@ def crowd_tables(sensing: Sensing) -> dict[str, nav.RunTable]:
 
 def compared(table: nav.RunTable, afresh: nav.RunTable) -> str:
     """Return in how many crowds only this side, and only the one decided afresh, moved into somebody."""
-    paired = compare_paired(table.contacts_moving > 0, afresh.contacts_moving > 0)
+    paired = compare_paired(table.contacts_toward > 0, afresh.contacts_toward > 0)
     return f"{paired.only_first} / {paired.only_second}, {paired.p_value:.2g}"
 
 
@@ -168,8 +168,8 @@ def crowd_page() -> str:
     runs = {name: crowd_tables(sensing) for name, sensing in columns.items()}
     order = list(columns)
     lines = [
-        f"{len(CROWD_SEEDS)} random crowds of {PEOPLE} people, robot and people measured, gains New. Contacts while "
-        "the robot moves, then only while it stands:",
+        f"{len(CROWD_SEEDS)} random crowds of {PEOPLE} people, robot and people measured, gains New. Contacts toward "
+        "which the robot moves, then others that touch it moving, then only while it stands:",
         "",
         *head("side", *order),
         *(line(side, *(shares(runs[name][side]) for name in order)) for side in SIDES),

@@ -86,7 +86,8 @@ def suite(name: str) -> Iterator[str]:
     kind, speed = SUITES[name], SUITES[name].fastest
     yield f"`{name}`, {SUITE_CASES[name]} episodes: {kind.summary}; shields assume people of up to {speed:g} m/s."
     yield ""
-    words = ("law", "success %", "contact %", "at fault %", "time, s", "least gap, m", "delay of people, s")
+    kinds = ("contact with people %", "with walls %", "moving toward %", "moving away %", "at fault %")
+    words = ("law", "success %", *kinds, "time, s", "least gap, m", "delay of people, s")
     yield from head(*words, *(("exits, 1/s", "deadlocked %") if name in COUNTED else ()))
     alone = nav.crowd.simulate_crowds([replace(world, robots=()) for world in worlds_of(name, LAWS[0])])
     for law in LAWS:
@@ -108,11 +109,10 @@ def row(worlds: list[nav.crowd.World], word: str, alone: list[nav.crowd.CrowdTra
     runs = nav.crowd.simulate_crowds(worlds)
     episodes = [nav.crowd.episodes_of(run, other)[0] for run, other in zip(runs, alone, strict=True)]
     table = nav.metrics.evaluate_many(episodes)
-    contacts = table.robot_on_person + table.person_on_robot + table.mutual_contacts + table.wall_contacts
-    faults = [
-        contacts_of(episode, float(arrival)).at_fault > 0 or walls > 0
-        for episode, arrival, walls in zip(episodes, table.arrival_time, table.wall_contacts, strict=True)
-    ]
+    found = [contacts_of(*each) for each in zip(episodes, table.arrival_time.tolist(), strict=True)]
+    walls = table.wall_contacts > 0
+    people = np.array([each.moving + each.standing > 0 for each in found])
+    faults = np.array([each.at_fault > 0 for each in found]) | walls
     whole = [nav.crowd.world_metrics(run) for run in runs]
     ends = ()
     if counted:
@@ -120,7 +120,8 @@ def row(worlds: list[nav.crowd.World], word: str, alone: list[nav.crowd.CrowdTra
         ends = (f"{exits:.2f}", f"{100 * np.mean([each.deadlocked_share for each in whole]):.1f}")
     # Of those who leave the last place is not kept, but the time is.
     delays = [run.person_arrival_time - other.person_arrival_time for run, other in zip(runs, alone, strict=True)]
-    counts = (int(table.success.sum()), int((contacts > 0).sum()), sum(faults))
+    toward, away = (np.array([getattr(each, kind) > 0 for each in found]) for kind in ("toward", "away"))
+    counts = (int(np.sum(each)) for each in (table.success, people, walls, toward, away, faults))
     return line(
         word,
         *(percent(count, len(worlds)) for count in counts),

@@ -58,10 +58,10 @@ def row(words: str, name: str, law: object) -> str:
     runs = nav.crowd.simulate_crowds([finer(world, step) for world in cases])
     episodes = [nav.crowd.episodes_of(run)[0] for run in runs]
     table = nav.metrics.evaluate_many(episodes)
-    touched = table.robot_on_person + table.person_on_robot + table.mutual_contacts > 0
-    ends = table.arrival_time.tolist()
-    fault = sum(contacts_of(each, end).at_fault > 0 for each, end in zip(episodes, ends, strict=True))
-    counts = (int(table.success.sum()), int(touched.sum()), fault)
+    found = [contacts_of(*each) for each in zip(episodes, table.arrival_time.tolist(), strict=True)]
+    touched = sum(each.moving + each.standing > 0 for each in found)
+    kinds = (sum(getattr(each, kind) > 0 for each in found) for kind in ("toward", "away", "at_fault"))
+    counts = (int(table.success.sum()), touched, *kinds)
     arrival = table.arrival_time[table.arrived].mean()
     return line(words, name, *(percent(count, CASES) for count in counts), f"{arrival:.2f}")
 
@@ -78,7 +78,9 @@ def rows() -> Iterator[str]:
 
 def table() -> str:
     """Return the table."""
-    lines = head("people", "law", "success %", "contact %", "at fault %", "arrival, s")
+    lines = head(
+        "people", "law", "success %", "contact %", "moving toward %", "moving away %", "at fault %", "arrival, s"
+    )
     return "\n".join([*lines, *rows()]) + "\n"
 
 

@@ -41,6 +41,10 @@ TRAP, SCREEN = [(1, 1.5), (3, 1.5), (3, -1.5), (1, -1.5)], [(4.5, 3), (4.5, 0.2)
 GOAL = (5.3, 2.0)
 
 
+SPLIT = ("moving toward %", "moving away %", "at fault %")
+"""Shares of episodes with a contact of a moving robot, by who came toward whom, and with one at fault."""
+
+
 def say(*words: object) -> None:
     """Tell what is under way."""
     print(time.strftime("%H:%M:%S"), *words, file=sys.stderr, flush=True)
@@ -49,11 +53,8 @@ def say(*words: object) -> None:
 def rows_of(result: Result, where: str, speed: float) -> Iterator[str]:
     """Return the lines of a suite."""
     for name, rows in result.rows.items():
-        counts = [
-            sum(row.outcome == "arrived" for row in rows),
-            sum(row.contacts > 0 for row in rows),
-            sum(row.at_fault > 0 for row in rows),
-        ]
+        counts = [sum(row.outcome == "arrived" for row in rows)]
+        counts += [sum(getattr(row, name) > 0 for row in rows) for name in ("contacts", "toward", "away", "at_fault")]
         shown = "-" if "shield" not in name else f"{speed:.1f}"
         cells = [percent(count, len(rows)) for count in counts]
         yield line(where, name, shown, len(rows), *cells, f"{result.mean_arrival(name):.1f}")
@@ -61,7 +62,7 @@ def rows_of(result: Result, where: str, speed: float) -> Iterator[str]:
 
 def shares() -> str:
     """Return the table of the suites."""
-    lines = head("suite", "law", "v of shield, m/s", "episodes", "success %", "contact %", "at fault %", "arrival, s")
+    lines = head("suite", "law", "v of shield, m/s", "episodes", "success %", "contact %", *SPLIT, "arrival, s")
     for where, suite, speed, seed, laws in SUITES:
         say(where, speed, laws)
         lines += rows_of(benchmark(suite, laws, person_speed=speed, seed=seed), where, speed)
@@ -92,7 +93,8 @@ def pursued(name: str, robot: nav.HolonomicRobot | nav.DifferentialDriveRobot) -
 
 def adversary() -> str:
     """Return the table of the search for a fault."""
-    lines = head("robot", "law", "random persons", "at fault", "runs of CMA-ES", "episodes", "runs with a fault")
+    kinds = ("moving toward", "moving away", "at fault")
+    lines = head("robot", "law", "random persons", *kinds, "runs of CMA-ES", "episodes", "runs with a fault")
     robots = {"holonomic": nav.HolonomicRobot(), "two wheels": nav.DifferentialDriveRobot()}
     for robot, built in robots.items():
         for name in (*BARE, *PURSUED_LAWS):
@@ -106,7 +108,13 @@ def adversary() -> str:
             ]
             faults = sum(each.broken for each in worst)
             broken = int((random.margin < 0.0).sum())
-            cells = (percent(broken, episodes, 2), SEARCHES, SEARCHES * EVALUATIONS, faults)
+            counts = [int((each > 0).sum()) for each in (random.contacts_toward, random.contacts_away)]
+            cells = (
+                *(percent(each, episodes, 2) for each in (*counts, broken)),
+                SEARCHES,
+                SEARCHES * EVALUATIONS,
+                faults,
+            )
             lines.append(line(robot, name, episodes, *cells))
     return "\n".join(lines) + "\n"
 

@@ -28,11 +28,16 @@ def percent(count: int, runs: int, digits: int = 1) -> str:
     return f"{100 * share.value:.{digits}f} ({100 * share.low:.{digits}f} to {100 * share.high:.{digits}f})"
 
 
-def shares(table: nav.RunTable) -> str:
-    """Return the shares of runs with a contact while the robot moves, and only while it stands."""
-    moving = table.contacts_moving > 0
+def shares(table: nav.RunTable, parts: int = 3) -> str:
+    """Return the shares of runs with a contact, by what the robot did.
+
+    It moved toward somebody, was touched from behind or from the side while it moved, or only while it stood, a run in
+    the first of these that it has. Of two parts the first is all contacts of a moving robot.
+    """
+    toward, moving = table.contacts_toward > 0, table.contacts_moving > 0
     standing = (table.contacts_standing > 0) & ~moving
-    return "; ".join(percent(int(each.sum()), len(each)) for each in (moving, standing))
+    split = (toward, moving & ~toward, standing) if parts == 3 else (moving, standing)
+    return "; ".join(percent(int(each.sum()), len(each)) for each in split)
 
 
 def marks(name: str) -> tuple[str, str]:

@@ -195,6 +195,7 @@ __all__ = [
 ]
 
 CONTACT_SPEED: float
+DECIDED_OVERLAP: float
 
 _Pair = tuple[float, float]
 _Triple = tuple[float, float, float]
@@ -222,7 +223,9 @@ class _TrajectoryFields(TypedDict):
     min_clearance: _Array
     contact_time: _Array
     contact_speed: _Array
+    contact_toward: npt.NDArray[np.bool_]
     contact_at_fault: npt.NDArray[np.bool_]
+    contact_apart: npt.NDArray[np.bool_]
     map_contact_time: float
     map_contact_speed: float
     map_clearance: float
@@ -265,8 +268,12 @@ class _BatchFields(TypedDict):
     min_clearance: _Array
     entered_active: _Counts
     contacts_moving: _Counts
+    contacts_toward: _Counts
+    contacts_away: _Counts
     contacts_standing: _Counts
     contacts_at_fault: _Counts
+    contacts_apart: _Counts
+    wall_contacts: _Counts
     performance_total: _Array
     performance_arrival_time: _Array
     performance_avoidance: _Array
@@ -278,6 +285,10 @@ class _EncounterFields(TypedDict):
     margin: _Array
     least_toward: _Array
     min_clearance: _Array
+    contacts_toward: _Counts
+    contacts_away: _Counts
+    contacts_standing: _Counts
+    wall_contacts: _Counts
     arrival_time: _Array
     top_speed: _Array
     end_time: _Array

@@ -82,7 +82,9 @@ def test_contacts_of_the_stabilizing_modes_have_every_sensing(sized: bool) -> No
 def test_contacts_with_a_sensing_are_what_is_computed(name: str, body: str, sensing: str, sized: bool) -> None:
     column = list(SENSINGS).index(sensing)
     rows = sensed_cells(sized)
-    for (gains, mode), cell in measure_stabilizing.contact_cells(name, body, sensing, sized).items():
+    # Contacts of a moving robot stand split on the page or not.
+    parts = 3 if any("; " in cell and cell.count("; ") == 2 for cells in rows.values() for cell in cells) else 2
+    for (gains, mode), cell in measure_stabilizing.contact_cells(name, body, sensing, sized, parts).items():
         title = f"{name}, {body} measured, {measure_stabilizing.GAINS[gains]}, {mode}"
         assert rows[title][column] == cell
 

@@ -33,7 +33,7 @@ def moving(cell: str) -> str:
 
 def standing(cell: str) -> str:
     """Return the percentage of runs with a contact only while the robot stands."""
-    return cell.split("; ")[1].split()[0]
+    return cell.split("; ")[-1].split()[0]
 
 
 CONDITIONS = {each: table(each.title) for each in measure_shares.CONDITIONS}
@@ -54,7 +54,8 @@ def test_shares_of_encounters_are_what_is_computed(name: str, column: int) -> No
     measurement = list(measure_shares.SENSINGS.values())[column]
     ways = measure_shares.crossings(measure_shares.ENCOUNTERS, condition.fastest)
     scenes = [measure_shares.encounter(way, condition, measurement, seed) for seed, way in enumerate(ways)]
-    assert shares(nav.simulate_batch(scenes, LAWS[name])) == CONDITIONS[condition][name][1 + 2 * column]
+    cell = CONDITIONS[condition][name][1 + 2 * column]
+    assert shares(nav.simulate_batch(scenes, LAWS[name]), cell.count(";") + 1) == cell
 
 
 @pytest.mark.parametrize("name", ["New field", "ORCA", "Velocity obstacle"])

@@ -38,6 +38,7 @@ mod _hrsafety {
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         PyArray1::<f64>::zeros(module.py(), 0, false).try_readonly()?;
+        module.add("DECIDED_OVERLAP", vff_core::run::DECIDED_OVERLAP)?;
         module.add("CONTACT_SPEED", vff_core::run::CONTACT_SPEED)
     }
 

@@ -138,7 +138,10 @@ def rows_of(table: RunTable, cases: Sequence[int]) -> Iterator[Row]:
             arrival_time=float(table.arrival_time[index]),
             end_time=float(table.end_time[index]),
             contacts=int(table.contacts_moving[index] + table.contacts_standing[index]),
+            toward=int(table.contacts_toward[index]),
+            away=int(table.contacts_away[index]),
             at_fault=int(table.contacts_at_fault[index]),
-            apart=0,
+            walls=int(table.wall_contacts[index]),
+            apart=int(table.contacts_apart[index]),
             clearance=float(table.min_clearance[index]),
         )

@@ -87,21 +87,25 @@ def _worlds(scene: Callable[[Case, int], World]) -> Callable[[Case], Iterator[Ro
         runs = nav.crowd.simulate_crowds(worlds, threads=case.threads)
         episodes = [nav.crowd.episodes_of(each)[0] for each in runs]
         table = nav.metrics.evaluate_many(episodes, threads=case.threads)
-        contacts = table.robot_on_person + table.person_on_robot + table.mutual_contacts + table.wall_contacts
         for row, (index, each) in enumerate(zip(case.cases, runs, strict=True)):
-            arrival = float(table.arrival_time[row])
+            arrival, walls = float(table.arrival_time[row]), int(table.wall_contacts[row])
             there = not np.isnan(each.robot_arrival_time[0])
-            at_fault = contacts_of(episodes[row], arrival).at_fault
+            found = contacts_of(episodes[row], arrival)
+            contacts = found.moving + found.standing + walls
             between = touched_between(episodes[row], arrival, float(table.min_time_to_collision[row]))
             yield Row(
                 case=index,
-                outcome=outcome_of(table, row, arrived=there, diverged=each.diverged is not None),
+                outcome=outcome_of(touched=contacts > 0, arrived=there, diverged=each.diverged is not None),
                 arrival_time=arrival,
                 end_time=float(each.time[-1]),
-                contacts=int(contacts[row]),
-                at_fault=at_fault + int(table.wall_contacts[row]),
+                contacts=contacts,
+                # A wall stands: a robot that touches it has moved toward it.
+                toward=found.toward + walls,
+                away=found.away,
+                at_fault=found.at_fault + walls,
+                walls=walls,
+                apart=found.apart,
                 clearance=float(table.min_clearance[row]),
-                apart=0,
                 between=between.people,
             )
 

@@ -32,12 +32,15 @@ class Row:
         How it ended.
     arrival_time, end_time : float
         In s; NaN without arrival.
-    contacts, at_fault : int
-        People touched, and how many of them at fault.
+    contacts, toward, away, at_fault : int
+        People and walls touched; how many of them while the robot moved toward them, how many from behind or from the
+        side while it moved, and how many at fault. The rest of the contacts came while it stood.
+    walls : int
+        How many of these contacts are with walls or maps, each of which is at fault.
     apart : int
-        People who touched the robot when they appeared in a recording, counted apart from the others.
+        People who touched the robot when they appeared in a recording or world, counted apart from the others.
     between : int
-        People who touched the robot on straight lines between two instants and at none of them: no contacts.
+        How many of the people touched the robot on straight lines between two instants only.
     clearance : float
         Least distance of the surfaces in m; of the adversary suite while the robot moved toward somebody.
     score : float
@@ -49,7 +52,10 @@ class Row:
     arrival_time: float
     end_time: float
     contacts: int
+    toward: int = 0
+    away: int = 0
     at_fault: int
+    walls: int = 0
     apart: int
     clearance: float
     score: float = math.nan
@@ -57,7 +63,7 @@ class Row:
 
 
 NAMES = tuple(each.name for each in fields(Row))
-_COUNTS = ("case", "contacts", "at_fault", "apart", "between")
+_COUNTS = ("case", "contacts", "toward", "away", "at_fault", "walls", "apart", "between")
 
 
 def row_text(rows: Iterable[Row], *, head: bool) -> str:
@@ -145,13 +151,28 @@ class Result:
 
     def contact(self, name: str) -> Share:
         """Return the share with a contact."""
-        rows = self.rows[name]
-        return wilson(sum(row.contacts > 0 for row in rows), len(rows))
+        return self._share(name, "contacts")
+
+    def toward(self, name: str) -> Share:
+        """Return the share with a contact toward which the robot moved."""
+        return self._share(name, "toward")
+
+    def away(self, name: str) -> Share:
+        """Return the share with a contact from behind or from the side while the robot moved."""
+        return self._share(name, "away")
+
+    def walls(self, name: str) -> Share:
+        """Return the share with a contact with a wall."""
+        return self._share(name, "walls")
 
     def at_fault(self, name: str) -> Share:
         """Return the share with a contact at fault."""
+        return self._share(name, "at_fault")
+
+    def _share(self, name: str, count: str) -> Share:
+        """Return the share of the episodes in which a count is not zero."""
         rows = self.rows[name]
-        return wilson(sum(row.at_fault > 0 for row in rows), len(rows))
+        return wilson(sum(getattr(row, count) > 0 for row in rows), len(rows))
 
     def mean_arrival(self, name: str) -> float:
         """Return the mean arrival time in s; NaN without arrivals."""
@@ -172,11 +193,12 @@ class Result:
 
     def cells(self) -> list[tuple[str, ...]]:
         """Return the table, a row an entry, with shares in percent."""
+        shares = (self.success, self.contact, self.walls, self.toward, self.away, self.at_fault)
         return [
             (
                 name,
                 str(len(self.rows[name])),
-                *(_percent(share(name)) for share in (self.success, self.contact, self.at_fault)),
+                *(_percent(share(name)) for share in shares),
                 *("" if math.isnan(mean) else f"{mean:{form}}" for mean, form in self._means(name)),
                 self.accepted.get(name, ""),
             )
@@ -184,7 +206,19 @@ class Result:
         ]
 
 
-HEAD = ("law", "episodes", "success %", "contact %", "at fault %", "arrival s", "score", "asked for")
+HEAD = (
+    "law",
+    "episodes",
+    "success %",
+    "contact %",
+    "with walls %",
+    "toward %",
+    "away %",
+    "at fault %",
+    "arrival s",
+    "score",
+    "asked for",
+)
 """Titles of the table."""
 
 

@@ -168,15 +168,16 @@ def _doubts(kind: Suite, person_speed: float) -> Iterator[ResultWarning]:
 
 
 def _between(kind: Suite, rows: Mapping[str, Sequence[Row]]) -> Iterator[ResultWarning]:
-    """Warn where people passed through robots between instants, which counts as no contact."""
+    """Tell where people touched robots between instants only."""
     counts = {name: sum(row.between > 0 for row in found) for name, found in rows.items()}
     told = ", ".join(f"{name} {count} of {len(rows[name])}" for name, count in counts.items() if count)
     if told:
         yield ResultWarning(
             CONTACT_BETWEEN,
             "contacts",
-            f"contacts of {kind.name} are counted at instants: in further episodes somebody touches the robot on "
-            f"straight lines between two of them ({told})",
+            f"in some episodes of {kind.name} somebody touches the robot on straight lines between two instants and at "
+            f"none of them, which counts as a contact ({told})",
+            safe_side=True,
         )
 
 

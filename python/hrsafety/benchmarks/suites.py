@@ -8,7 +8,6 @@ from itertools import groupby
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from hrsafety import datasets, scenarios
 from hrsafety import navigation as nav
@@ -34,9 +33,6 @@ PERSON_SPEED = 1.6
 
 
 # ---- recorded people ------------------------------------------------------------------------
-
-APPEARING = 0.2
-"""Contacts within this time after somebody appears on the robot do not count, in s."""
 
 
 def recordings(folder: Path | None) -> list[Path]:
@@ -66,32 +62,21 @@ def _crossings(path: Path) -> list[scenarios.Crossing]:
     return _KNOWN[path]
 
 
-def _appeared(run: nav.Trajectory) -> npt.NDArray[np.float64]:
-    """Return when everybody came into the scene, in s; minus infinity for who was there at the start."""
-    seen = np.isfinite(run.distance)
-    first = run.time[np.argmax(seen, axis=0)]
-    return np.where(seen[0] | ~seen.any(axis=0), -np.inf, first)
-
-
-def counted_contacts(run: nav.Trajectory) -> npt.NDArray[np.bool_]:
-    """Return who was touched, without those who appeared on the robot."""
-    return ~np.isnan(run.contact_time) & (run.contact_time > _appeared(run) + APPEARING)
-
-
 def _cross(case: Case) -> Iterator[Row]:
     for index in case.cases:
         place, law = _crossing(case, index)
         run = nav.simulate(place, law)
-        counted = counted_contacts(run)
-        arrived = not np.isnan(run.arrival_time)
         yield Row(
             case=index,
-            outcome="collided" if counted.any() else "arrived" if arrived else str(run.outcome),
+            outcome=str(run.outcome),
             arrival_time=float(run.arrival_time),
             end_time=float(run.time[-1]),
-            contacts=int(counted.sum()),
-            at_fault=int((run.contact_at_fault & counted).sum()),
-            apart=int((~np.isnan(run.contact_time) & ~counted).sum()),
+            contacts=run.contacts_moving + run.contacts_standing,
+            toward=run.contacts_toward,
+            away=run.contacts_away,
+            at_fault=run.contacts_at_fault,
+            walls=run.wall_contacts,
+            apart=run.contacts_apart,
             clearance=float(run.min_clearance.min(initial=np.inf)),
         )
 
@@ -131,7 +116,10 @@ def _pursue(case: Case) -> Iterator[Row]:
                 arrival_time=float(found.arrival_time[at]),
                 end_time=float(found.end_time[at]),
                 contacts=int(touched),
+                toward=int(found.contacts_toward[at]),
+                away=int(found.contacts_away[at]),
                 at_fault=int(found.margin[at] < 0.0),
+                walls=0,
                 apart=0,
                 clearance=float(found.margin[at]),
             )

@@ -115,7 +115,8 @@ def _how_they_ended(summary: RunTable, counts: verdict.Counts) -> str:
     arrived = len(summary) - counts["any"]
     return (
         f"{arrived} of {len(summary)} runs arrived without a contact, {counts['contact']} had one "
-        f"({counts['moving_contact']} with the robot moving), {counts['timed_out']} timed out, "
+        f"({counts['moving_contact']} with the robot moving, {int((summary.contacts_toward > 0).sum())} toward "
+        f"somebody), {counts['timed_out']} timed out, "
         f"{counts['stopped']} stopped"
     )
 
@@ -158,9 +159,9 @@ def _heading(
 
 
 RUN_HEADER = (
-    ("run", "start", "people", "entered", "outcome", "arrival", "least", "contacts", "contacts"),
-    ("", "time", "seen", "active", "", "time", "clearance", "robot", "robot"),
-    ("", "s", "", "region", "", "s", "m", "moving", "standing"),
+    ("run", "start", "people", "entered", "outcome", "arrival", "least", *("contacts",) * 5),
+    ("", "time", "seen", "active", "", "time", "clearance", "robot", "robot", "robot", "at", "counted"),
+    ("", "s", "", "region", "", "s", "m", "toward", "away", "standing", "fault", "apart"),
 )
 
 
@@ -174,8 +175,11 @@ def _run_table(crossings: Sequence[scenarios.Crossing], summary: RunTable) -> Pa
             summary.outcome[row],
             decimal(float(summary.arrival_time[row])),
             decimal(float(summary.min_clearance[row])),
-            summary.contacts_moving[row],
+            summary.contacts_toward[row],
+            summary.contacts_away[row],
             summary.contacts_standing[row],
+            summary.contacts_at_fault[row],
+            summary.contacts_apart[row],
         )
         for row, crossing in enumerate(crossings)
     ]
@@ -195,8 +199,14 @@ def _totals(summary: RunTable, met: _Encounters) -> Iterator[str]:
         f"  of those that collided, {int((touched & arrived).sum())} reached the goal; at a contact the robot moved "
         f"in {int(while_moving.sum())} and only stood in {int((touched & ~while_moving).sum())}"
     )
-    yield f"contacts   {int(summary.contacts_moving.sum())} with the robot moving"
+    yield (
+        f"contacts   {int(summary.contacts_moving.sum())} with the robot moving: toward "
+        f"{int(summary.contacts_toward.sum())}, away from {int(summary.contacts_away.sum())}; "
+        f"{int(summary.contacts_at_fault.sum())} at fault"
+    )
     yield f"           {int(summary.contacts_standing.sum())} with the robot standing (a person walked into it)"
+    if summary.contacts_apart.any():
+        yield f"           {int(summary.contacts_apart.sum())} people appeared where the robot was, counted apart"
     yield (
         f"people     {len(met.distance)} seen in all runs, {int(entered.sum())} entered the active region: per run "
         f"{int(entered.min())} to {int(entered.max())}, median {np.median(entered):g}, "
@@ -222,7 +232,11 @@ RUN_COLUMNS = {
     "min_clearance": "min_clearance_m",
     "entered_active": "entered_active",
     "contacts_moving": "contacts_moving",
+    "contacts_toward": "contacts_toward",
+    "contacts_away": "contacts_away",
     "contacts_standing": "contacts_standing",
+    "contacts_at_fault": "contacts_at_fault",
+    "contacts_apart": "contacts_apart",
     "path_length": "path_length_m",
     "energy": "energy_J",
 }
@@ -279,8 +293,7 @@ def _report(
         "robot": {"start_m": scenario.start, "goal_m": scenario.goal, "radius_m": scenario.robot.radius},
         "law": _law(law),
         "outcomes": dict(zip(words.tolist(), counts.tolist(), strict=True)),
-        "contacts_moving": int(summary.contacts_moving.sum()),
-        "contacts_standing": int(summary.contacts_standing.sum()),
+        **{name: int(getattr(summary, name).sum()) for name in RUN_COLUMNS if name.startswith("contacts_")},
         "runs": [{key: _finite_or_none(value) for key, value in record.items()} for record in records],
         "people": _person_records(crossings, met),
     }

@@ -46,8 +46,13 @@ class Standing:
     success, contact : Share
         Share of the episodes in which it arrived without a contact, and with a contact, with
         95 % Wilson intervals.
-    moving_contact : Share
-        Share with a contact while the robot itself was moving.
+    obstacle_contact, wall_contact : Share
+        Share with a contact with an obstacle, and with a map.
+    moving_contact, toward_contact, away_contact : Share
+        Share with a contact while the robot itself was moving; with one toward which it moved, and with one that
+        came from behind or from the side, as ``contacts_toward`` and ``contacts_away`` of a `RunTable`.
+    at_fault : Share
+        Share with a contact at fault.
     arrival_time, energy, path_length : Mean
         Over the episodes with success, in s, J and m, with 95 % bootstrap intervals.
     min_clearance, performance_total : Mean
@@ -57,7 +62,12 @@ class Standing:
     law: str
     success: Share
     contact: Share
+    obstacle_contact: Share
+    wall_contact: Share
     moving_contact: Share
+    toward_contact: Share
+    away_contact: Share
+    at_fault: Share
     arrival_time: Mean
     energy: Mean
     path_length: Mean
@@ -165,7 +175,10 @@ class Comparison(PairedRuns[RunTable]):
         """
         row = self._row("law", law)
         arrived = self.outcome[row] == "arrived"
-        runs = len(arrived)
+        runs, table = len(arrived), self.runs
+
+        def share(counts: npt.NDArray[np.int64]) -> Share:
+            return wilson(int((self._by_law(counts)[row] > 0).sum()), runs)
 
         def successful(values: Array) -> Mean:
             return mean_interval(values[row][arrived])
@@ -174,7 +187,12 @@ class Comparison(PairedRuns[RunTable]):
             law=law,
             success=wilson(int(arrived.sum()), runs),
             contact=wilson(int((self.outcome[row] == "collided").sum()), runs),
-            moving_contact=wilson(int((self.moving_contacts[row] > 0).sum()), runs),
+            obstacle_contact=share(table.contacts_moving + table.contacts_standing - table.wall_contacts),
+            wall_contact=share(table.wall_contacts),
+            moving_contact=share(table.contacts_moving),
+            toward_contact=share(table.contacts_toward),
+            away_contact=share(table.contacts_away),
+            at_fault=share(table.contacts_at_fault),
             arrival_time=successful(self.arrival_time),
             energy=successful(self.energy),
             path_length=successful(self.path_length),

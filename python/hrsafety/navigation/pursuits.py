@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from typing import Literal, cast
+from typing import Any, Literal, cast
 
 import numpy as np
+import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, callback, checked_seed, count, instance, number, positive, thread_count, word
@@ -31,7 +32,8 @@ Progress = Callable[[int, int], object]
 MOST_EPISODES = 10_000_000
 FAR = 1e4
 """Where the person stands in the scenario before the episodes place him, in m."""
-COLUMNS = ("margin", "min_clearance", "arrival_time", "end_time")
+COUNTS = ("contacts_toward", "contacts_away", "contacts_standing", "wall_contacts")
+COLUMNS = ("margin", "min_clearance", "arrival_time", "end_time", *COUNTS)
 """What is kept of every episode."""
 ROOM = 0.3
 """Least distance of the surfaces at the start, in m."""
@@ -50,14 +52,19 @@ class Pursuit(Table):
     person_position : ndarray, shape (n, 2)
         True position of the person in m.
     least_toward : float
-        Least distance of the surfaces while the robot moved toward somebody, in m; infinite if it
-        never did. Not above zero: it touched him at fault.
+        Least distance of the surfaces while the robot moved toward somebody, faster than 0.05 m/s, up to the first
+        overlap with them by 0.1 m, in m; infinite if it never did. Not above zero: it touched him at fault.
     min_clearance : float
         Least distance of the surfaces in m.
     arrival_time, end_time : float
         In s; NaN without arrival.
     top_speed : float
         Largest speed of the robot in m/s.
+    contacts_toward, contacts_away, contacts_standing : int
+        Numbers of obstacles, the person and maps among them, that it touched first while it moved toward them, while it
+        moved but not toward them, and while it stood.
+    wall_contacts : int
+        1 if it touched a map, which the others hold, too.
     """
 
     time: Array
@@ -69,6 +76,10 @@ class Pursuit(Table):
     arrival_time: float
     end_time: float
     top_speed: float
+    contacts_toward: int = 0
+    contacts_away: int = 0
+    contacts_standing: int = 0
+    wall_contacts: int = 0
 
     def columns(self) -> Columns:
         """Return one-dimensional columns by name.
@@ -103,6 +114,8 @@ class Falsification:
     min_clearance, arrival_time, end_time : ndarray, shape (n,)
         Least distance of the surfaces in m, and when the robot arrived and the episode ended, in s; NaN
         without arrival.
+    contacts_toward, contacts_away, contacts_standing, wall_contacts : ndarray of int, shape (n,)
+        Numbers of first contacts of each episode, as those of a `Pursuit`.
     episodes : int
         Episodes in all.
     worst : Pursuit
@@ -116,6 +129,10 @@ class Falsification:
     min_clearance: Array
     arrival_time: Array
     end_time: Array
+    contacts_toward: npt.NDArray[np.int64]
+    contacts_away: npt.NDArray[np.int64]
+    contacts_standing: npt.NDArray[np.int64]
+    wall_contacts: npt.NDArray[np.int64]
     episodes: int
     worst: Pursuit
     warnings: tuple[ResultWarning, ...]
@@ -162,7 +179,8 @@ def falsify(
     law : law
         What drives it.
     property : {"at_fault", "clearance", "arrival", "speed"} or callable
-        What is to hold: the robot never moves toward somebody whom it touches; surfaces never come
+        What is to hold: the robot never moves toward somebody whom it touches, from the first touch until the bodies
+        first overlap by 0.1 m, and touches no map; surfaces never come
         nearer than ``least``; the robot arrives within the time limit; it is never faster than
         ``most``. Or a function of a `Pursuit` that returns a margin, negative where your property is
         broken (random persons only).
@@ -236,11 +254,10 @@ def falsify(
         if math.isnan(margin):
             raise SimulationError("the search for the worst person has no result")
         worst = _pursuit(hunt.replay(seed=start, index=0, numbers=numbers))
-        values = (margin, worst.min_clearance, worst.arrival_time, worst.end_time)
-        found = {name: np.array([value]) for name, value in zip(COLUMNS, values, strict=True)}
+        found = {name: np.array([getattr(worst, name)]) for name in COLUMNS[1:]} | {"margin": np.array([margin])}
     else:
         columns = hunt.sweep((kind, limit), episodes=runs, seed=start, threads=team, progress=heard)
-        swept = cast(Mapping[str, Array], columns)
+        swept = cast(Mapping[str, Any], columns)
         found = {name: swept[name] for name in COLUMNS}
         worst = _pursuit(hunt.replay(seed=start, index=int(np.argmin(found["margin"])), numbers=None))
     return Falsification(
@@ -284,9 +301,9 @@ def _with_person(scenario: Scenario, radius: float, speed: float) -> Scenario:
 
 def _own(
     hunt: _hrsafety.Hunt, margin_of: Callable[[Pursuit], float], episodes: int, seed: int, heard: Progress | None
-) -> tuple[dict[str, Array], Pursuit]:
+) -> tuple[dict[str, Any], Pursuit]:
     """Judge every episode by a function; return columns and the worst episode."""
-    margins, clearances, arrivals, ends = [], [], [], []
+    rows: dict[str, list[float]] = {name: [] for name in COLUMNS}
     worst, least = None, math.inf
     for index in range(episodes):
         pursuit = _pursuit(hunt.replay(seed=seed, index=index, numbers=None))
@@ -295,17 +312,15 @@ def _own(
             # Not below zero either: it would count as kept.
             what = f"margin of the property in episode {index}"
             raise InvalidParameterError(what, "be a number, negative where it is broken", margin)
-        margins.append(margin)
-        clearances.append(pursuit.min_clearance)
-        arrivals.append(pursuit.arrival_time)
-        ends.append(pursuit.end_time)
+        rows["margin"].append(margin)
+        for name in COLUMNS[1:]:
+            rows[name].append(getattr(pursuit, name))
         if worst is None or margin < least:
             worst, least = pursuit, margin
         if heard is not None:
             heard(index + 1, episodes)
     assert worst is not None  # there is at least one episode
-    values = (margins, clearances, arrivals, ends)
-    return {name: np.array(value) for name, value in zip(COLUMNS, values, strict=True)}, worst
+    return {name: np.array(values) for name, values in rows.items()}, worst
 
 
 def _pursuit(fields: _hrsafety._PursuitFields) -> Pursuit:
@@ -319,4 +334,8 @@ def _pursuit(fields: _hrsafety._PursuitFields) -> Pursuit:
         arrival_time=float(fields["arrival_time"][0]),
         end_time=float(fields["end_time"][0]),
         top_speed=float(fields["top_speed"][0]),
+        contacts_toward=int(fields["contacts_toward"][0]),
+        contacts_away=int(fields["contacts_away"][0]),
+        contacts_standing=int(fields["contacts_standing"][0]),
+        wall_contacts=int(fields["wall_contacts"][0]),
     )

@@ -22,11 +22,14 @@ from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, each, plane, with_units
 
-__all__ = ["CONTACT_SPEED", "Integrator", "Trajectory", "without_obstacles"]
+__all__ = ["CONTACT_SPEED", "DECIDED_OVERLAP", "Integrator", "Trajectory", "without_obstacles"]
 
 Integrator = Literal["semi_implicit_euler", "rk4"]
 CONTACT_SPEED = _hrsafety.CONTACT_SPEED
 """Speed in m/s above which a robot counts as moving in a contact."""
+DECIDED_OVERLAP = _hrsafety.DECIDED_OVERLAP
+"""Overlap of two bodies in m from which on nobody is at fault any more: what walks on through a robot is ahead of it
+at last, whoever came."""
 OPTIONAL_COLUMNS = ("force", "stabilizing", "lyapunov", "wheel_current", "obstacle_position", "distance")
 """Columns that a run may leave out, see ``record`` of `simulate`."""
 
@@ -79,13 +82,24 @@ class Trajectory(Table):
         Least distance d, and least distance between the surfaces, in m; infinite for an
         obstacle that was never present.
     contact_time, contact_speed : ndarray, shape (m,)
-        First contact with each obstacle in s and the robot's speed then in m/s; NaN without.
+        First contact with each obstacle in s and the robot's speed then in m/s; NaN without. A contact at the end of
+        a motion step has its time; one within a step only, where robot and obstacle move straight at constant speed
+        and their surfaces meet, the instant at which they do, and the speed at the end of the step. An obstacle that a
+        recording puts elsewhere at once (faster than 100 m/s) is not on the way there.
+    contact_toward : ndarray of bool, shape (m,)
+        Whether the robot moved toward the obstacle at the first touch: faster than 0.05 m/s, and V.(o - P) > 0 with its
+        velocity V, its center P and the center o of a disc or the nearest point of a rectangle, at the end of
+        the motion step; where the step ends 0.1 m deep in the other body or behind it, at the instant of the touch.
     contact_at_fault : ndarray of bool, shape (m,)
-        Whether the robot moved toward the obstacle, faster than 0.05 m/s, at some instant of a contact
-        with it.
+        Whether it did so at any instant of a contact from the first touch until the bodies first overlapped by
+        0.1 m: later a body that walks on through the robot is ahead of it, whoever came.
+    contact_apart : ndarray of bool, shape (m,)
+        Whether the obstacle appeared in the scene where the robot was, and touched it within 0.2 s. That is no contact
+        of the run: its time is NaN, unless they touched later again.
     map_contact_time, map_contact_speed : float
         First contact with a map that the law or a sensor knows, in s, and the robot's speed then in m/s; NaN
-        without. The robot is always at fault.
+        without. Straight ways of motion steps count as above. The robot is always at fault; one that moves comes
+        toward the map, which stands.
     map_clearance : float
         Least distance of the surfaces from the maps in m; infinite without any.
     path_length : float
@@ -148,7 +162,9 @@ class Trajectory(Table):
     min_clearance: Array
     contact_time: Array
     contact_speed: Array
+    contact_toward: npt.NDArray[np.bool_]
     contact_at_fault: npt.NDArray[np.bool_]
+    contact_apart: npt.NDArray[np.bool_]
     path_length: float
     map_contact_time: float = math.nan
     map_contact_speed: float = math.nan
@@ -177,9 +193,34 @@ class Trajectory(Table):
         return int(np.sum(self._contact_speeds() > CONTACT_SPEED))
 
     @property
+    def contacts_toward(self) -> int:
+        """Number of these toward which it moved at the first touch; maps count as one."""
+        return int(np.sum(self.contact_toward)) + int(self.map_contact_speed > CONTACT_SPEED)
+
+    @property
+    def contacts_away(self) -> int:
+        """Number of those that it did not move toward: they came from behind or from the side."""
+        return self.contacts_moving - self.contacts_toward
+
+    @property
     def contacts_standing(self) -> int:
         """Number of obstacles that touched the standing robot; maps count as one."""
         return int(np.sum(self._contact_speeds() <= CONTACT_SPEED))
+
+    @property
+    def contacts_at_fault(self) -> int:
+        """Number of obstacles touched by the robot's fault; maps count as one."""
+        return int(np.sum(self.contact_at_fault)) + self.wall_contacts
+
+    @property
+    def contacts_apart(self) -> int:
+        """Number of obstacles that appeared in the scene where the robot was: in none of the other numbers."""
+        return int(np.sum(self.contact_apart))
+
+    @property
+    def wall_contacts(self) -> int:
+        """Number of contacts with maps, 1 or 0, which the other numbers hold, too."""
+        return int(not math.isnan(self.map_contact_time))
 
     def _contact_speeds(self) -> Array:
         return np.append(self.contact_speed, self.map_contact_speed)

@@ -198,8 +198,8 @@ def test_people_are_crossed_as_the_library_does(people: Path, capsys: pytest.Cap
     assert [row[0] for row in shown] == ["0", "1", "2"]
     assert [int(row[3]) for row in shown] == summary.entered_active.tolist()
     assert [row[4] for row in shown] == summary.outcome.tolist()
-    assert [int(row[7]) for row in shown] == summary.contacts_moving.tolist()
-    assert [int(row[8]) for row in shown] == summary.contacts_standing.tolist()
+    assert [int(row[7]) + int(row[8]) for row in shown] == summary.contacts_moving.tolist()
+    assert [int(row[9]) for row in shown] == summary.contacts_standing.tolist()
 
 
 @pytest.mark.parametrize("chosen", [0, 2, None])

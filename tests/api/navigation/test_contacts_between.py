@@ -1,4 +1,4 @@
-"""Contacts that no instant shows are told: people who pass through a robot between two of them."""
+"""Contacts that no instant shows are counted and told: people who pass through a robot between two of them."""
 
 from __future__ import annotations
 
@@ -64,14 +64,16 @@ def test_the_draws_have_both_cases() -> None:
     assert max(found) > 0
 
 
-def test_a_short_step_shows_the_contact_and_needs_no_warning() -> None:
+def test_a_contact_between_instants_counts_and_a_short_step_shows_it_without_a_warning() -> None:
     time = np.linspace(0.0, 1.0, 101)
     own, person = np.outer(time, (2.0, 0.0)), np.array((2.0, 0.1)) - np.outer(time, (2.0, 0.0))
     rules = {"goal": (9.0, 0.0), "robot_radius": 0.2, "person_radius": 0.2}
     fine = nav.metrics.evaluate(own, person[:, None], step=0.01, **rules)
     coarse = nav.metrics.evaluate(own[::100], person[::100, None], step=1.0, **rules)
     assert (fine.mutual_contacts, fine.warnings) == (1, ())
-    assert coarse.mutual_contacts + coarse.robot_on_person + coarse.person_on_robot == 0
+    assert (coarse.mutual_contacts, coarse.robot_on_person + coarse.person_on_robot, coarse.success) == (1, 0, False)
+    assert coarse.min_clearance == pytest.approx(fine.min_clearance, abs=1e-3)
+    assert coarse.warnings[0].safe_side
     assert [each.code for each in coarse.warnings] == [CONTACT_BETWEEN]
     assert "by up to 0.3 m" in str(coarse.warnings[0])
 
@@ -114,8 +116,11 @@ def steps_through(given: nav.metrics.Episode) -> int:
     def least(places: np.ndarray) -> float:
         return float(nav.metrics.evaluate(places, **rules).wall_clearance)
 
+    def alone(*places: np.ndarray) -> float:
+        return min(least(np.array([place, place])) for place in places)
+
     steps = itertools.pairwise(np.asarray(given.position))
-    return sum(least(np.linspace(a, b, 2001)) < 0.0 <= least(np.array([a, b])) for a, b in steps)
+    return sum(least(np.linspace(a, b, 2001)) < 0.0 <= alone(a, b) for a, b in steps)
 
 
 def test_walls_within_steps_are_found_as_by_small_steps() -> None:

@@ -122,7 +122,8 @@ def test_table_starts_with_what_each_row_is() -> None:
     assert columns.index("outcome") == 7
     assert {"arrival_time_s", "min_clearance_m", "contacts_moving", "performance_total"} <= set(columns)
     shown = repr(runs).splitlines()
-    assert shown[0] == f"RunTable: 24 rows, {len(columns)} columns; here 5 rows and 8 columns"
+    head = f"RunTable: 24 rows, {len(columns)} columns; here 5 rows and 8 columns; outcomes: "
+    assert shown[0] == head + "arrived 24"
     assert len(shown) == 7 + len(runs.warnings)
     assert shown[1].split() == columns[:8]
     assert shown[2].split()[:3] == ["full", "c1", "0"]
@@ -130,7 +131,7 @@ def test_table_starts_with_what_each_row_is() -> None:
 
 
 def test_a_printed_table_of_single_gain_sets_says_how_the_runs_ended() -> None:
-    telling = ["outcome", "arrival_time_s", "min_clearance_m", "contacts_moving", "performance_total"]
+    telling = ["outcome", "arrival_time_s", "min_clearance_m", "contacts_toward", "contacts_away"]
     runs = nav.simulate_many(PLACES, LAW)
     assert repr(runs).splitlines()[1].split() == ["law", "scenario", "seed", *telling]
     assert repr(runs.select(scenario="c1")).splitlines()[1].split() == ["law", "scenario", "seed", *telling]

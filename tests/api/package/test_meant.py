@@ -50,7 +50,7 @@ def test_an_unknown_law_of_a_suite_is_answered_with_the_nearest(word: str, near:
 
 def test_a_study_of_worlds_says_what_runs_worlds() -> None:
     world = scenarios.circle_crossing(0, law=nav.VirtualForceField())
-    made = sweep.NavigationStudy(scenario=lambda row: world, axis_units={"a": "m"})
+    made = sweep.NavigationStudy(scenario=lambda _: world, axis_units={"a": "m"})
     calls = (
         lambda: sweep.NavigationStudy(scenarios=world),
         lambda: sweep.NavigationStudy(scenarios=[world]),
@@ -78,8 +78,8 @@ def test_a_pose_in_degrees_is_answered_with_radians_and_not_with_the_check_off()
     pose = [0.0] * len(arm.joint_names)
     pose[0] = 90.0
     with pytest.raises(InvalidParameterError, match=r"joints are in rad, .*: 90.0 degrees are 1.5708 rad") as caught:
-        arm.position(pose)
+        arm.position(pose, link=arm.link_names[-1])
     assert "check_limits" not in str(caught.value)
     pose[0] = 500.0
     with pytest.raises(InvalidParameterError, match="check_limits=False"):
-        arm.position(pose)
+        arm.position(pose, link=arm.link_names[-1])

@@ -59,7 +59,11 @@ def legend_words(figure: object) -> list[str]:
 
 def three_episodes(outcomes: list[list[str]], moving: list[list[int]]) -> nav.Comparison:
     runs = nav.compare([made_up_run(DISC).scenario] * 3, {"first": LAW, "second": LAW}).runs
-    return nav.Comparison(runs=dataclasses.replace(runs, outcome=np.ravel(outcomes), contacts_moving=np.ravel(moving)))
+    return nav.Comparison(
+        runs=dataclasses.replace(
+            runs, outcome=np.ravel(outcomes), contacts_moving=np.ravel(moving), contacts_toward=np.ravel(moving)
+        )
+    )
 
 
 @pytest.fixture(scope="module")

@@ -74,8 +74,12 @@ pub fn columns<'py>(
     fields.vector("min_clearance", table.min_clearance)?;
     fields.vector("entered_active", table.entered_active)?;
     fields.vector("contacts_moving", table.contacts_moving)?;
+    fields.vector("contacts_toward", table.contacts_toward)?;
+    fields.vector("contacts_away", table.contacts_away)?;
     fields.vector("contacts_standing", table.contacts_standing)?;
     fields.vector("contacts_at_fault", table.contacts_at_fault)?;
+    fields.vector("contacts_apart", table.contacts_apart)?;
+    fields.vector("wall_contacts", table.wall_contacts)?;
     fields.vector("performance_total", table.performance_total)?;
     fields.vector("performance_arrival_time", table.performance_arrival_time)?;
     fields.vector("performance_avoidance", table.performance_avoidance)?;

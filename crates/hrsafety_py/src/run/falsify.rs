@@ -2,8 +2,8 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vff_core::run::as_built;
 use vff_core::run::pursuit::{Encounter, NUMBERS, Pursued, Pursuer};
+use vff_core::run::{ContactCounts, as_built};
 use vff_core::search;
 
 use crate::arrays::Fields;
@@ -66,6 +66,16 @@ fn columns<'py>(
     fields.vector("margin", column(&|each| property.margin(each)))?;
     fields.vector("least_toward", column(&|each| each.least_toward))?;
     fields.vector("min_clearance", column(&|each| each.least))?;
+    let counts = |of: fn(&ContactCounts) -> u32| -> Vec<i64> {
+        found
+            .iter()
+            .map(|each| i64::from(of(&each.contacts)))
+            .collect()
+    };
+    fields.vector("contacts_toward", counts(|each| each.toward))?;
+    fields.vector("contacts_away", counts(|each| each.away))?;
+    fields.vector("contacts_standing", counts(|each| each.standing))?;
+    fields.vector("wall_contacts", counts(|each| each.walls))?;
     fields.vector("arrival_time", column(&|each| each.arrival_time))?;
     fields.vector("top_speed", column(&|each| each.top_speed))?;
     fields.vector("end_time", column(&|each| each.end_time))?;

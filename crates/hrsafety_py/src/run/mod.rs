@@ -111,9 +111,13 @@ pub fn trajectory_fields<'py>(
     };
     fields.vector("contact_time", contact(|touch| touch.time))?;
     fields.vector("contact_speed", contact(|touch| touch.speed))?;
-    let at_fault = |touch: &Option<Contact>| touch.is_some_and(|touch| touch.at_fault);
-    let at_fault: Vec<bool> = summary.contact.iter().map(at_fault).collect();
-    fields.vector("contact_at_fault", at_fault)?;
+    let flags = |flag: fn(&Contact) -> bool| -> Vec<bool> {
+        let of = |touch: &Option<Contact>| touch.as_ref().is_some_and(flag);
+        summary.contact.iter().map(of).collect()
+    };
+    fields.vector("contact_toward", flags(|touch| touch.toward))?;
+    fields.vector("contact_at_fault", flags(|touch| touch.at_fault))?;
+    fields.vector("contact_apart", summary.apart.clone())?;
     let wall = |value: fn(&Contact) -> f64| summary.map_contact.as_ref().map_or(f64::NAN, value);
     fields.value("map_contact_time", wall(|touch| touch.time))?;
     fields.value("map_contact_speed", wall(|touch| touch.speed))?;

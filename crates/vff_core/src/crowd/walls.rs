@@ -3,9 +3,13 @@
 use crate::crowd::agent::SHORTEST;
 use crate::error::{Failure, Given, Result, finite_pair};
 use crate::lanes::Vector2;
+use crate::world::map::Capsule;
 use crate::world::shape::{PlacedShape, Shape, into_axes, out_of_axes};
 
 type Vector = Vector2<f64>;
+
+/// A robot that passes a wall within a step touches it if they overlap by more, in m.
+const PASSED: f64 = 1e-9;
 
 /// Nearest point of a wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,6 +95,31 @@ impl Wall {
     #[must_use]
     pub fn clearance(&self, place: Vector) -> f64 {
         self.nearest(place).map_or(0.0, |near| near.distance)
+    }
+
+    /// Least distance of the points of a straight way from the wall in m, zero where it meets it.
+    #[must_use]
+    pub fn clearance_of_way(&self, from: Vector, to: Vector) -> f64 {
+        match self {
+            Self::Polyline(points) => points
+                .windows(2)
+                .map(|ends| Capsule::wall(ends[0], ends[1], 0.0).distance_of_segment(from, to))
+                .fold(f64::INFINITY, f64::min),
+            Self::Solid(shape) => shape.distance_of_segment(from, to),
+        }
+    }
+
+    /// Least distance of a robot of a radius in m from the wall on a straight way, in m: at its end, or between if it
+    /// touches the wall there and not at the end.
+    #[must_use]
+    pub fn gap_on_way(&self, from: Vector, to: Vector, radius: f64) -> f64 {
+        let gap = self.clearance(to) - radius;
+        // No point of the way is farther from its end than its length.
+        if gap < 0.0 || gap > (to - from).norm() {
+            return gap;
+        }
+        let passed = self.clearance_of_way(from, to) - radius;
+        if passed < -PASSED { passed } else { gap }
     }
 }
 

@@ -22,6 +22,7 @@ mod scene_batch;
 pub mod skirt;
 mod table;
 mod walls;
+mod way;
 
 pub use any_law::AnyLaw;
 pub use batch::{BatchOptions, run_batch};
@@ -30,7 +31,9 @@ pub(crate) use episode::Parts;
 pub use navigation::{Navigation, Request};
 pub(crate) use options::Clock;
 pub use options::{Integrator, Kept, Options};
-pub use outcome::{CONTACT_SPEED, Contact, Outcome, RunSummary, RunTotals};
+pub use outcome::{
+    CONTACT_SPEED, Contact, ContactCounts, DECIDED_OVERLAP, Outcome, RunSummary, RunTotals,
+};
 pub use plan::{Instructions, Width};
 pub use record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
 pub use table::BatchTable;

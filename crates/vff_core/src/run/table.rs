@@ -3,7 +3,7 @@
 use numeric::threads::{each_piece, map};
 
 use crate::run::metrics::Performance;
-use crate::run::outcome::{Outcome, RunTotals};
+use crate::run::outcome::{ContactCounts, Outcome, RunTotals};
 use crate::world::scenario::Scenario;
 
 /// A run with its score.
@@ -23,8 +23,7 @@ impl Cell {
                 arrival_time: f64::NAN,
                 energy: f64::NAN,
                 path_length: f64::NAN,
-                contacts: [0, 0],
-                at_fault: 0,
+                contacts: ContactCounts::default(),
                 map_clearance: f64::INFINITY,
                 descent_share: f64::NAN,
                 force_evaluations: 0,
@@ -85,10 +84,19 @@ pub struct BatchTable {
     pub entered_active: Vec<i64>,
     /// Number of obstacles touched while the robot was moving.
     pub contacts_moving: Vec<i64>,
+    /// Number of these toward which it moved then.
+    pub contacts_toward: Vec<i64>,
+    /// Number of those that touched it while it moved, but not toward them.
+    pub contacts_away: Vec<i64>,
     /// Number of obstacles touched while the robot stood.
     pub contacts_standing: Vec<i64>,
-    /// Number of obstacles toward which the robot moved while it touched them.
+    /// Number of obstacles toward which the robot moved from the first touch until they overlapped by
+    /// [`crate::run::DECIDED_OVERLAP`]; every contact with the maps counts.
     pub contacts_at_fault: Vec<i64>,
+    /// Number of obstacles that appeared in the scene where the robot was, counted apart from all others.
+    pub contacts_apart: Vec<i64>,
+    /// Number of contacts with the maps, 1 or 0, which the others hold, too.
+    pub wall_contacts: Vec<i64>,
     /// `H`.
     pub performance_total: Vec<f64>,
     /// `H_T`.
@@ -152,9 +160,13 @@ impl BatchTable {
             obstacles,
             min_clearance: source.clearances(),
             entered_active: source.of_distances(entered_active),
-            contacts_moving: source.column(|cell| i64::from(cell.run.contacts[0])),
-            contacts_standing: source.column(|cell| i64::from(cell.run.contacts[1])),
-            contacts_at_fault: source.column(|cell| i64::from(cell.run.at_fault)),
+            contacts_moving: source.column(|cell| i64::from(cell.run.contacts.moving())),
+            contacts_toward: source.column(|cell| i64::from(cell.run.contacts.toward)),
+            contacts_away: source.column(|cell| i64::from(cell.run.contacts.away)),
+            contacts_standing: source.column(|cell| i64::from(cell.run.contacts.standing)),
+            contacts_at_fault: source.column(|cell| i64::from(cell.run.contacts.at_fault)),
+            contacts_apart: source.column(|cell| i64::from(cell.run.contacts.apart)),
+            wall_contacts: source.column(|cell| i64::from(cell.run.contacts.walls)),
             performance_total: source.column(|cell| cell.performance.total),
             performance_arrival_time: source.column(|cell| cell.performance.arrival_time),
             performance_avoidance: source.column(|cell| cell.performance.avoidance),

@@ -45,6 +45,12 @@ impl Maps {
         self.0.is_empty()
     }
 
+    /// Least distance of the points of a segment from the maps in m.
+    pub fn segment_clearance(&self, from: Vector2<f64>, to: Vector2<f64>) -> f64 {
+        let distances = self.0.iter().map(|map| map.segment_clearance(from, to));
+        distances.fold(f64::INFINITY, f64::min)
+    }
+
     /// Distance of a point from the nearest map in m; all that is at least `most` away counts as that
     /// far.
     pub fn clearance_up_to(&self, point: Vector2<f64>, most: f64) -> f64 {
@@ -85,36 +91,81 @@ impl<R: Real> Walls<R> {
         })
     }
 
-    /// Looks at the robots of some lanes after a motion step; returns whether one touches a wall for
-    /// the first time.
+    /// Looks at the robots of some lanes at an instant, after a motion step from where they were at another one if
+    /// there was one; returns whether one touches a wall for the first time.
     #[inline(always)]
-    pub fn watch(&mut self, place: Vector2<R>, speed: R, time: R, lanes: R::Mask) -> bool {
-        let moved = place - self.seen;
+    pub fn watch(
+        &mut self,
+        now: (Vector2<R>, R),
+        since: Option<(Vector2<R>, R)>,
+        speed: R,
+        lanes: R::Mask,
+    ) -> bool {
+        let moved = now.0 - self.seen;
         let off = moved.dot(&moved).lt(self.spare * self.spare) & R::zero().lt(self.spare);
-        (lanes & !off).any() && self.look(place, speed, time, lanes & !off)
+        (lanes & !off).any() && self.look(now, since, speed, lanes & !off)
     }
 
     #[cold]
     #[inline(never)]
-    fn look(&mut self, place: Vector2<R>, speed: R, time: R, lanes: R::Mask) -> bool {
+    fn look(
+        &mut self,
+        (place, time): (Vector2<R>, R),
+        since: Option<(Vector2<R>, R)>,
+        speed: R,
+        lanes: R::Mask,
+    ) -> bool {
         let mut touched = false;
         for lane in (0..R::WIDTH).filter(|lane| lanes.lane(*lane)) {
             let point = Vector2::from(place.lane(lane));
             let least = self.least.lane(lane);
             let most = least.max(0.0) + self.radius + AHEAD;
             let clearance = self.maps.clearance_up_to(point, most) - self.radius;
-            let nearest = least.min(clearance);
+            let mut nearest = least.min(clearance);
+            let mut contact = (clearance <= 0.0).then_some(time.lane(lane));
+            let since = since.map(|(from, time)| (Vector2::from(from.lane(lane)), time.lane(lane)));
+            // No point of the way is farther from its end than its length.
+            if let (None, Some((from, begin))) = (contact, since)
+                && (point - from).norm() >= clearance
+                && let Some((share, gap)) = self.between(from, point)
+            {
+                nearest = nearest.min(gap);
+                contact = Some(begin + share * (time.lane(lane) - begin));
+            }
             self.least = self.least.replace(lane, nearest);
             let spare = clearance - nearest.max(0.0) - ROUNDING;
             self.spare = self.spare.replace(lane, spare);
             let [x, y] = point.into();
             self.seen = Vector2::new(self.seen.x.replace(lane, x), self.seen.y.replace(lane, y));
-            if clearance <= 0.0 && self.contact_time.lane(lane).is_nan() {
-                self.contact_time = self.contact_time.replace(lane, time.lane(lane));
+            if let Some(instant) = contact
+                && self.contact_time.lane(lane).is_nan()
+            {
+                self.contact_time = self.contact_time.replace(lane, instant);
                 self.contact_speed = self.contact_speed.replace(lane, speed.lane(lane));
                 touched = true;
             }
         }
         touched
+    }
+
+    /// Where on a straight way a wall is touched first, as a share of it, and the least distance of the surfaces on
+    /// the way in m, if they overlap by more than rounding; the share is found to a nanometer.
+    fn between(&self, from: Vector2<f64>, to: Vector2<f64>) -> Option<(f64, f64)> {
+        let gap =
+            |end: f64| self.maps.segment_clearance(from, from + (to - from) * end) - self.radius;
+        let least = gap(1.0);
+        if least >= -ROUNDING {
+            return None;
+        }
+        let [mut free, mut touching] = [0.0, 1.0];
+        while (touching - free) * (to - from).norm() > ROUNDING {
+            let middle = 0.5 * (free + touching);
+            if gap(middle) > 0.0 {
+                free = middle;
+            } else {
+                touching = middle;
+            }
+        }
+        Some((touching, least))
     }
 }

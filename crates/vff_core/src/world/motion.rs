@@ -6,6 +6,9 @@ use crate::lanes::Real;
 /// Largest distance of a stop from the line of the velocity, in m: rounding of typed numbers.
 const STOP_OFFSET: f64 = 5e-7;
 
+/// Whatever is faster in a recording has not moved but is somewhere else, in m/s: a loop that begins again.
+pub(crate) const JUMP_SPEED: f64 = 100.0;
+
 /// Position, velocity and acceleration of a body at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyState<B: Real = f64> {
@@ -348,6 +351,15 @@ impl Motion {
             0 => &self.first,
             _ => &self.later[index - 1],
         }
+    }
+
+    /// Whether the body is put elsewhere between two instants in s: faster than [`JUMP_SPEED`].
+    pub(crate) fn jumps(&self, [from, to]: [f64; 2]) -> bool {
+        (0..=self.later.len()).any(|index| {
+            let (piece, until) = self.piece(index);
+            let (_, [u, v]) = piece.at(from.max(piece.start));
+            (index == 0 || piece.start < to) && until > from && u.hypot(v) > JUMP_SPEED
+        })
     }
 
     /// First and last instant of presence, in s.

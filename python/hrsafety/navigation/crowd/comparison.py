@@ -32,8 +32,13 @@ class CrowdStanding:
         Share of the episodes in which the robot arrived without a contact with people or walls, in which it
         had one, however they ended, and in which the world diverged before the robot arrived, with 95 %
         Wilson intervals.
-    moving_contact, at_fault : Share
-        Share with a contact while the robot itself was moving, and with one at fault.
+    person_contact, wall_contact : Share
+        Share with a contact with a person, and with a wall.
+    moving_contact, toward_contact, away_contact : Share
+        Share with a contact with a person while the robot itself was moving; with one toward whom it moved, and with
+        one who came from behind or from the side, as ``contacts_toward`` and ``contacts_away`` of a `CrowdTable`.
+    at_fault : Share
+        Share with a contact at fault; every one with a wall is.
     robot_contact : Share
         Share of the episodes in whose world robots touched each other, whichever; these are no contacts of
         the shares above.
@@ -49,7 +54,11 @@ class CrowdStanding:
     success: Share
     contact: Share
     diverged: Share
+    person_contact: Share
+    wall_contact: Share
     moving_contact: Share
+    toward_contact: Share
+    away_contact: Share
     at_fault: Share
     robot_contact: Share
     arrival_time: Mean
@@ -140,9 +149,13 @@ class CrowdComparison(PairedRuns[CrowdTable]):
         """
         row = self._row("law", law)
         arrived = self.outcome[row] == "arrived"
+        table = self.runs
 
         def share(flags: np.ndarray) -> Share:
             return wilson(int(flags.sum()), len(flags))
+
+        def touched(counts: np.ndarray) -> Share:
+            return share(self._by_law(counts)[row] > 0)
 
         def mean(name: str) -> Mean:
             values = self.metric(name)[row]
@@ -153,9 +166,13 @@ class CrowdComparison(PairedRuns[CrowdTable]):
             success=share(arrived),
             contact=share(self._touched()[row]),
             diverged=share(self.outcome[row] == "diverged"),
-            moving_contact=share(self._by_law(self.runs.contacts_moving)[row] > 0),
-            at_fault=share(self._by_law(self.runs.contacts_at_fault)[row] > 0),
-            robot_contact=share(self._by_law(self.runs.values["robot_contacts"])[row] > 0),
+            person_contact=touched(table.contacts_moving + table.contacts_standing),
+            wall_contact=touched(table.values["wall_contacts"]),
+            moving_contact=touched(table.contacts_moving),
+            toward_contact=touched(table.contacts_toward),
+            away_contact=touched(table.contacts_away),
+            at_fault=touched(table.contacts_at_fault),
+            robot_contact=touched(table.values["robot_contacts"]),
             arrival_time=mean("arrival_time"),
             path_length=mean("path_length"),
             min_clearance=mean("min_clearance"),

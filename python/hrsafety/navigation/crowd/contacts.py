@@ -2,33 +2,52 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array
-from hrsafety.navigation.metrics.between import until_arrival, wrapped
+from hrsafety.navigation.metrics.between import PASSED, paths_of, until_arrival
 from hrsafety.navigation.metrics.episode import Episode
-from hrsafety.navigation.trajectory import CONTACT_SPEED
+from hrsafety.navigation.trajectory import CONTACT_SPEED, DECIDED_OVERLAP
 
-__all__ = ["Contacts", "contacts_of"]
+__all__ = ["APPEARING", "Contacts", "contacts_of"]
+
+APPEARING = 0.2
+"""A contact so soon after somebody appears in the scene is counted apart, in s."""
 
 
 class Contacts(NamedTuple):
     """Numbers of people whom a robot touched up to its arrival.
 
+    Robot and people move straight from instant to instant; a contact between two instants counts.
+
     Attributes
     ----------
-    moving, standing : int
-        At first contact the robot was faster than 0.05 m/s, or it was not.
+    toward, away : int
+        The robot was faster than 0.05 m/s at the first touch (in the step into it), and moved toward the person,
+        V.(o - P) > 0 with its velocity V, its place P and that o of the person at that touch, or it did not.
+    standing : int
+        It was not faster.
     at_fault : int
-        The robot moved toward them, faster than 0.05 m/s, at some instant of a contact.
+        It moved toward them, faster than 0.05 m/s, at an instant of a contact from the first touch until the
+        bodies first overlapped by 0.1 m.
+    apart : int
+        They appeared in the scene where the robot was, and touched it within 0.2 s: in none of the others.
     """
 
-    moving: int
+    toward: int
+    away: int
     standing: int
     at_fault: int
+    apart: int
+
+    @property
+    def moving(self) -> int:
+        """Number of people touched while the robot was moving."""
+        return self.toward + self.away
 
 
 def contacts_of(episode: Episode, arrival_time: float) -> Contacts:
@@ -48,29 +67,76 @@ def contacts_of(episode: Episode, arrival_time: float) -> Contacts:
     """
     own, people = until_arrival(episode, arrival_time)
     if people.size == 0 or len(own) < 2:
-        return Contacts(0, 0, 0)
-    offset = wrapped(people - own[:, None], episode.period)
-    distance = np.linalg.norm(offset, axis=2)
-    touching = distance < episode.robot_radius + np.asarray(episode.person_radius)
+        return Contacts(0, 0, 0, 0, 0)
+    start, way, nearest = paths_of(episode, own, people)
+    reach = episode.robot_radius + np.asarray(episode.person_radius)
+    with np.errstate(invalid="ignore"):
+        touching = np.linalg.norm(start, axis=2) < reach
+        near = (nearest < reach - PASSED) | touching[:-1] | touching[1:]
+    # Steps in which somebody comes or goes have no way.
+    near &= np.isfinite(nearest)
     velocity = np.diff(own, axis=0) / episode.step
-    # The speed of the step into the first contact; at the start that of the first step.
-    first = np.maximum(touching.argmax(axis=0) - 1, 0)
-    touched = touching.any(axis=0)
-    moving = touched & (np.hypot(*velocity[first].T) > CONTACT_SPEED)
-    at_fault = _moved_toward(offset, distance, touching, velocity)
-    return Contacts(int(moving.sum()), int((touched & ~moving).sum()), int(at_fault.sum()))
+    radii = np.broadcast_to(reach, people.shape[1])
+    found = [
+        _followed(steps, (start[:-1, person], way[:, person]), velocity, float(radii[person]), appears)
+        for person in np.flatnonzero(near.any(axis=0))
+        for steps in [np.flatnonzero(near[:, person])]
+        for appears in [_appears(people[:, person], episode.step)]
+    ]
+    kinds = [kind for each in found for kind in each]
+    # Whoever is there at single instants only has appeared.
+    kinds += ["apart"] * int((touching.any(axis=0) & ~near.any(axis=0)).sum())
+    return Contacts(*(kinds.count(kind) for kind in Contacts._fields))
 
 
-def _moved_toward(
-    offset: Array, distance: Array, touching: npt.NDArray[np.bool_], velocity: Array
-) -> npt.NDArray[np.bool_]:
-    """Return toward whom a robot moved at some instant of a contact.
+def _appears(path: Array, step: float) -> float:
+    """Return up to which number of steps a contact is counted apart; negative for who is there at the start."""
+    first = int(np.argmax(np.isfinite(path[:, 0])))
+    return -1.0 if first == 0 else first + APPEARING / step + 1e-9
 
-    A step that begins or ends in the contact counts, by the place of the person before and after it.
-    """
-    with np.errstate(divide="ignore", invalid="ignore"):
-        before = (velocity[:, None] * offset[:-1]).sum(axis=2) / distance[:-1]
-        after = (velocity[:, None] * offset[1:]).sum(axis=2) / distance[1:]
-    toward = np.fmax(before, after) > CONTACT_SPEED
-    found: npt.NDArray[np.bool_] = ((touching[:-1] | touching[1:]) & toward).any(axis=0)
-    return found
+
+def _followed(
+    steps: npt.NDArray[np.intp], paths: tuple[Array, Array], velocity: Array, reach: float, appears: float
+) -> Iterator[str]:
+    """Yield what the steps in which a person touches the robot make of it."""
+    first, faulty, told = True, False, False
+    # The step after one that ended in a contact of somebody who appeared.
+    lasts = -1
+    for step in steps.tolist():
+        start, way = paths[0][step], paths[1][step]
+        begin, end, decided = _within(start, way, reach)
+        if first and (step == lasts or step + begin <= appears):
+            if not told:
+                yield "apart"
+            told, lasts = True, step + 1 if np.linalg.norm(start + way) < reach else -1
+            continue
+        speed = velocity[step]
+        moving = bool(np.hypot(*speed) > CONTACT_SPEED)
+        toward = [bool(speed @ (start + share * way) > 0.0) for share in (begin, end)]
+        if first and np.linalg.norm(start + begin * way) <= reach - DECIDED_OVERLAP:
+            moving = False  # at the start they overlapped: nobody came
+        if first:
+            yield ("toward" if toward[0] else "away") if moving else "standing"
+            first = False
+        faulty |= moving and any(toward)
+        if decided:
+            break
+    if faulty:
+        yield "at_fault"
+
+
+def _within(start: Array, way: Array, reach: float) -> tuple[float, float, bool]:
+    """Return the shares of a step at which a contact begins, and ends or is decided, and whether it is."""
+    deep = reach - DECIDED_OVERLAP
+    square, along, across = float(way @ way), float(start @ way), float(start @ start)
+    share = min(max(-along / square, 0.0), 1.0) if square > 0.0 else 0.0
+    least = float(np.linalg.norm(start + share * way))
+
+    def crossing(distance: float, side: float) -> float:
+        if square == 0.0:
+            return 0.0 if side < 0.0 else 1.0
+        root = max(along * along - square * (across - distance * distance), 0.0) ** 0.5
+        return min(max((-along + side * root) / square, 0.0), 1.0)
+
+    begin = crossing(reach, -1.0)
+    return (begin, crossing(deep, -1.0), True) if least <= deep else (begin, crossing(reach, 1.0), False)

@@ -9,7 +9,6 @@ from typing import Any
 from hrsafety._arguments import Array
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.metrics.episode import Episode
-from hrsafety.navigation.metrics.scores import MetricTable
 from hrsafety.navigation.outcomes import OUTCOMES
 
 __all__ = ["WORLD_OUTCOMES", "episodes_in", "outcome_of"]
@@ -19,8 +18,6 @@ WORLD_OUTCOMES: Mapping[str, str] = MappingProxyType(
     | {"diverged": "a state of the world was no longer finite"}
 )
 """What each outcome of a robot in a world says, by its word: those of other runs, and ``"diverged"``."""
-
-_TOUCHES = ("robot_on_person", "person_on_robot", "mutual_contacts", "wall_contacts")
 
 
 def episodes_in(world: World, robot_position: Array, position: Array, radius: Array, **beside: Any) -> list[Episode]:
@@ -67,15 +64,13 @@ def episodes_in(world: World, robot_position: Array, position: Array, radius: Ar
     ]
 
 
-def outcome_of(table: MetricTable, row: int, *, arrived: bool, diverged: bool) -> str:
+def outcome_of(*, touched: bool, arrived: bool, diverged: bool) -> str:
     """Return what became of a robot of a world.
 
     Parameters
     ----------
-    table : MetricTable
-        Metrics of robots.
-    row : int
-        Which row is that of the robot.
+    touched : bool
+        Whether the robot touched people, but those who appeared where it was, or walls.
     arrived, diverged : bool
         Whether the robot has arrived, and whether the world has diverged.
 
@@ -87,6 +82,6 @@ def outcome_of(table: MetricTable, row: int, *, arrived: bool, diverged: bool) -
     # Who had arrived before the world diverged did so with the contacts that it had.
     if diverged and not arrived:
         return "diverged"
-    if any(getattr(table, kind)[row] for kind in _TOUCHES):
+    if touched:
         return "collided"
     return "arrived" if arrived else "timed_out"

@@ -18,7 +18,7 @@ from hrsafety.navigation.crowd.doubts import of_robots
 from hrsafety.navigation.crowd.episodes import outcome_of
 from hrsafety.navigation.crowd.scores import episodes_of, world_metrics
 from hrsafety.navigation.crowd.simulation import simulate_crowds
-from hrsafety.navigation.crowd.table import CrowdTable
+from hrsafety.navigation.crowd.table import CONTACTS, CrowdTable
 from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.laws.force_laws import Law
@@ -212,9 +212,7 @@ class CrowdStudy:
             gains=gains,
             outcome=np.concatenate([part.outcome for part in parts])[order],
             end_time=np.concatenate([part.end_time for part in parts])[order],
-            contacts_moving=contacts[:, 0],
-            contacts_standing=contacts[:, 1],
-            contacts_at_fault=contacts[:, 2],
+            **{f"contacts_{name}": column for name, column in zip(CONTACTS, contacts.T, strict=True)},
             values=values,
             warnings=(*self._warnings(), *self._between(parts), *_of_robots(values["robot_contacts"][robot == 0])),
         )
@@ -286,7 +284,12 @@ class _Rows:
         values |= {name: np.array([each[name] for each in worlds])[owner] for name in WORLD_METRICS}
         return cls(
             jobs=np.array([(*part[index], robot) for index, robot in robots], dtype=np.int64),
-            outcome=np.array([_outcome(table, row, runs[index], robot) for row, (index, robot) in enumerate(robots)]),
+            outcome=np.array(
+                [
+                    _outcome(contacts[row], int(table.wall_contacts[row]), runs[index], robot)
+                    for row, (index, robot) in enumerate(robots)
+                ]
+            ),
             end_time=np.array([runs[index].time[-1] for index in owner]),
             contacts=_with_walls(contacts, table),
             values=values,
@@ -298,15 +301,16 @@ class _Rows:
 
 
 def _with_walls(contacts: Sequence[Contacts], table: MetricTable) -> np.ndarray[Any, np.dtype[np.int64]]:
-    """Return moving, standing and faulty contacts; every one with a wall is at fault."""
-    found = np.array(contacts, dtype=np.int64).reshape(-1, 3)
-    found[:, 2] += table.wall_contacts
+    """Return the numbers of contacts; every one with a wall is at fault."""
+    found = np.array(contacts, dtype=np.int64).reshape(-1, len(CONTACTS))
+    found[:, CONTACTS.index("at_fault")] += table.wall_contacts
     return found
 
 
-def _outcome(table: MetricTable, row: int, run: CrowdTrajectories, robot: int) -> str:
+def _outcome(contacts: Contacts, walls: int, run: CrowdTrajectories, robot: int) -> str:
     arrived = not np.isnan(run.robot_arrival_time[robot])
-    return outcome_of(table, row, arrived=arrived, diverged=run.diverged is not None)
+    touched = contacts.moving + contacts.standing + walls > 0
+    return outcome_of(touched=touched, arrived=arrived, diverged=run.diverged is not None)
 
 
 def _of_people(run: CrowdTrajectories) -> tuple[ResultWarning, ...]:

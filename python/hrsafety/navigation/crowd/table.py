@@ -21,8 +21,8 @@ from hrsafety.tables import Columns, unit_suffix
 __all__ = ["CrowdTable"]
 
 _OF_ROWS = ("law_index", "scenario_index", "gain_index", "robot", "seed", "gains", "outcome", "end_time")
-_CONTACTS = ("contacts_moving", "contacts_standing", "contacts_at_fault")
-_TOUCHES = ("robot_on_person", "person_on_robot", "mutual_contacts", "wall_contacts")
+CONTACTS = ("toward", "away", "standing", "at_fault", "apart")
+_CONTACTS = ("contacts_moving", *(f"contacts_{name}" for name in CONTACTS))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -60,10 +60,16 @@ class CrowdTable(
         When the world ended, in s.
     contacts_moving, contacts_standing : ndarray of int, shape (n,)
         Number of people touched, up to the arrival, while the robot was moving (faster than 0.05 m/s at
-        first contact), and while it stood.
+        first contact), and while it stood; walls are in ``wall_contacts``.
+    contacts_toward, contacts_away : ndarray of int, shape (n,)
+        How many of those while moving it moved toward at the first touch, V.(o - P) > 0, and how many touched it
+        from behind or from the side; their sum is ``contacts_moving``.
     contacts_at_fault : ndarray of int, shape (n,)
-        Number of people toward whom the robot moved, faster than 0.05 m/s, at some instant of a contact
-        with them; every contact with a wall counts.
+        Number of people toward whom the robot moved, faster than 0.05 m/s, at an instant of a contact from the first
+        touch until the bodies first overlapped by 0.1 m; every contact with a wall counts.
+    contacts_apart : ndarray of int, shape (n,)
+        Number of people who appeared in the world where the robot was, and touched it within 0.2 s: in none of the
+        others, and no reason for ``"collided"``.
     values : mapping of str to ndarray, shape (n,)
         The metrics by name.
     warnings : tuple of ResultWarning
@@ -84,9 +90,11 @@ class CrowdTable(
     gains: Array
     outcome: npt.NDArray[np.str_]
     end_time: Array
-    contacts_moving: npt.NDArray[np.int64]
+    contacts_toward: npt.NDArray[np.int64]
+    contacts_away: npt.NDArray[np.int64]
     contacts_standing: npt.NDArray[np.int64]
     contacts_at_fault: npt.NDArray[np.int64]
+    contacts_apart: npt.NDArray[np.int64]
     values: Mapping[str, npt.NDArray[Any]]
     warnings: tuple[ResultWarning, ...] = field(default=())
 
@@ -110,8 +118,16 @@ class CrowdTable(
     @property
     def touched(self) -> npt.NDArray[np.bool_]:
         """Whether the robot of each run had a contact with people or walls, however the run ended."""
-        counts = (self.values[name] for name in _TOUCHES)
-        return sum(counts, np.zeros(len(self), dtype=np.int64)) > 0
+        return (self.contacts_moving + self.contacts_standing + self.values["wall_contacts"]) > 0
+
+    @property
+    def contacts_moving(self) -> npt.NDArray[np.int64]:
+        """Number of people touched while the robot was moving, toward them or away."""
+        return self.contacts_toward + self.contacts_away
+
+    def _telling(self) -> tuple[str, ...]:
+        found = ("arrival_time_s", "min_clearance_m", "contacts_toward", "contacts_away", "wall_contacts")
+        return ("law", "scenario", "outcome", *found)
 
     def columns(self) -> Columns:
         """Return one-dimensional columns by name, ready for a data frame.

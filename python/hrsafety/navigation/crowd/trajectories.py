@@ -10,6 +10,7 @@ from hrsafety._arguments import Array
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.navigation.crowd.doubts import of_people
+from hrsafety.navigation.crowd.contacts import contacts_of
 from hrsafety.navigation.crowd.episodes import episodes_in, outcome_of
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.metrics.scores import table_of
@@ -119,11 +120,15 @@ class CrowdTrajectories(Table):
         """
         if not self.world.robots:
             return ()
-        table = table_of(episodes_in(self.world, self.robot_position, self.position, self.radius), threads=1)
+        episodes = episodes_in(self.world, self.robot_position, self.position, self.radius)
+        table = table_of(episodes, threads=1)
+        found = zip(episodes, table.arrival_time.tolist(), table.wall_contacts.tolist(), strict=True)
+        contacts = [(contacts_of(episode, arrival), walls) for episode, arrival, walls in found]
         arrived = ~np.isnan(self.robot_arrival_time)
         diverged = self.diverged is not None
         return tuple(
-            outcome_of(table, row, arrived=bool(there), diverged=diverged) for row, there in enumerate(arrived)
+            outcome_of(touched=own.moving + own.standing + walls > 0, arrived=bool(there), diverged=diverged)
+            for (own, walls), there in zip(contacts, arrived, strict=True)
         )
 
     def columns(self) -> Columns:

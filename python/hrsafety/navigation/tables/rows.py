@@ -101,6 +101,12 @@ class RunRows(Table, ABC):
     def _head(self) -> tuple[Columns, int]:
         return self._columns(slice(SHOWN_ROWS)), len(self)
 
+    def _shown(self) -> tuple[list[str], list[list[str]], str]:
+        header, cells, title = super()._shown()
+        words, counts = np.unique(self.outcome, return_counts=True)
+        ended = ", ".join(f"{word} {count}" for word, count in zip(words.tolist(), counts.tolist(), strict=True))
+        return header, cells, f"{title}; outcomes: {ended}"
+
     @abstractmethod
     def _columns(self, rows: slice) -> Columns:
         """Return the columns of some rows; names are written out for these only."""

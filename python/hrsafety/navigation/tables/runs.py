@@ -33,8 +33,12 @@ _UNITS = {
     "min_clearance": "m",
     "entered_active": "",
     "contacts_moving": "",
+    "contacts_toward": "",
+    "contacts_away": "",
     "contacts_standing": "",
     "contacts_at_fault": "",
+    "contacts_apart": "",
+    "wall_contacts": "",
     "performance_total": "",
     "performance_arrival_time": "",
     "performance_avoidance": "",
@@ -86,9 +90,16 @@ class RunTable(RunRows):
     contacts_moving, contacts_standing : ndarray of int, shape (n,)
         Number of obstacles touched while the robot was moving (faster than 0.05 m/s at first
         contact), and while it stood; the maps count as one.
+    contacts_toward, contacts_away : ndarray of int, shape (n,)
+        How many of those while moving it moved toward at the first touch, V.(o - P) > 0, and how many touched it
+        from behind or from the side; their sum is ``contacts_moving``. See ``contact_toward`` of a `Trajectory`.
     contacts_at_fault : ndarray of int, shape (n,)
-        Number of obstacles toward which the robot moved, faster than 0.05 m/s, at some instant of a
-        contact with them; every contact with a map counts.
+        Number of obstacles toward which the robot moved, faster than 0.05 m/s, at an instant of a contact from the
+        first touch until the bodies first overlapped by 0.1 m; every contact with a map counts.
+    contacts_apart : ndarray of int, shape (n,)
+        Number of obstacles that appeared in the scene where the robot was, in none of the other numbers.
+    wall_contacts : ndarray of int, shape (n,)
+        Number of contacts with the maps, 1 or 0, which the others but ``contacts_apart`` hold, too.
     performance_total : ndarray, shape (n,)
         H; 0 after a contact or without arrival.
     performance_arrival_time, performance_avoidance, performance_energy_saving : ndarray, shape (n,)
@@ -138,8 +149,12 @@ class RunTable(RunRows):
     min_clearance: Array
     entered_active: npt.NDArray[np.int64]
     contacts_moving: npt.NDArray[np.int64]
+    contacts_toward: npt.NDArray[np.int64]
+    contacts_away: npt.NDArray[np.int64]
     contacts_standing: npt.NDArray[np.int64]
     contacts_at_fault: npt.NDArray[np.int64]
+    contacts_apart: npt.NDArray[np.int64]
+    wall_contacts: npt.NDArray[np.int64]
     performance_total: Array
     performance_arrival_time: Array
     performance_avoidance: Array
@@ -198,7 +213,7 @@ class RunTable(RunRows):
 
     def _telling(self) -> tuple[str, ...]:
         varied = () if self.gain_index.max(initial=0) == 0 else tuple(self._of_gains(slice(0)))
-        found = ("outcome", "arrival_time_s", "min_clearance_m", "contacts_moving", "performance_total")
+        found = ("outcome", "arrival_time_s", "min_clearance_m", "contacts_toward", "contacts_away")
         return ("law", "scenario", "seed", *varied, *found)
 
     def _columns(self, rows: slice) -> Columns:

@@ -261,7 +261,9 @@ def _trajectory(path: Reference, law: Tracking, history: dict[str, Any]) -> Traj
         min_clearance=nothing,
         contact_time=nothing,
         contact_speed=nothing,
+        contact_toward=np.zeros(0, dtype=bool),
         contact_at_fault=np.zeros(0, dtype=bool),
+        contact_apart=np.zeros(0, dtype=bool),
         path_length=float(np.abs(steps, out=steps).sum()),
         **history,
     )

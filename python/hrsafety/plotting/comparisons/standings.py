@@ -9,6 +9,7 @@ import numpy as np
 
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.comparison import Comparison
+from hrsafety.navigation.crowd.comparison import CrowdComparison
 from hrsafety.plotting import notes, style
 from hrsafety.plotting.comparisons.studies import OUTCOME_COLORS
 from hrsafety.plotting.floor import handle
@@ -25,15 +26,16 @@ ROW_HEIGHT = 0.42
 
 
 @style.styled
-def comparison_standings(result: Comparison, *, title: str | None = None) -> Figure:
+def comparison_standings(result: Comparison | CrowdComparison, *, title: str | None = None) -> Figure:
     """Draw the shares of success and of contact of each law with their 95 % intervals.
 
-    Beside the share of the episodes with a contact, a hollow mark is the share of those in which
-    the robot itself was moving at a contact.
+    Below the share of the episodes with a contact, a hollow circle is the share of those in which the robot moved
+    toward somebody whom it touched, and a cross that of those in which it was touched from behind or from the side
+    while it moved.
 
     Parameters
     ----------
-    result : Comparison
+    result : Comparison or CrowdComparison
         What `hrsafety.navigation.compare` returned.
     title : str or None
         Title of the figure.
@@ -46,7 +48,7 @@ def comparison_standings(result: Comparison, *, title: str | None = None) -> Fig
     Raises
     ------
     InvalidParameterError
-        If the result is not a Comparison.
+        If the result is not a comparison.
     MissingExtraError
         If matplotlib is not installed.
 
@@ -59,15 +61,16 @@ def comparison_standings(result: Comparison, *, title: str | None = None) -> Fig
     >>> [tick.get_text() for tick in figure.axes[0].get_yticklabels()]
     ['field', 'Masoud']
     """
-    if not isinstance(result, Comparison):
-        raise InvalidParameterError("result", "be a Comparison", Shown(type(result).__name__))
+    if not isinstance(result, Comparison | CrowdComparison):
+        raise InvalidParameterError("result", "be a Comparison or a CrowdComparison", Shown(type(result).__name__))
     standings = result.standings()
     figure = style.new_figure(1.35 + ROW_HEIGHT * len(standings) + (0.4 if title is not None else 0.0), title=title)
     left, right = figure.subplots(1, 2, sharey=True)
     blue, red = OUTCOME_COLORS["arrived"], OUTCOME_COLORS["contact"]
-    _draw_shares(left, [each.success for each in standings], blue, offset=0.0, filled=True)
-    _draw_shares(right, [each.contact for each in standings], red, offset=-0.14, filled=True)
-    _draw_shares(right, [each.moving_contact for each in standings], red, offset=0.14, filled=False)
+    _draw_shares(left, [each.success for each in standings], blue, offset=0.0)
+    _draw_shares(right, [each.contact for each in standings], red, offset=-0.2)
+    _draw_shares(right, [each.toward_contact for each in standings], red, offset=0.0, face="white")
+    _draw_shares(right, [each.away_contact for each in standings], red, offset=0.2, marker="x")
     left.set_yticks(range(len(standings)), [each.law for each in standings])
     left.set_ylim(len(standings) - 0.5, -0.5)
     episodes = f"of {result.outcome.shape[1]} episodes"
@@ -78,18 +81,27 @@ def comparison_standings(result: Comparison, *, title: str | None = None) -> Fig
     handles = [
         handle("arrived without contact", marker="o", markersize=7, color=blue),
         handle("with a contact", marker="o", markersize=7, color=red),
-        handle("robot moving at a contact", marker="o", markersize=7, color=red, markerfacecolor="white"),
+        handle("robot moved toward it", marker="o", markersize=7, color=red, markerfacecolor="white"),
+        handle("robot moved away", marker="x", markersize=7, color=red),
     ]
     style.legend_below(figure, handles, columns=len(handles))
     notes.add_warnings(figure, result)
     return figure
 
 
-def _draw_shares(axes: Axes, shares: Sequence[Share], color: str, *, offset: float, filled: bool) -> None:
+def _draw_shares(
+    axes: Axes, shares: Sequence[Share], color: str, *, offset: float, face: str | None = None, marker: str = "o"
+) -> None:
     """Draw shares and their intervals, one row for each."""
     value = np.array([share.value for share in shares])
     beyond = np.array([[share.value - share.low, share.high - share.value] for share in shares]).T
-    look: style.Properties = {"color": color, "markerfacecolor": color if filled else "white", "capsize": 2.5}
+    look: style.Properties = {"color": color, "markerfacecolor": color if face is None else face, "capsize": 2.5}
     axes.errorbar(
-        value, np.arange(len(shares)) + offset, xerr=np.maximum(beyond, 0.0), fmt="o", markersize=6, zorder=3, **look
+        value,
+        np.arange(len(shares)) + offset,
+        xerr=np.maximum(beyond, 0.0),
+        fmt=marker,
+        markersize=6,
+        zorder=3,
+        **look,
     )

@@ -28,7 +28,9 @@ OUTCOME_COLORS = {
     "timed out": "#9CC9E3",
     "stopped": "#BDBDBD",
     "contact, robot standing": "#E69F00",
+    "contact, robot moving away": "#E0A0A0",
     "contact, robot moving": "#C00000",
+    "contact, robot moving toward it": "#C00000",
     "contact": "#C00000",
 }
 LEAST_SHARE_WITH_TEXT = 0.04
@@ -150,7 +152,8 @@ def outcomes(
 
     With counts of contacts, runs with a contact are split: those in which the robot was
     moving at the first contact with anybody, and those in which it always stood. Counts of a
-    RunTable are used by themselves.
+    RunTable are used by themselves; of these the runs in which it moved are split into those in which it moved
+    toward somebody whom it touched, and those in which it was touched from behind or from the side only.
 
     Parameters
     ----------
@@ -192,6 +195,8 @@ def outcomes(
     for name, values in _checked_groups("outcomes", outcomes):
         words = _checked_outcomes(name, values)
         contacts = _checked_contacts(name, values, len(words), contacts_moving, contacts_standing)
+        if contacts is not None and contacts_moving is None and isinstance(values, RunTable):
+            contacts = (*contacts, values.contacts_toward)
         bars[f"{name} (n = {len(words)})"] = _counts(words, contacts)
     figure = style.new_figure(1.1 + 0.52 * len(bars) + (0.4 if title is not None else 0.0), title=title)
     axes = figure.subplots()
@@ -221,7 +226,7 @@ def _checked_contacts(
     count: int,
     moving: Mapping[str, npt.ArrayLike] | None,
     standing: Mapping[str, npt.ArrayLike] | None,
-) -> tuple[Counts, Counts] | None:
+) -> tuple[Counts, ...] | None:
     """Return the number of contacts of each run of a group, moving and standing, if known."""
     if moving is None or standing is None:
         return (values.contacts_moving, values.contacts_standing) if isinstance(values, RunTable) else None
@@ -236,17 +241,24 @@ def _checked_contacts(
     return found[0], found[1]
 
 
-def _counts(words: npt.NDArray[np.str_], contacts: tuple[Counts, Counts] | None) -> dict[str, int]:
-    """Return the number of runs of each outcome, runs with a contact split if counts are known."""
+def _counts(words: npt.NDArray[np.str_], contacts: tuple[Counts, ...] | None) -> dict[str, int]:
+    """Return the number of runs of each outcome, runs with a contact split if counts are known.
+
+    They are those of contacts moving, standing and, if it is known, moving toward somebody.
+    """
     whole = [word for word in OUTCOMES if word != "collided"]
     counts = {word.replace("_", " "): int(np.count_nonzero(words == word)) for word in whole}
     collided = words == "collided"
     if contacts is None:
         return counts | {"contact": int(np.count_nonzero(collided))}
     moving = collided & (contacts[0] > 0)
+    counts["contact, robot standing"] = int(np.count_nonzero(collided & ~moving))
+    if len(contacts) == 2:
+        return counts | {"contact, robot moving": int(np.count_nonzero(moving))}
+    toward = collided & (contacts[2] > 0)
     return counts | {
-        "contact, robot standing": int(np.count_nonzero(collided & ~moving)),
-        "contact, robot moving": int(np.count_nonzero(moving)),
+        "contact, robot moving away": int(np.count_nonzero(moving & ~toward)),
+        "contact, robot moving toward it": int(np.count_nonzero(toward)),
     }
 
 
@@ -259,7 +271,7 @@ def _draw_bars(axes: Axes, bars: Mapping[str, Mapping[str, int]]) -> None:
         share = number / np.array([sum(bar.values()) for bar in bars.values()])
         color = OUTCOME_COLORS[word]
         axes.barh(list(bars), share, BAR_HEIGHT, left=left, color=color, edgecolor="white", label=word, zorder=2.0)
-        dark = word in {"arrived", "contact", "contact, robot moving"}
+        dark = word in {"arrived", "contact", "contact, robot moving", "contact, robot moving toward it"}
         for row in np.flatnonzero(share >= LEAST_SHARE_WITH_TEXT):
             look: style.Properties = {
                 "ha": "center",

@@ -4,7 +4,7 @@ use crate::crowd::environments::history::History;
 use crate::crowd::environments::layout::seed_of;
 use crate::crowd::environments::observation::{Ranking, observe};
 use crate::crowd::environments::settings::{Action, Settings};
-use crate::crowd::metrics::RobotMetrics;
+use crate::crowd::metrics::{RobotMetrics, nearest_between};
 use crate::crowd::neighbors::grid::Period;
 use crate::crowd::people::OfPeople;
 use crate::crowd::simulation::{DecisionRoom, Simulation};
@@ -118,6 +118,9 @@ pub struct Environment {
     /// Distance from the goal before the step, and least gap in it, in m.
     distance: f64,
     clearance: f64,
+    /// Least gap to walls in the step, in m, and where the robot was at the last instant.
+    wall_gap: f64,
+    place: Vector,
     /// From the robot to the people at the last instant; NaN for who was absent.
     ways: OfPeople<Vector>,
 }
@@ -145,6 +148,8 @@ impl Environment {
             history: History::default(),
             distance: f64::NAN,
             clearance: f64::INFINITY,
+            wall_gap: f64::INFINITY,
+            place: Vector::zeros(),
             ways: OfPeople::new(),
         };
         environment.open(settings);
@@ -178,6 +183,7 @@ impl Environment {
         self.history.clear();
         self.note(settings);
         self.ways.clear();
+        self.place = self.simulation.robots()[0].state().position;
         self.look(settings);
     }
 
@@ -209,7 +215,7 @@ impl Environment {
 
     /// Tells the robot what to do in the next step.
     pub(super) fn begin(&mut self, settings: &Settings, action: [f64; 2]) {
-        self.clearance = f64::INFINITY;
+        (self.clearance, self.wall_gap) = (f64::INFINITY, f64::INFINITY);
         self.distance = self.to_goal(settings).norm();
         let request = self.request(settings, action);
         self.simulation.ask(0, request);
@@ -229,6 +235,7 @@ impl Environment {
     pub(super) fn account(&mut self, settings: &Settings) {
         let clearance = self.look(settings);
         self.clearance = self.clearance.min(clearance);
+        self.look_at_walls(settings);
         self.note(settings);
     }
 
@@ -293,15 +300,11 @@ impl Environment {
     /// How the episode stands at the end of a step.
     fn judged(&self, settings: &Settings, clearance: f64, distance: f64) -> State {
         let (simulation, world) = (&self.simulation, &settings.world);
-        let (setup, robot) = (&world.robots[0], &simulation.robots()[0]);
-        let place = robot.state().position;
-        let mut walls = world.walls.iter();
+        let setup = &world.robots[0];
         let touches = |gap: f64| gap < -TOUCH;
         if simulation.divergence().is_some() {
             State::Diverged
-        } else if touches(clearance)
-            || walls.any(|wall| touches(wall.clearance(place) - setup.radius()))
-        {
+        } else if touches(clearance) || touches(self.wall_gap) {
             State::Collided
         } else if distance <= setup.arrival_tolerance {
             State::Arrived
@@ -347,22 +350,24 @@ impl Environment {
         least
     }
 
+    /// Least gap to walls on the straight way since the last instant.
+    fn look_at_walls(&mut self, settings: &Settings) {
+        let world = &settings.world;
+        let place = self.simulation.robots()[0].state().position;
+        // Where the world repeats itself, the robot may have been put to the other side of it.
+        let from = place - world.period.wrap(place - self.place);
+        let radius = world.robots[0].radius();
+        for wall in &world.walls {
+            self.wall_gap = self.wall_gap.min(wall.gap_on_way(from, place, radius));
+        }
+        self.place = place;
+    }
+
     fn note(&mut self, settings: &Settings) {
         if settings.metrics {
             self.history.push(&self.simulation);
         }
     }
-}
-
-/// Least distance from zero to the points between two.
-fn nearest_between(from: Vector, to: Vector) -> f64 {
-    let along = to - from;
-    let squared = along.dot(&along);
-    if squared == 0.0 {
-        return to.norm();
-    }
-    let share = (-from.dot(&along) / squared).clamp(0.0, 1.0);
-    (from + along * share).norm()
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use numeric::order::sort_indices;
 
+use crate::crowd::walls::Wall;
 use crate::lanes::Vector2;
 
 use super::episode::Episode;
@@ -11,14 +12,15 @@ const ALIKE: f64 = 1e-9;
 /// Bodies whose centers are nearer than this have no direction between them, in m.
 const NOWHERE: f64 = 1e-9;
 
-/// A person who is touched at an instant.
+/// A person who is touched at an instant, or in the step that ends there.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Touch {
     pub person: usize,
     pub instant: usize,
 }
 
-/// Events up to the end; an event is a longest run of instants in which one person is touched.
+/// Events up to the end; an event is a longest run of instants in which one person is touched, or
+/// a step within which one is, on straight ways, and at neither end.
 pub(super) struct Contacts {
     pub robot_on_person: u32,
     pub person_on_robot: u32,
@@ -102,19 +104,28 @@ fn closing(episode: &Episode<'_>, (instant, end): (usize, usize), person: usize)
     [robot.dot(&toward).max(0.0), (-other.dot(&toward)).max(0.0)]
 }
 
-/// Number of contacts with walls, and least distance to one, in m.
+/// Number of contacts with walls, those within steps too, and least distance to one, in m.
 fn at_walls(episode: &Episode<'_>, end: usize) -> (u32, f64) {
     let (mut count, mut least, mut touched) = (0, f64::INFINITY, false);
     if episode.walls.is_empty() {
         return (count, least);
     }
+    let mut before = episode.robot[0];
     for place in &episode.robot[..=end] {
-        let distances = episode.walls.iter().map(|wall| wall.clearance(*place));
-        let gap = distances.fold(f64::INFINITY, f64::min) - episode.rules.robot_radius;
+        // Where the world repeats itself, the robot may have been put to the other side of it.
+        let from = place - episode.rules.period.wrap(place - before);
+        let radius = episode.rules.robot_radius;
+        let gaps = episode.walls.iter();
+        let gap = gaps.fold(f64::INFINITY, |least, wall| {
+            least.min(wall.gap_on_way(from, *place, radius))
+        });
         let touches = gap < 0.0;
         count += u32::from(touches && !touched);
-        touched = touches;
+        // What was touched on the way only is left again.
+        let clear = |wall: &Wall| wall.clearance(*place) >= radius;
+        touched = touches && !episode.walls.iter().all(clear);
         least = least.min(gap);
+        before = *place;
     }
     (count, least)
 }

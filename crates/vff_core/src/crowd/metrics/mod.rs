@@ -21,6 +21,7 @@ pub use whole::{Whole, evaluate_world};
 use contacts::Contacts;
 use effect::Effect;
 use proximity::Proximity;
+pub(crate) use proximity::nearest_between;
 use travel::Travel;
 
 use crate::error::Result;

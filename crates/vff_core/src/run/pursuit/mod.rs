@@ -22,9 +22,10 @@ use crate::run::as_built::{AsBuilt, clock_of, robot_under};
 use crate::run::episode::{Episode, Parts};
 use crate::run::navigation::Known;
 use crate::run::options::Clock;
-use crate::run::outcome::CONTACT_SPEED;
+use crate::run::outcome::{CONTACT_SPEED, ContactCounts, DECIDED_OVERLAP};
 use crate::run::scene::bodies_at;
 use crate::run::walls::Maps;
+use crate::run::way::Way;
 use crate::sensing::measurement::Noise;
 use crate::world::geometry::Body;
 use crate::world::motion::BodyState;
@@ -33,13 +34,15 @@ use crate::world::scenario::Scenario;
 /// What came of an episode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Encounter {
-    /// Least distance of the surfaces in m while the robot moved toward somebody, or touched a map;
-    /// infinite if it never did.
+    /// Least distance of the surfaces in m while the robot moved toward somebody, up to the first overlap with them
+    /// by [`DECIDED_OVERLAP`], or touched a map; infinite if it never did.
     pub least_toward: f64,
     /// The same at any speed, however slow: the theorem of the shield holds there, too.
     pub least_ahead: f64,
     /// Least distance of the surfaces in m, from maps too.
     pub least: f64,
+    /// Numbers of first contacts: those at fault are told by [`Self::least_toward`].
+    pub contacts: ContactCounts,
     /// When the robot arrived, in s; NaN if it did not.
     pub arrival_time: f64,
     /// Least distance from the goal in m.
@@ -51,7 +54,7 @@ pub struct Encounter {
 }
 
 impl Encounter {
-    /// Whether the robot moved toward somebody whom it touched.
+    /// Whether the robot moved toward somebody whom it touched, before they overlapped by [`DECIDED_OVERLAP`].
     #[must_use]
     pub fn at_fault(&self) -> bool {
         self.least_toward <= 0.0
@@ -139,6 +142,16 @@ fn whole_of(steps: f64) -> usize {
     (steps + 1e-9).floor() as usize
 }
 
+/// What has come of an obstacle.
+#[derive(Clone, Copy, Default)]
+struct Followed {
+    /// From its center to the robot at the last motion step, in m, if it was there.
+    before: Option<Vector2<f64>>,
+    touched: bool,
+    /// Whether they have overlapped by [`DECIDED_OVERLAP`].
+    decided: bool,
+}
+
 /// What an encounter consists of: a robot under a law, and somebody who answers to it.
 struct PursuitParts<'a> {
     scenario: &'a Scenario,
@@ -154,6 +167,7 @@ struct PursuitParts<'a> {
     /// Obstacles as the law knows them.
     seen: Vec<Body>,
     reading: Reading,
+    followed: Vec<Followed>,
     found: Encounter,
     rows: Option<&'a mut Pursued>,
     /// Present instant in s.
@@ -198,10 +212,12 @@ pub fn pursue(
         known: Known::exactly(reading.robot),
         seen: Vec::new(),
         reading,
+        followed: vec![Followed::default(); scenario.obstacles.len()],
         found: Encounter {
             least_toward: f64::INFINITY,
             least_ahead: f64::INFINITY,
             least: f64::INFINITY,
+            contacts: ContactCounts::default(),
             arrival_time: f64::NAN,
             to_go: f64::INFINITY,
             top_speed: 0.0,
@@ -237,39 +253,47 @@ impl PursuitParts<'_> {
             .velocity(self.time, self.place(), &self.reading.robot)
     }
 
-    /// Takes down the distance from the maps, each contact with which is the robot's own fault.
-    fn look_at_walls(&mut self, place: Vector2<f64>) {
+    /// Takes down the distance from the maps on the straight way from a place, each contact with which is the
+    /// robot's own fault.
+    fn look_at_walls(&mut self, from: Vector2<f64>) {
         if self.maps.is_empty() {
             return;
         }
-        let (radius, found) = (self.scenario.robot.radius, &mut self.found);
+        let (place, radius) = (self.reading.robot.position, self.scenario.robot.radius);
+        let found = &mut self.found;
         let most = found.least.max(0.0) + radius + 1.0;
-        let off = self.maps.clearance_up_to(place, most) - radius;
+        let mut off = self.maps.clearance_up_to(place, most) - radius;
+        if off > 0.0 && off <= (place - from).norm() {
+            let passed = self.maps.segment_clearance(from, place) - radius;
+            if passed < 0.0 {
+                off = passed;
+            }
+        }
         found.least = found.least.min(off);
         if off <= 0.0 {
             found.least_toward = found.least_toward.min(off);
+            if found.contacts.walls == 0 {
+                found.contacts.walls = 1;
+                // A wall stands: a robot that moves comes toward it.
+                let moves = self.reading.robot.velocity.norm() > CONTACT_SPEED;
+                found.contacts.toward += u32::from(moves);
+                found.contacts.standing += u32::from(!moves);
+            }
         }
     }
 
-    /// Takes down distances and speeds of the present motion step.
-    fn look(&mut self) {
+    /// Takes down distances and speeds of the motion step from a place to the present one.
+    fn look(&mut self, from: Vector2<f64>) {
         let robot = self.reading.robot;
         let bodies = self.bodies();
-        let moves = robot.velocity.norm() > CONTACT_SPEED;
-        self.look_at_walls(robot.position);
-        for (body, placed) in bodies.iter().zip(&self.scenario.obstacles) {
-            if !body.state.present {
-                continue;
-            }
-            let offset = body.offset(robot.position);
-            let clearance = offset.distance_squared.sqrt() - placed.contact_distance;
-            self.found.least = self.found.least.min(clearance);
-            // Rounding of a robot that rests moves it nowhere.
-            if robot.velocity.dot(&offset.vector) < -1e-9 {
-                self.found.least_ahead = self.found.least_ahead.min(clearance);
-                if moves {
-                    self.found.least_toward = self.found.least_toward.min(clearance);
-                }
+        self.look_at_walls(from);
+        for (index, body) in bodies.iter().enumerate() {
+            let seen = robot.position - Vector2::from(body.state.position);
+            let before = self.followed[index].before.replace(seen);
+            if body.state.present {
+                self.look_at(index, body, before.unwrap_or(seen));
+            } else {
+                self.followed[index].before = None;
             }
         }
         self.found.top_speed = self.found.top_speed.max(robot.velocity.norm());
@@ -277,6 +301,54 @@ impl PursuitParts<'_> {
         self.found.to_go = self.found.to_go.min(to_go);
         if to_go <= self.scenario.rules.arrival_tolerance && self.found.arrival_time.is_nan() {
             self.found.arrival_time = self.time;
+        }
+    }
+
+    /// Takes down what comes of an obstacle, from whose center the robot was seen as given before.
+    fn look_at(&mut self, index: usize, body: &Body, before: Vector2<f64>) {
+        let robot = self.reading.robot;
+        let reach = self.scenario.obstacles[index].contact_distance;
+        let offset = body.offset(robot.position);
+        let clearance = offset.distance_squared.sqrt() - reach;
+        self.found.least = self.found.least.min(clearance);
+        // Rounding of a robot that rests moves it nowhere.
+        let toward = |offset: Vector2<f64>| robot.velocity.dot(&offset) < -1e-9;
+        let moves = robot.velocity.norm() > CONTACT_SPEED;
+        let way = Way {
+            shape: body.shape,
+            from: before,
+            to: robot.position - Vector2::from(body.state.position),
+        };
+        let met = way.contact(reach, clearance <= 0.0);
+        if let Some(met) = met.as_ref().filter(|_| clearance > 0.0) {
+            self.found.least = self.found.least.min(met.least - reach);
+        }
+        let followed = &mut self.followed[index];
+        if followed.decided {
+            return;
+        }
+        let (mut gap, mut ahead) = (clearance, toward(offset.vector));
+        let mut first = ahead;
+        if let Some(met) = met.as_ref().filter(|met| clearance > 0.0 || met.decided) {
+            gap = (met.least - reach).max(-DECIDED_OVERLAP);
+            let ends = met.shares.map(|share| toward(way.offset(share)));
+            (first, ahead) = (ends[0], ends[0] || ends[1]);
+            followed.decided = met.decided;
+        }
+        if met.is_some() && !followed.touched {
+            followed.touched = true;
+            let counts = &mut self.found.contacts;
+            *match (moves, first) {
+                (true, true) => &mut counts.toward,
+                (true, false) => &mut counts.away,
+                (false, _) => &mut counts.standing,
+            } += 1;
+        }
+        if ahead {
+            self.found.least_ahead = self.found.least_ahead.min(gap);
+            if moves {
+                self.found.least_toward = self.found.least_toward.min(gap);
+            }
         }
     }
 
@@ -319,10 +391,11 @@ impl Parts for PursuitParts<'_> {
 
     fn travel(&mut self, clock: &Clock, step: usize) {
         let next = self.place() + self.chased() * clock.step;
+        let from = self.reading.robot.position;
         self.reading = self.robot.step();
         self.tracked.places.push(next);
         self.time = clock.time(step + 1);
-        self.look();
+        self.look(from);
     }
 
     fn look_around(&mut self, clock: &Clock, step: usize) {

@@ -1,9 +1,9 @@
 //! What is counted of a motion step: arrival, contacts, least distances, energy, path.
 
+use super::touch::Since;
 use super::{BOUND_MARGIN, Runs};
 use crate::lanes::{Mask, Planar, Real, Truth, Vector2, Wide};
 use crate::run::options::Clock;
-use crate::run::outcome::CONTACT_SPEED;
 use crate::run::scene::{World, body_at};
 use crate::world::geometry::Body;
 
@@ -34,36 +34,41 @@ impl<W: World<R>, R: Real> Runs<W, R> {
         let [first, second, third] = currents;
         let squared = first * first + second * second + third * third;
         let way = self.speed * R::splat(self.clock.step);
+        let since = Since {
+            place: before,
+            time: time.wide() - R::splat(self.clock.step),
+        };
         if self.near_goal {
             let to_goal = self.goal - self.position;
             let tolerance = self.scenario.common().rules.arrival_tolerance;
             let near = to_goal.dot(&to_goal).le(R::splat(tolerance * tolerance));
             let arrived = self.running & near;
             if arrived.any() {
-                self.arrive(before, time, arrived, squared, way);
+                self.arrive(&since, time, arrived, squared, way);
             }
         }
         self.squared_current += R::select(self.running, squared, R::zero());
         self.path += R::select(self.running, way, R::zero());
         for (slot, body) in bodies.iter().enumerate() {
             if self.watched[slot] {
-                self.watch(self.obstacle(slot), body, time, self.running);
+                self.watch(self.obstacle(slot), body, time, self.running, Some(&since));
             }
         }
         if self.walls.is_some() {
-            self.watch_walls(time.wide(), self.running);
+            self.watch_walls(Some(&since), time.wide(), self.running);
         }
     }
 
     /// Least distance and contact of some lanes with the maps.
     #[inline(never)]
-    pub(super) fn watch_walls(&mut self, time: R, lanes: R::Mask) {
+    pub(super) fn watch_walls(&mut self, since: Option<&Since<R>>, time: R, lanes: R::Mask) {
         if let Some(walls) = &mut self.walls {
-            self.touched |= walls.watch(self.position, self.speed, time, lanes);
+            let since = since.map(|since| (since.place, since.time));
+            self.touched |= walls.watch((self.position, time), since, self.speed, lanes);
         }
     }
 
-    /// Least distance and contact of some lanes with an obstacle.
+    /// Least distance and contact of some lanes with an obstacle; `since`: the start of the motion step.
     #[inline(always)]
     pub(super) fn watch<B: Wide<R>>(
         &mut self,
@@ -71,6 +76,7 @@ impl<W: World<R>, R: Real> Runs<W, R> {
         body: &Body<B>,
         time: B,
         lanes: R::Mask,
+        since: Option<&Since<R>>,
     ) {
         let here = B::wide_mask(body.state.present);
         if !here.any() {
@@ -81,10 +87,9 @@ impl<W: World<R>, R: Real> Runs<W, R> {
         let squared = offset.distance_squared;
         let least = &mut self.min_distance_squared[index];
         *least = R::select(lanes, squared, R::splat(f64::INFINITY)).min(*least);
-        let reach = self.reach[index];
-        let touching = lanes & squared.le((reach * reach).wide());
-        if touching.any() {
-            self.touch(index, time.wide(), touching, offset.vector);
+        let near = lanes & squared.le(self.alert[index].wide());
+        if near.any() {
+            self.meet(index, (body, time.wide()), near, since);
         }
     }
 
@@ -121,36 +126,13 @@ impl<W: World<R>, R: Real> Runs<W, R> {
         }
     }
 
-    #[cold]
-    fn touch(&mut self, index: usize, time: R, touching: R::Mask, offset: Vector2<R>) {
-        let toward = self.velocity.dot(&offset).lt(R::zero());
-        let moving = R::splat(CONTACT_SPEED).lt(self.velocity.dot(&self.velocity).sqrt());
-        let fault = touching & toward & moving;
-        self.at_fault[index] = R::select(fault, R::splat(1.0), self.at_fault[index]);
-        for lane in 0..R::WIDTH {
-            if touching.lane(lane) && self.contact_time[index].lane(lane).is_nan() {
-                let speed = self.speed.lane(lane);
-                self.contact_time[index] = self.contact_time[index].replace(lane, time.lane(lane));
-                self.contact_speed[index] = self.contact_speed[index].replace(lane, speed);
-                self.touched = true;
-            }
-        }
-    }
-
     /// Ends the runs of lanes that entered the circle around the goal in this step, at the
     /// instant of entry, linear inside the step.
     #[cold]
     #[inline(never)]
-    fn arrive(
-        &mut self,
-        before: Vector2<R>,
-        time: W::Number,
-        arrived: R::Mask,
-        squared: R,
-        way: R,
-    ) {
+    fn arrive(&mut self, since: &Since<R>, time: W::Number, arrived: R::Mask, squared: R, way: R) {
         let tolerance = self.scenario.common().rules.arrival_tolerance;
-        let after = self.position;
+        let (before, after) = (since.place, self.position);
         let length = |vector: Vector2<R>| vector.dot(&vector).sqrt();
         let (from, to) = (length(self.goal - before), length(self.goal - after));
         let share = (from - R::splat(tolerance)) / (from - to);
@@ -168,9 +150,10 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             let only = others.fold(R::Mask::splat(true), Mask::without);
             let world = self.scenario.clone();
             for (index, placed) in world.of_lane(lane).obstacles.iter().enumerate() {
-                self.watch(index, &body_at(placed, instant, &mut 0), instant, only);
+                let body = body_at(placed, instant, &mut 0);
+                self.watch(index, &body, instant, only, Some(since));
             }
-            self.watch_walls(R::splat(instant), only);
+            self.watch_walls(Some(since), R::splat(instant), only);
         }
         self.running = self.running & !arrived;
     }

@@ -81,7 +81,7 @@ impl Dormant {
         let mut scene = Scene::of(scenario, Vec::new(), (steps, false));
         for index in first.near {
             let body = body_at(&scenario.obstacles[index], 0.0, &mut 0);
-            runs.watch(index, &body, 0.0, runs.running);
+            runs.watch(index, &body, 0.0, runs.running, None);
             let distance = runs.min_distance_squared[index].lane(0).sqrt();
             if !dormant.sleeps(index, 0, distance) {
                 dormant.since[index] = AWAKE;

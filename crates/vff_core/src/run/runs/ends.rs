@@ -65,8 +65,10 @@ impl<W: World<R>, R: Real> Runs<W, R> {
     #[inline(never)]
     fn stop_touched(&mut self, time: W::Number) {
         let mut touched = R::Mask::none();
-        for contact in &self.contact_time {
-            touched = touched | contact.le(time.wide());
+        for (slot, touch) in self.touches.iter().enumerate() {
+            if touch.first.is_some() {
+                touched.set(slot % R::WIDTH);
+            }
         }
         if let Some(walls) = &self.walls {
             touched = touched | walls.contact_time.le(time.wide());

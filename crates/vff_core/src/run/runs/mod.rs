@@ -9,6 +9,7 @@ mod means;
 mod path;
 mod relevant;
 mod totals;
+mod touch;
 
 pub(crate) use dormant::Dormant;
 pub(crate) use relevant::Relevant;
@@ -22,6 +23,7 @@ use crate::run::walls::{Maps, Walls};
 use crate::sensing::sampled::Past;
 use crate::world::geometry::Body;
 use crate::world::scenario::{PlacedObstacle, Scenario};
+use touch::{Touch, alert_squared};
 
 /// Room for rounding where a distance bound spares work, in m.
 const BOUND_MARGIN: f64 = 1e-6;
@@ -65,6 +67,8 @@ pub(crate) struct Runs<W: World<R>, R: Real> {
     /// m/s, infinite if there is none.
     reach: Vec<W::Number>,
     speed_bound: Vec<W::Number>,
+    /// Square of the distance in m beyond which they do not touch in the motion step before, in m^2.
+    alert: Vec<W::Number>,
     /// Instant from which no obstacle moves any more, in s.
     all_stand_from: f64,
     /// Last sample at which each robot was not at rest, in s.
@@ -76,10 +80,8 @@ pub(crate) struct Runs<W: World<R>, R: Real> {
     touched: bool,
     force_evaluations: R,
     min_distance_squared: Vec<R>,
-    contact_time: Vec<R>,
-    contact_speed: Vec<R>,
-    /// One where the robot moved toward the obstacle at some instant of a contact.
-    at_fault: Vec<R>,
+    /// Contacts with each obstacle, the lanes fastest.
+    touches: Vec<Touch>,
     /// What is counted of walls, where there are any.
     walls: Option<Box<Walls<R>>>,
 }
@@ -94,7 +96,7 @@ impl<W: World<R>, R: Real> Runs<W, R> {
     ) -> Self {
         let mut runs = Self::at_start(scenario, clock, bodies.len(), maps);
         for (index, body) in bodies.enumerate() {
-            runs.watch(index, &body, W::Number::zero(), runs.running);
+            runs.watch(index, &body, W::Number::zero(), runs.running, None);
         }
         runs
     }
@@ -105,6 +107,10 @@ impl<W: World<R>, R: Real> Runs<W, R> {
         let velocity = Vector2::zeros();
         let wheels = WheelModel::new(&scenario.robot, scenario.rules.heading, clock.step);
         let unset = R::splat(f64::NAN);
+        let (reach, speed_bound) = (world.reaches(count), world.speed_bounds(count));
+        let bounds = reach.iter().zip(&speed_bound);
+        let own = scenario.robot.max_speed;
+        let alert = bounds.map(|(reach, bound)| alert_squared(*reach, *bound, own, clock.step));
         let mut runs = Self {
             clock,
             position: Vector2::splat(scenario.start),
@@ -129,8 +135,9 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             near_goal: true,
             watched: vec![true; count],
             awake: None,
-            reach: world.reaches(count),
-            speed_bound: world.speed_bounds(count),
+            alert: alert.collect(),
+            reach,
+            speed_bound,
             all_stand_from: world.stands_from(),
             moved: R::zero(),
             end_time: unset,
@@ -139,13 +146,11 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             touched: false,
             force_evaluations: R::zero(),
             min_distance_squared: vec![R::splat(f64::INFINITY); count],
-            contact_time: vec![unset; count],
-            contact_speed: vec![unset; count],
-            at_fault: vec![R::zero(); count],
+            touches: vec![Touch::default(); count * R::WIDTH],
             walls: Walls::new(maps, scenario.robot.radius).map(Box::new),
             scenario: world,
         };
-        runs.watch_walls(R::zero(), runs.running);
+        runs.watch_walls(None, R::zero(), runs.running);
         runs.remember();
         runs
     }
@@ -179,10 +184,10 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             let (reach, bound) = reach_and_bound(scenario.obstacles.get(index));
             self.reach[index].set(lane, reach);
             self.speed_bound[index].set(lane, bound);
+            let alert = alert_squared(reach, bound, scenario.robot.max_speed, self.clock.step);
+            self.alert[index].set(lane, alert);
+            self.touches[index * R::WIDTH + lane] = Touch::default();
             set(&mut self.min_distance_squared[index], f64::INFINITY);
-            set(&mut self.contact_time[index], f64::NAN);
-            set(&mut self.contact_speed[index], f64::NAN);
-            set(&mut self.at_fault[index], 0.0);
         }
     }
 
@@ -193,7 +198,7 @@ impl<W: World<R>, R: Real> Runs<W, R> {
         (self.near_goal, self.scenario) = (true, world);
         self.watched.fill(true);
         for (index, body) in bodies.iter().enumerate() {
-            self.watch(index, body, W::Number::zero(), lanes);
+            self.watch(index, body, W::Number::zero(), lanes, None);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::Runs;
 use crate::lanes::{Real, Truth};
-use crate::run::outcome::{CONTACT_SPEED, Contact, Outcome, RunSummary, RunTotals};
+use crate::run::outcome::{CONTACT_SPEED, Contact, ContactCounts, Outcome, RunSummary, RunTotals};
 use crate::run::record::Recorder;
 use crate::run::scene::World;
 
@@ -14,23 +14,25 @@ impl<W: World<R>, R: Real> Runs<W, R> {
 
     /// First contact with an obstacle.
     fn contact(&self, obstacle: usize, lane: usize) -> Option<Contact> {
-        let time = self.contact_time[obstacle].lane(lane);
-        let speed = self.contact_speed[obstacle].lane(lane);
-        let at_fault = self.at_fault[obstacle].lane(lane) > 0.0;
+        self.touches[obstacle * R::WIDTH + lane].first
+    }
+
+    /// Whether an obstacle appeared in the scene where the robot was.
+    fn apart(&self, obstacle: usize, lane: usize) -> bool {
+        self.touches[obstacle * R::WIDTH + lane].apart
+    }
+
+    /// First contact with a map: it stands, so that a robot that moves comes toward it, and is always at fault.
+    fn map_contact(&self, lane: usize) -> Option<Contact> {
+        let walls = self.walls.as_ref()?;
+        let (time, speed) = (
+            walls.contact_time.lane(lane),
+            walls.contact_speed.lane(lane),
+        );
         (!time.is_nan()).then_some(Contact {
             time,
             speed,
-            at_fault,
-        })
-    }
-
-    /// First contact with a map; the robot is always at fault.
-    fn map_contact(&self, lane: usize) -> Option<Contact> {
-        let walls = self.walls.as_ref()?;
-        let time = walls.contact_time.lane(lane);
-        (!time.is_nan()).then_some(Contact {
-            time,
-            speed: walls.contact_speed.lane(lane),
+            toward: speed > CONTACT_SPEED,
             at_fault: true,
         })
     }
@@ -43,19 +45,13 @@ impl<W: World<R>, R: Real> Runs<W, R> {
 
     /// What is left of the run of a lane, whatever the number of obstacles.
     pub fn totals(&self, lane: usize, recorder: &impl Recorder<R>) -> RunTotals {
-        let (mut contacts, mut at_fault) = ([0, 0], 0);
-        for obstacle in 0..self.scenario.of_lane(lane).obstacle_count() {
-            if let Some(touch) = self.contact(obstacle, lane) {
-                contacts[usize::from(touch.speed <= CONTACT_SPEED)] += 1;
-                at_fault += u32::from(touch.at_fault);
-            }
-        }
-        if let Some(touch) = self.map_contact(lane) {
-            contacts[usize::from(touch.speed <= CONTACT_SPEED)] += 1;
-            at_fault += 1;
-        }
+        let obstacles = 0..self.scenario.of_lane(lane).obstacle_count();
+        let touched = obstacles.clone();
+        let touched = touched.filter_map(|obstacle| self.contact(obstacle, lane));
+        let apart = obstacles.map(|obstacle| self.apart(obstacle, lane));
+        let contacts = ContactCounts::of(touched, self.map_contact(lane), apart);
         let arrival_time = self.arrival_time.lane(lane);
-        let outcome = if contacts != [0, 0] {
+        let outcome = if contacts.any() {
             Outcome::Collided
         } else if !arrival_time.is_nan() {
             Outcome::Arrived
@@ -71,7 +67,6 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             energy: self.squared_current.lane(lane) * self.wheels.loss_per_square(),
             path_length: self.path.lane(lane),
             contacts,
-            at_fault,
             map_clearance: self.map_clearance(lane),
             descent_share: recorder.descent_share(lane),
             force_evaluations: count_of(self.force_evaluations.lane(lane)),
@@ -91,7 +86,10 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             energy: totals.energy,
             path_length: totals.path_length,
             min_distance: obstacles.clone().map(distance).collect(),
-            contact: obstacles.map(contact).collect(),
+            contact: obstacles.clone().map(contact).collect(),
+            apart: obstacles
+                .map(|obstacle| self.apart(obstacle, lane))
+                .collect(),
             map_contact: self.map_contact(lane),
             map_clearance: totals.map_clearance,
             descent_share: totals.descent_share,

@@ -19,6 +19,9 @@ use crate::world::frame::Frame;
 use crate::world::shape::{PlacedShape, SLACK};
 use numeric::random::Stream;
 
+/// A robot that passes a disc within a step touches it if they overlap by more, in m.
+const PASSED: f64 = 1e-9;
+
 /// How the skirt senses and decides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SkirtOptions {
@@ -249,7 +252,7 @@ where
         ended: false,
         watch,
     };
-    parts.account();
+    parts.account(Vector2::zeros());
     Episode::starting(parts, clock)
 }
 
@@ -297,9 +300,9 @@ impl<D, S: Deref<Target = DiscScene>, W> SkirtParts<D, S, W> {
         }
     }
 
-    /// Accounts for where the robot is.
+    /// Accounts for where the robot is, after a straight way from another place.
     #[inline]
-    fn account(&mut self) {
+    fn account(&mut self, from: Vector2<f64>) {
         let (mut clearance, mut nearest) = (f64::INFINITY, 0);
         for (index, disc) in self.scene.discs.iter().enumerate() {
             let to = disc.center - self.robot.frame.position;
@@ -315,11 +318,34 @@ impl<D, S: Deref<Target = DiscScene>, W> SkirtParts<D, S, W> {
                 (clearance, nearest) = (gap, index);
             }
         }
+        let way = self.robot.frame.position - from;
+        // No point of the way is farther from its end than its length.
+        if clearance > 0.0 && clearance * clearance < way.dot(&way) {
+            (clearance, nearest) = self.between(from, (clearance, nearest));
+        }
         self.clearance = clearance;
         if clearance < self.found.min_clearance {
             self.found.min_clearance = clearance;
             self.found.nearest = nearest;
         }
+    }
+}
+
+impl<D, S: Deref<Target = DiscScene>, W> SkirtParts<D, S, W> {
+    /// Clearance in m from the disc that is nearest on the straight way from a place, and that disc, if it is touched
+    /// there; else those at the end of the way.
+    #[cold]
+    fn between(&self, from: Vector2<f64>, at_end: (f64, usize)) -> (f64, usize) {
+        let discs = self.scene.discs.iter().enumerate();
+        let gaps = discs.map(|(index, disc)| {
+            let distance = disc.distance_of_segment(from, self.robot.frame.position);
+            (distance - self.chassis_radius, index)
+        });
+        let least = gaps.fold(
+            at_end,
+            |least, each| if each.0 < least.0 { each } else { least },
+        );
+        if least.0 < -PASSED { least } else { at_end }
     }
 }
 
@@ -356,6 +382,7 @@ where
 
     #[inline]
     fn travel(&mut self, clock: &Clock, step: usize) {
+        let from = self.robot.frame.position;
         self.robot = self.drive.step();
         let time = clock.time(step + 1);
         self.watch.moment(&Moment {
@@ -366,7 +393,7 @@ where
             readings: self.sonar.readings(),
             action: self.action,
         });
-        self.account();
+        self.account(from);
         if self.clearance <= 0.0 {
             self.found.contact_time = Some(time);
             self.ended = true;
