@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np  # noqa: F401  # with the package, not inside the native module: Ctrl-C while it is read is an interrupt
 
+from hrsafety._calls import suggest
 from hrsafety._words import meant
 
 __all__ = ["names_of"]
@@ -44,7 +45,9 @@ def names_of(
 
     def find(name: str) -> object:
         if name in where:
-            value: object = getattr(importlib.import_module(where[name]), name)
+            found = {name: getattr(importlib.import_module(where[name]), name)}
+            suggest(found, found)
+            value: object = found[name]
         elif name in public:
             value = importlib.import_module(f"{package}.{name}")
         else:

@@ -10,6 +10,8 @@ import dataclasses
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from hrsafety._calls import suggesting
+
 __all__ = ["dataclass", "generates"]
 
 Kind = TypeVar("Kind", bound=type)
@@ -89,6 +91,8 @@ class _Declared:
         copy = type(self.kind)(self.kind.__name__, self.kind.__bases__, self._space())
         copy.__qualname__ = self.kind.__qualname__
         made = dataclasses.dataclass(**options)(copy).__dict__[name]
+        if name == "__init__":
+            made = suggesting(made)
         if name == "__dataclass_params__":
             for each, value in {"init": True, "repr": True, "eq": True, **self.options}.items():
                 if hasattr(made, each):

@@ -1,5 +1,6 @@
 """Ready scenarios: published configurations, files, random crowds, recorded people, worlds of people that react."""
 
+from hrsafety._calls import suggest
 from hrsafety.scenarios.circles import antipodal, circle_crossing
 from hrsafety.scenarios.configurations import CONFIGURATIONS, configuration
 from hrsafety.scenarios.crowds import random_crowd, random_crowd_batch
@@ -28,3 +29,5 @@ __all__ = [
     "random_traffic_batch",
     "with_recording",
 ]
+
+suggest(__all__, globals())

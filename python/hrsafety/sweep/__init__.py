@@ -6,6 +6,7 @@ same call resumes after a stop. Sampled designs need SciPy, data frames Polars, 
 tables xarray (extra ``sweep``), clusters dask.distributed (extra ``distributed``).
 """
 
+from hrsafety._calls import suggest
 from hrsafety.sweep.axes import Axis, Column
 from hrsafety.sweep.designs import Design, Grid
 from hrsafety.sweep.estimates import SweepEstimate, estimate
@@ -39,3 +40,5 @@ __all__ = [
     "open",
     "run",
 ]
+
+suggest(__all__, globals())

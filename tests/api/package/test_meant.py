@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import inspect
+import pickle
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -13,6 +16,37 @@ from hrsafety.cli import main
 from hrsafety.errors import InvalidParameterError
 
 SCENE = scenarios.configuration("c1")
+
+
+@pytest.mark.parametrize(
+    ("call", "meant"),
+    [
+        (lambda: nav.simulate(SCENE, nav.Masoud(), stp=0.1), "step"),
+        (lambda: nav.compare([SCENE], nav.Masoud(), sedes=3), "seeds"),
+        (lambda: nav.Scenario(strat=(0, 0), goal=(1, 1)), "start"),
+        (lambda: nav.VirtualForceField(atractive_gain=3.0), "attractive_gain"),
+        (lambda: nav.Human(start=(0, 0), velocty=(1, 0)), "velocity"),
+        (lambda: nav.metrics.falsify(SCENE, nav.Masoud(), person_sped=1.0), "person_speed"),
+        (lambda: scenarios.random_traffic(3, sead=2), "seed"),
+        (lambda: sweep.NavigationStudy(scenarios=SCENE, lav=3), "law"),
+        (lambda: benchmark("s4", case=3), "cases"),
+    ],
+)
+def test_an_unknown_keyword_is_answered_with_the_nearest(call: Callable[[], object], meant: str) -> None:
+    with pytest.raises(TypeError, match=f'got an unexpected keyword argument .*; did you mean "{meant}"'):
+        call()
+
+
+def test_a_keyword_error_of_somebody_else_and_one_without_a_near_word_stay_as_they_are() -> None:
+    def law(situation: nav.Situation) -> tuple[float, float]:
+        return law(situation, stp=1)  # type: ignore[call-arg]  # on purpose
+
+    with pytest.raises(TypeError, match=r"law\(\) got an unexpected keyword argument 'stp'\n"):
+        nav.simulate(SCENE, law)
+    with pytest.raises(TypeError, match=r"'qqq'$"):
+        nav.simulate(SCENE, nav.Masoud(), qqq=1)
+    assert pickle.loads(pickle.dumps(nav.simulate)) is nav.simulate
+    assert inspect.signature(nav.simulate).parameters["step"].default == 0.01
 
 
 @pytest.mark.parametrize(

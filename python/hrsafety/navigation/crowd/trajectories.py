@@ -9,8 +9,8 @@ import numpy as np
 from hrsafety._arguments import Array
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
-from hrsafety.navigation.crowd.doubts import of_people
 from hrsafety.navigation.crowd.contacts import contacts_of
+from hrsafety.navigation.crowd.doubts import of_people
 from hrsafety.navigation.crowd.episodes import episodes_in, outcome_of
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.metrics.scores import table_of
