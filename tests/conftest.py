@@ -59,6 +59,14 @@ if _GONE:
     raise pytest.UsageError(f"SLOW of tests/conftest.py names no files: {', '.join(_GONE)}")
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    """Let results be made of implausible numbers: what tests ask of them is that they carry doubts.
+
+    That the doubts are issued, too, is asked with ``pytest.warns``.
+    """
+    config.addinivalue_line("filterwarnings", "ignore::hrsafety.plausibility.UnitWarning")
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the option of the quick run."""
     parser.addoption("--fast", action="store_true", help="leave out the files that take more than 7 s")

@@ -8,13 +8,17 @@ and picture shows. Nothing is refused here and nothing is changed.
 
 from __future__ import annotations
 
+import functools
+import sys
+import threading
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
+from hrsafety._calls import suggesting
 from hrsafety._records import dataclass
 
 __all__ = [
@@ -23,8 +27,10 @@ __all__ = [
     "ImplausibleWarning",
     "Range",
     "ResultWarning",
+    "UnitWarning",
     "gathered",
     "implausible",
+    "telling",
     "unsafe_doubts",
     "warn_implausible",
 ]
@@ -88,11 +94,81 @@ def unsafe_doubts(warnings: Iterable[ResultWarning]) -> tuple[ResultWarning, ...
 
 
 class HrsafetyWarning(UserWarning):
-    """Category of every warning that the package issues through `warnings.warn`."""
+    """Category of every warning that the package issues through `warnings.warn`.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> from hrsafety.plausibility import HrsafetyWarning
+    >>> warnings.filterwarnings("ignore", category=HrsafetyWarning)  # a script that looks at `.warnings` itself
+    """
+
+
+class UnitWarning(HrsafetyWarning):
+    """A number that is hardly meant in its unit, of which the result of the call carries a `ResultWarning`, too."""
 
 
 class ImplausibleWarning(HrsafetyWarning):
     """A number that is hardly meant in its unit, given to a function whose answer is a plain number."""
+
+
+F = TypeVar("F", bound=Callable[..., Any])
+_PACKAGE = __name__.partition(".")[0]
+
+
+def telling(find: Callable[..., Iterable[ResultWarning]] | None = None) -> Callable[[F], F]:
+    """Make a function issue doubts about units as `UnitWarning`, at the line that called it.
+
+    Once for each call of a user: not for calls within the package, whose own caller is told, and not in threads and
+    processes of workers. The result carries the same doubts and others.
+
+    Parameters
+    ----------
+    find : callable or None
+        Returns the doubts from the arguments of the call; ``None``: those of the result.
+
+    Returns
+    -------
+    callable
+        The decorator.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> from hrsafety import impact
+    >>> program = "impact.metrics(impact.MANIPULATOR_1, impact.FOAM_1, impact.Head.minimum(), closing_speed=1250.0)"
+    >>> with warnings.catch_warnings(record=True) as caught:
+    ...     warnings.simplefilter("always")
+    ...     _ = eval(program, {"impact": impact})
+    >>> [each.category.__name__ for each in caught]
+    ['UnitWarning']
+    """
+
+    def decorate(function: F) -> F:
+        asked = suggesting(function)
+
+        @functools.wraps(function)
+        def call(*args: Any, **kwargs: Any) -> Any:
+            result = asked(*args, **kwargs)
+            found = getattr(result, "warnings", ()) if find is None else find
+            if found and _is_user(sys._getframe(1).f_globals.get("__name__", "")):
+                if find is not None:
+                    found = find(*args, **kwargs)
+                for message in dict.fromkeys(each.message for each in found if each.code == "implausible"):
+                    warnings.warn(message, UnitWarning, stacklevel=2)
+            return result
+
+        return call  # type: ignore[return-value]  # the same arguments and result
+
+    return decorate
+
+
+def _is_user(module: object) -> bool:
+    """Return whether code of a module is told of doubts: outside of the package, and not at work for a pool."""
+    if str(module).partition(".")[0] == _PACKAGE or threading.current_thread() is not threading.main_thread():
+        return False
+    process = sys.modules.get("multiprocessing.process")
+    return process is None or process.parent_process() is None
 
 
 def gathered(found: Iterable[tuple[str, Iterable[ResultWarning]]], among: str) -> tuple[ResultWarning, ...]:
@@ -187,6 +263,7 @@ RANGES: dict[str, Range] = {
     "arrival_tolerance": Range(1e-4, 5.0, "m", "accurate docking to large vehicles", "mm or cm given for m"),
     "floor_position": Range(-10000.0, 10000.0, "m", "the largest sites", "mm given for m"),
     "map_resolution": Range(0.005, 1.0, "m", "fine to coarse grids of floors", "mm, or cells per meter, given for m"),
+    "region_radius": Range(0.01, 30.0, "m", "a small disc to the way of a fast truck", "mm or cm given for m"),
     "obstacle_size": Range(0.005, 1000.0, "m", "thin poles to long walls", "mm or cm given for m"),
     "person_radius": Range(0.1, 1.0, "m", "a child to a long step with room around it", "mm or cm given for m"),
     "person_speed": Range(

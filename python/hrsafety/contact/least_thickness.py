@@ -14,7 +14,7 @@ from hrsafety.contact.covering import Covering, Region, covering_of
 from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers, not_checked
 from hrsafety.contact.rows import TOLERANCE, contact_row, in_order, limits_of, missing_limits
 from hrsafety.contact.simulation import known
-from hrsafety.plausibility import ResultWarning
+from hrsafety.plausibility import ResultWarning, telling
 
 __all__ = ["LeastThickness", "thickness"]
 
@@ -45,6 +45,7 @@ class LeastThickness:
     warnings: Doubts
 
 
+@telling()
 def thickness(
     *,
     speed: float,

@@ -19,7 +19,7 @@ from hrsafety.contact.covering import Covering, covering_of
 from hrsafety.contact.doubts import Doubts, counted
 from hrsafety.contact.speed import AllowedSpeed, AllowedSpeeds, allowed_speed, allowed_speeds
 from hrsafety.errors import InvalidParameterError
-from hrsafety.plausibility import ResultWarning, unsafe_doubts
+from hrsafety.plausibility import ResultWarning, telling, unsafe_doubts
 from hrsafety.tables import Columns, Table, unit_suffix
 
 __all__ = [
@@ -73,6 +73,7 @@ class RegionSpeed(NamedTuple):
     allowed: AllowedSpeed | None
 
 
+@telling()
 def contact_speed_limit(
     base: Base,
     covering: Covering | Mapping[str, object] | None,
@@ -210,6 +211,7 @@ class ContactMargins(Table):
         return found | {"verdict": self.verdict.ravel(), "touching": self.touching.ravel()}
 
 
+@telling()
 def contact_margins(
     trajectory: Any,
     *,

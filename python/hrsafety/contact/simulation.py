@@ -18,6 +18,7 @@ from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible
 from hrsafety.contact.many import many
 from hrsafety.contact.rows import HORIZON, TOLERANCE, contact_row, in_order, spring_of
 from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import telling
 from hrsafety.tables import Columns, Table, unit_suffix
 
 __all__ = ["ContactBatch", "ContactImpact", "batch", "simulate"]
@@ -154,6 +155,7 @@ def _gravity(head: bool | None, body_mass: object) -> float | None:
     return GRAVITY if (light if head is None else head) else None
 
 
+@telling()
 def simulate(
     *,
     robot_mass: float,
@@ -315,6 +317,7 @@ class ContactBatch(Table):
         return arrays_of(self)
 
 
+@telling()
 def batch(
     *,
     robot_mass: npt.ArrayLike,

@@ -19,7 +19,7 @@ from hrsafety.contact.doubts import Doubts, counted, covering_flags, flagged, im
 from hrsafety.contact.many import many, words_at
 from hrsafety.contact.rows import HORIZON, TOLERANCE, contact_row, in_order, limits_of, missing_limits, spring_of
 from hrsafety.contact.simulation import arrays_of, known
-from hrsafety.plausibility import ResultWarning
+from hrsafety.plausibility import ResultWarning, telling
 from hrsafety.tables import Columns, Table
 
 __all__ = [
@@ -81,6 +81,7 @@ class AllowedSpeed:
     human_speed: float
 
 
+@telling()
 def allowed_speed(
     *,
     robot_mass: float,
@@ -260,6 +261,7 @@ class AllowedSpeeds(Table):
         return arrays_of(self)
 
 
+@telling()
 def allowed_speeds(
     *,
     robot_mass: npt.ArrayLike,

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from hrsafety._arguments import meant, positive, readable
 from hrsafety.datasets.recording import Recording
 from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.plausibility import telling
 
 __all__ = ["load_pedestrians", "load_track"]
 
@@ -25,6 +26,7 @@ TRACK_COLUMNS = ("t_s", "x_m", "y_m")
 _INTEGER_COLUMNS = frozenset({"frame", "ped_id"})
 
 
+@telling()
 def load_pedestrians(path: str | PathLike[str], *, fps: float | None = None) -> Recording:
     r"""Read a table of recorded people.
 

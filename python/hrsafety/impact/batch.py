@@ -25,7 +25,7 @@ from hrsafety.impact.parameters import (
     Head,
     Manipulator,
 )
-from hrsafety.plausibility import implausible
+from hrsafety.plausibility import implausible, telling
 from hrsafety.tables import Columns, Table
 
 __all__ = ["ImpactMetricsBatch", "metrics_batch"]
@@ -117,6 +117,7 @@ class ImpactMetricsBatch(Loads[Array], Table):
         return {**{name: getattr(self, name).ravel() for name in names}, "status": self.status.ravel()}
 
 
+@telling()
 def metrics_batch(
     *,
     manipulator: Manipulator | None = None,

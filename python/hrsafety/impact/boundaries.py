@@ -15,6 +15,7 @@ from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.impact.criteria.loads import Doubts, speed_warnings
 from hrsafety.impact.parameters import ConstrainedHead, Head, Manipulator
+from hrsafety.plausibility import telling
 
 __all__ = ["FoamBoundary", "foam_stiffness_lower", "foam_stiffness_upper"]
 
@@ -64,6 +65,7 @@ class FoamBoundary:
     warnings: Doubts = ()
 
 
+@telling()
 def foam_stiffness_upper(
     manipulator: Manipulator,
     *,
@@ -130,6 +132,7 @@ def foam_stiffness_upper(
     return _doubted(found, manipulator, hit, closing_speed)
 
 
+@telling()
 def foam_stiffness_lower(
     manipulator: Manipulator,
     *,

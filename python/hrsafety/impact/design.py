@@ -35,7 +35,7 @@ from hrsafety.impact.parameters import (
     Manipulator,
     default_linear_range,
 )
-from hrsafety.plausibility import ResultWarning
+from hrsafety.plausibility import ResultWarning, telling
 
 __all__ = ["FoamDesign", "design_foam"]
 
@@ -373,6 +373,7 @@ def check_margin(margin: float) -> float:
     return share
 
 
+@telling()
 def design_foam(
     manipulator: Manipulator,
     limits: FoamLimits,

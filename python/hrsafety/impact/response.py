@@ -13,7 +13,7 @@ from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.impact.criteria.loads import Doubts, ImpactMetrics, check_parts, check_speeds, judged, speed_warnings
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
-from hrsafety.plausibility import implausible
+from hrsafety.plausibility import implausible, telling
 from hrsafety.tables import Columns, Table, with_units
 
 __all__ = ["ImpactResponse", "SetPoint", "simulate"]
@@ -228,6 +228,7 @@ def check_finite(closing_speed: float, *columns: Array) -> None:
         )
 
 
+@telling()
 def simulate(
     manipulator: Manipulator,
     foam: Foam,

@@ -11,6 +11,7 @@ from hrsafety._records import dataclass
 from hrsafety.impact.criteria.declared import CRITERIA
 from hrsafety.impact.criteria.loads import Doubts, ImpactMetrics, check_parts, check_speeds, judged, speed_warnings
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
+from hrsafety.plausibility import telling
 
 __all__ = ["ImpactGradients", "gradients"]
 
@@ -74,6 +75,7 @@ class ImpactGradients:
         return dict(zip(self.parameter_names, self.values[row].tolist(), strict=True))
 
 
+@telling()
 def gradients(
     manipulator: Manipulator,
     foam: Foam,

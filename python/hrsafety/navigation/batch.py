@@ -19,10 +19,13 @@ from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.scenario_arrays import Scenarios
 from hrsafety.navigation.tables.runs import RunTable, table_of_batch
 from hrsafety.navigation.trajectory import Integrator
+from hrsafety.navigation.warnings.units import of_scenarios
+from hrsafety.plausibility import telling
 
 __all__ = ["check_scenarios", "check_threads", "gain_sets", "natives_of", "simulate_batch"]
 
 
+@telling(of_scenarios)
 def simulate_batch(
     scenarios: Sequence[Scenario],
     law: AnyLaw,

@@ -26,6 +26,8 @@ from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.tables.pairs import PairedRuns
 from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.navigation.trajectory import Integrator
+from hrsafety.navigation.warnings.units import of_scenarios
+from hrsafety.plausibility import telling
 from hrsafety.tables import Columns
 
 __all__ = ["Comparison", "Metric", "Standing", "compare", "step_cost"]
@@ -259,6 +261,7 @@ def compare(
 ) -> CrowdComparison: ...
 
 
+@telling(of_scenarios)
 def compare(
     scenarios: Scenario | Sequence[Scenario] | Mapping[str, Scenario] | World | Sequence[World] | Mapping[str, World],
     laws: AnyLaw | Sequence[AnyLaw] | Mapping[str, AnyLaw],

@@ -34,6 +34,8 @@ from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.simulation import as_built
 from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.navigation.trajectory import Integrator
+from hrsafety.navigation.warnings.units import of_scenarios
+from hrsafety.plausibility import telling
 from hrsafety.tables import Columns
 
 __all__ = ["simulate_many"]
@@ -72,6 +74,7 @@ def simulate_many(
 ) -> CrowdTable: ...
 
 
+@telling(of_scenarios)
 def simulate_many(
     scenarios: Scenario | Sequence[Scenario] | Mapping[str, Scenario] | World | Sequence[World] | Mapping[str, World],
     laws: AnyLaw | Sequence[AnyLaw] | Mapping[str, AnyLaw],

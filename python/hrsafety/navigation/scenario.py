@@ -82,6 +82,7 @@ class Scenario(Parameters):
     seed: int = 0
     _native: _hrsafety.Scenario = field(init=False, repr=False, compare=False)
     _warnings: tuple[ResultWarning, ...] | None = field(init=False, repr=False, compare=False, default=None)
+    _units: tuple[ResultWarning, ...] | None = field(init=False, repr=False, compare=False, default=None)
 
     def __post_init__(self) -> None:
         """Check the values and compute the regions that were not given."""
@@ -121,6 +122,13 @@ class Scenario(Parameters):
         if self._warnings is None:
             self._set(_warnings=scenario_warnings.found(self))
         return self._warnings  # type: ignore[return-value]  # just set
+
+    @property
+    def unit_doubts(self) -> tuple[ResultWarning, ...]:
+        """Those of the warnings that are about numbers which are hardly meant in their unit."""
+        if self._units is None:
+            self._set(_units=scenario_warnings.of_units(self))
+        return self._units  # type: ignore[return-value]  # just set
 
     def __repr__(self) -> str:
         """Return the fields, and the warnings if there are any."""

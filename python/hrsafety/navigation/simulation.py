@@ -15,10 +15,13 @@ from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import OPTIONAL_COLUMNS, Integrator, Trajectory, without_obstacles
+from hrsafety.navigation.warnings.units import of_scenarios
+from hrsafety.plausibility import telling
 
 __all__ = ["as_built", "evaluate", "simulate"]
 
 
+@telling(of_scenarios)
 def simulate(
     scenario: Scenario,
     law: AnyLaw,
@@ -137,6 +140,7 @@ def _kept(record: Sequence[str] | None) -> list[str]:
     return [word(f"record[{index}]", name, OPTIONAL_COLUMNS) for index, name in enumerate(names)]
 
 
+@telling(of_scenarios)
 def evaluate(
     scenario: Scenario,
     law: AnyLaw,

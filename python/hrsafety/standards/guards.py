@@ -8,7 +8,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import number
 from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
-from hrsafety.plausibility import warn_implausible
+from hrsafety.plausibility import telling, warn_implausible
 
 __all__ = ["GuardDistance", "minimum_distance"]
 
@@ -39,6 +39,7 @@ class GuardDistance(NamedTuple):
     intrusion: float
 
 
+@telling()
 def minimum_distance(
     stopping_time: float, *, capability: float | None = None, height: float | None = None
 ) -> GuardDistance:

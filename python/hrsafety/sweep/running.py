@@ -16,6 +16,7 @@ from hrsafety import __version__
 from hrsafety._arguments import count, flag, instance, thread_count, word
 from hrsafety._bounds import MOST_TASKS
 from hrsafety.errors import InvalidParameterError, MissingExtraError
+from hrsafety.plausibility import telling
 from hrsafety.sweep.chunk_files import STORES
 from hrsafety.sweep.chunk_ranges import checked_share
 from hrsafety.sweep.chunks import Plan, Task, computed, planned
@@ -45,6 +46,7 @@ class SweepWarning(UserWarning):
     """A chunk of a sweep was damaged and is computed again."""
 
 
+@telling()
 def run(
     design: Design,
     study: Study,

@@ -15,7 +15,7 @@ from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.impact.criteria.declared import LoadRow, with_criteria
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
-from hrsafety.plausibility import RANGES, ResultWarning, implausible
+from hrsafety.plausibility import RANGES, ResultWarning, implausible, telling
 
 __all__ = [
     "HeadInjury",
@@ -171,6 +171,7 @@ def judged(values: tuple[object, ...], foam: Foam, warnings: Doubts) -> ImpactMe
     return found
 
 
+@telling()
 def metrics(
     manipulator: Manipulator,
     foam: Foam,

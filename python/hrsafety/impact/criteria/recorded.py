@@ -11,7 +11,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, columns, number, positive
 from hrsafety.errors import InvalidParameterError
 from hrsafety.impact.criteria.loads import STANDARD_GRAVITY, Doubts, ImpactMetrics
-from hrsafety.plausibility import ResultWarning, implausible
+from hrsafety.plausibility import ResultWarning, implausible, telling
 
 __all__ = ["recorded_metrics"]
 
@@ -19,6 +19,7 @@ HELD_WINDOW = 0.003
 """Window of the 3 ms criteria, in s."""
 
 
+@telling()
 def recorded_metrics(
     time: npt.ArrayLike,
     acceleration_g: npt.ArrayLike,

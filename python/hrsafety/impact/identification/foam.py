@@ -16,7 +16,7 @@ from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.impact.parameters import THICKNESS, Foam, default_linear_range
-from hrsafety.plausibility import ResultWarning, implausible
+from hrsafety.plausibility import ResultWarning, implausible, telling
 
 __all__ = ["FoamFit", "StaticFit", "drop_trajectory", "fit_static", "identify_foam"]
 
@@ -227,6 +227,7 @@ def _drop_warnings(drops: list[tuple[Array, Array]], moving_mass: float, gravity
     return found
 
 
+@telling()
 def identify_foam(
     static_force: npt.ArrayLike,
     static_compression: npt.ArrayLike,

@@ -16,7 +16,7 @@ from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.metrics.episode import Episode
 from hrsafety.navigation.metrics.scores import MetricTable, WorldMetrics, evaluate_world, table_of
-from hrsafety.plausibility import gathered
+from hrsafety.plausibility import gathered, telling
 
 __all__ = ["crowd_batch", "episodes_of", "world_metrics"]
 
@@ -80,6 +80,7 @@ def episodes_of(run: CrowdTrajectories, without: CrowdTrajectories | None = None
     return episodes_in(run.world, run.robot_position, run.position, run.radius, warnings=run.warnings, **beside)
 
 
+@telling()
 def crowd_batch(
     worlds: Iterable[World],
     *,

@@ -9,10 +9,12 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import instance, sequence, thread_count
 from hrsafety.navigation.crowd.trajectories import CrowdTrajectories, Divergence
 from hrsafety.navigation.crowd.world import World
+from hrsafety.plausibility import telling
 
 __all__ = ["simulate_crowd", "simulate_crowds"]
 
 
+@telling()
 def simulate_crowd(world: World) -> CrowdTrajectories:
     """Return everything that happens in a world of people and robots.
 

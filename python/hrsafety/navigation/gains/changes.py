@@ -17,7 +17,8 @@ from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.navigation.trajectory import Integrator
 from hrsafety.navigation.warnings import runs as run_warnings
-from hrsafety.plausibility import ResultWarning
+from hrsafety.navigation.warnings.units import of_scenarios
+from hrsafety.plausibility import ResultWarning, telling
 from hrsafety.tables import Columns, Table
 
 __all__ = ["GainSensitivity", "gain_sensitivity"]
@@ -145,6 +146,7 @@ def _over_changes(statistic: Callable[[Array], np.floating], sensitivity: Array)
     return np.array([statistic(row) if row.size else np.nan for row in kept])
 
 
+@telling(of_scenarios)
 def gain_sensitivity(
     scenarios: Sequence[Scenario],
     law: Law | None = None,

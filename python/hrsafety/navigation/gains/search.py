@@ -32,6 +32,8 @@ from hrsafety.navigation.gains.settings import (
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import Integrator
+from hrsafety.navigation.warnings.units import of_scenarios
+from hrsafety.plausibility import telling
 
 __all__ = ["optimize_gains"]
 
@@ -48,6 +50,7 @@ EVALUATIONS_OF_A_GAIN = 2500
 Progress = Callable[[str, int, int, float], object]
 
 
+@telling(of_scenarios)
 def optimize_gains(
     scenarios: Sequence[Scenario],
     law: Law | None = None,

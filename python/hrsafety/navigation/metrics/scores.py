@@ -24,7 +24,7 @@ from hrsafety.navigation.metrics.doubts import (
 from hrsafety.navigation.metrics.episode import Episode, Recorded
 from hrsafety.navigation.metrics.unseen import unscored
 from hrsafety.navigation.trajectory import Trajectory
-from hrsafety.plausibility import ResultWarning, gathered
+from hrsafety.plausibility import ResultWarning, gathered, telling
 from hrsafety.tables import Columns, Table, unit_suffix
 
 __all__ = ["EpisodeMetrics", "MetricTable", "WorldMetrics", "evaluate", "evaluate_many", "evaluate_world"]
@@ -160,6 +160,7 @@ class MetricTable(_Scores, Measured[Array, npt.NDArray[np.int64], npt.NDArray[np
         return wilson(int(self.success.sum()), len(self))
 
 
+@telling()
 def evaluate(
     run: Episode | Trajectory | Recorded | npt.ArrayLike, people: npt.ArrayLike | None = None, **options: Any
 ) -> EpisodeMetrics:
@@ -226,6 +227,7 @@ def _episode(run: Any, people: npt.ArrayLike | None, options: dict[str, Any]) ->
     return Episode(position=run, **beside, **options)
 
 
+@telling()
 def evaluate_many(
     episodes: Sequence[Episode | Trajectory],
     *,

@@ -67,7 +67,7 @@ def found(scenario: Described) -> tuple[ResultWarning, ...]:
         ``"implausible"``, ``"goal_out_of_reach"`` and ``"closed_in"``.
     """
     about_ends = (*_starts(scenario), *_goals(scenario))
-    return (*_regions(scenario), *about_ends, *_plausibility(scenario), *_reach(scenario), *_closed(scenario))
+    return (*_regions(scenario), *about_ends, *of_units(scenario), *_reach(scenario), *_closed(scenario))
 
 
 def _regions(scenario: Described) -> Iterator[ResultWarning]:
@@ -198,7 +198,7 @@ def _goals(scenario: Described) -> Iterator[ResultWarning]:
             )
 
 
-def _plausibility(scenario: Described) -> tuple[ResultWarning, ...]:
+def of_units(scenario: Described) -> tuple[ResultWarning, ...]:
     """Return numbers outside the ranges of their quantities."""
     robot = scenario.robot
     values: dict[str, object] = {
@@ -227,6 +227,9 @@ def _plausibility(scenario: Described) -> tuple[ResultWarning, ...]:
 def _numbers(obstacle: Obstacle) -> dict[str, tuple[object, str]]:
     """Return the numbers of an obstacle with their quantities."""
     found: dict[str, tuple[object, str]] = {}
+    own = obstacle.as_given()  # radii that were computed follow from the other numbers
+    for name in ("critical_radius", "active_radius"):
+        found[name] = (getattr(own, name, None), "region_radius")
     for place in ("start", "center"):
         found[place] = (getattr(obstacle, place, None), "floor_position")
     if isinstance(obstacle, Box):

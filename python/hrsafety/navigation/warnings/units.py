@@ -1,0 +1,34 @@
+"""Doubts about units of the scenarios that a function is called with."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator, Mapping
+
+from hrsafety.navigation.scenario import Scenario
+from hrsafety.plausibility import ResultWarning
+
+__all__ = ["of_scenarios"]
+
+MOST_SCENES = 100
+"""So many scenarios are looked at when runs end; the warnings of a table look at all."""
+
+
+def of_scenarios(scenarios: object, *_args: object, **_options: object) -> Iterator[ResultWarning]:
+    """Yield doubts about units of the first scenarios of a call, which may be one, a sequence or a mapping.
+
+    Parameters
+    ----------
+    scenarios : object
+        First argument of the call.
+    """
+    given: Iterable[object] = ()
+    if isinstance(scenarios, Scenario):
+        given = (scenarios,)
+    elif isinstance(scenarios, Mapping):
+        given = scenarios.values()
+    elif isinstance(scenarios, Iterable) and not isinstance(scenarios, Iterator):
+        given = scenarios
+    for each in itertools.islice(given, MOST_SCENES):
+        if isinstance(each, Scenario):
+            yield from each.unit_doubts
