@@ -6,8 +6,28 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, finite, not_negative, pair, positive
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Base", "DifferentialBase", "HolonomicBase"]
+
+_GYRATIONS = (0.03, 5.0)
+_NO_WHEELS = (
+    "no inertia of wheels and motors given: the mass of a base that rolls is a lower bound, on the unsafe side; give "
+    "wheel_inertia (with the motor behind its gear, n^2 J_m), wheel_radius and half_track"
+)
+
+
+def _odd_inertia(mass: float, inertia: float) -> tuple[ResultWarning, ...]:
+    """Return the doubt about an inertia that no base of this mass has; a too large one is more careful."""
+    least, most = _GYRATIONS
+    radius = (inertia / mass) ** 0.5
+    if least <= radius <= most:
+        return ()
+    message = (
+        f"the base has a radius of gyration of {radius:.3g} m by inertia and mass, outside the plausible {least:g} to "
+        f"{most:g} m: another unit than kg m^2?"
+    )
+    return (ResultWarning("implausible", "base.inertia", message, safe_side=radius > most),)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -36,6 +56,11 @@ class HolonomicBase:
         """Check the values."""
         for name in ("mass", "inertia"):
             object.__setattr__(self, name, positive(f"base.{name}", getattr(self, name)))
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Why masses of the base may not be what they seem."""
+        return _odd_inertia(self.mass, self.inertia)
 
     def effective_mass(self, point: Pair, direction: Pair) -> float:
         """Return 1/(1/M + (x u_y - y u_x)^2/I).
@@ -70,7 +95,7 @@ class DifferentialBase:
     offset : float
         Center of mass ahead of the axle, in m.
     wheel_inertia : float
-        Of each wheel with its motor, in kg m^2; 0: massless.
+        Of each wheel with its motor behind the gear, in kg m^2; 0: massless, so that masses are lower bounds.
     wheel_radius, half_track : float or None
         In m, needed with a wheel inertia.
 
@@ -103,6 +128,12 @@ class DifferentialBase:
                 raise InvalidParameterError(f"base.{name}", "be given with a wheel inertia", None)
             if given is not None:
                 object.__setattr__(self, name, positive(f"base.{name}", given))
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Why masses of the base may not be what they seem: without the inertia of its wheels they are too low."""
+        massless = ResultWarning("no_motor_inertia", "base.wheel_inertia", _NO_WHEELS)
+        return (*_odd_inertia(self.mass, self.inertia), *((massless,) if self.wheel_inertia == 0.0 else ()))
 
     def effective_mass(self, point: Pair, direction: Pair) -> float:
         """Return the mass at a point about the middle of the axle; inf where the base cannot move.

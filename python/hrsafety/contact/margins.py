@@ -63,6 +63,8 @@ class RegionSpeed(NamedTuple):
         Closing speed in m/s: 0 where contact is not permitted, NaN where nothing limits it.
     allowed : AllowedSpeed or None
         How it was found.
+    warnings : tuple of ResultWarning
+        Of the speed and of the base: why it may not be what it seems.
     """
 
     region: str
@@ -71,6 +73,7 @@ class RegionSpeed(NamedTuple):
     robot_mass: float
     speed: float
     allowed: AllowedSpeed | None
+    warnings: tuple[ResultWarning, ...] = ()
 
 
 @telling()
@@ -126,7 +129,8 @@ def contact_speed_limit(
     """
     instance("base", base, HolonomicBase, DifferentialBase)
     mass = base.effective_mass(point, normal)
-    return tuple(_region_speed(mass, covering, each, area) for each in _limits_of(regions))
+    found = (_region_speed(mass, covering, each, area) for each in _limits_of(regions))
+    return tuple(each._replace(warnings=(*base.warnings, *each.warnings)) for each in found)
 
 
 def _limits_of(regions: Sequence[Any]) -> list[Any]:
@@ -147,7 +151,7 @@ def _region_speed(
         return RegionSpeed(limit.region, limit.contact, "not_permitted", mass, 0.0, None)
     found = allowed_speed(robot_mass=mass, covering=covering, area=area, limits=_known(limit))
     speed = math.nan if found.speed is None else found.speed
-    return RegionSpeed(limit.region, limit.contact, found.status, mass, speed, found)
+    return RegionSpeed(limit.region, limit.contact, found.status, mass, speed, found, found.warnings)
 
 
 def _known(limit: Any) -> Any:
@@ -281,7 +285,7 @@ def contact_margins(
     closing = share + _approach(trajectory.time, trajectory.obstacle_position, normal)
     limits = [_limit_at(trajectory, base, covering, each, normal, reach, area) for each in regions]
     limit = np.min([each.speed for each in limits], axis=0)
-    known = np.all([each.known for each in limits], axis=0)
+    known = np.all([each.known for each in limits], axis=0) & (not unsafe_doubts(base.warnings))
     lowest = min(limits, key=lambda each: float(np.min(each.speed, initial=np.inf))).limit
     margin = limit - closing
     verdict = np.where(margin >= 0.0, np.where(known, "within_limits", "not_checked"), "exceeds")
@@ -303,6 +307,7 @@ def contact_margins(
         region=lowest.region,
         contact=lowest.contact,
         warnings=(
+            *base.warnings,
             *dict.fromkeys(doubt for each in limits for doubt in each.warnings),
             *((counted(_UNKNOWN, unknown),) if unknown.any() else ()),
         ),

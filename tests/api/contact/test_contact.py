@@ -222,6 +222,22 @@ def test_a_foam_from_tests_is_a_covering() -> None:
         contact.Covering.from_foam(object(), tested_area=5e-3)
 
 
+def test_a_base_whose_wheels_and_motors_weigh_nothing_is_a_lower_bound() -> None:
+    leg = SimpleNamespace(region="lower_leg", contact="transient", permitted=True, force=260.0, pressure=1e8)
+    leg = SimpleNamespace(**vars(leg), spring_constant=60e3, body_mass=75.0)
+    base = contact.DifferentialBase(mass=20.0, inertia=0.8)
+    (found,) = contact.contact_speed_limit(base, None, (0.2, 0.1), (0.8, 0.6), [leg], area=1e-3)
+    assert [each.code for each in found.warnings] == ["no_motor_inertia"]
+    run = nav.simulate(scenarios.configuration("c1"), nav.VirtualForceField())
+    around: dict[str, Any] = {"covering": None, "area": 1e-3, "robot_radius": 0.2, "person_radius": 0.4}
+    doubted = contact.contact_margins(run, base=base, regions=[leg], **around)
+    assert "no_motor_inertia" in [each.code for each in doubted.warnings]
+    closing = np.nan_to_num(doubted.closing_speed) > 0.0
+    assert closing.any()
+    assert not (doubted.verdict[closing] == "within_limits").any()
+    assert contact.HolonomicBase(mass=20.0, inertia=8e-7).warnings[0].subject == "base.inertia"
+
+
 def test_materials_and_coverings_are_values() -> None:
     pad = contact.Covering(**PAD)
     assert pickle.loads(pickle.dumps(pad)) == pad
@@ -246,7 +262,9 @@ def test_margins_along_a_run(kind: Any) -> None:
         )
         for contact_class, force, mass in (("transient", 260.0, 75.0), ("quasi_static", 130.0, math.inf))
     ]
-    around: dict[str, Any] = {"base": kind(mass=4.4, inertia=0.1), "covering": None, "area": 1e-3}
+    wheels = {"wheel_inertia": 1e-4, "wheel_radius": 0.08, "half_track": 0.2}
+    base = kind(mass=4.4, inertia=0.1, **(wheels if kind is contact.DifferentialBase else {}))
+    around: dict[str, Any] = {"base": base, "covering": None, "area": 1e-3}
     around |= {"robot_radius": 0.2, "person_radius": 0.4}
     found = contact.contact_margins(run, regions=regions, **around)
     present = np.isfinite(found.closing_speed)

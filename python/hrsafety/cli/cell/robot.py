@@ -189,23 +189,12 @@ def _doubts_of_base(
 ) -> Iterator[ResultWarning]:
     """Yield what is hardly meant of a mobile base."""
     yield from _unlikely(mass)
-    gyration = (base.inertia / base.mass) ** 0.5
-    if not 0.03 <= gyration <= 5.0:
-        message = (
-            f"the base has a radius of gyration of {gyration:.3g} m by inertia and mass, outside the plausible 0.03 to "
-            "5 m: another unit than kg m^2?"
-        )
-        yield ResultWarning("implausible", "robot.inertia", message, safe_side=gyration > 5.0)
+    # What no wheel can make heavier is not a doubt.
+    yield from (each for each in base.warnings if each.code != "no_motor_inertia" or mass < float("inf"))
     away = float(np.hypot(*point))
     if away > 5.0:
         message = f"the point is {away:g} m from the middle of the base: mm or cm given for m?"
         yield ResultWarning("implausible", "robot.point", message)
-    if isinstance(base, contact.DifferentialBase) and base.wheel_inertia == 0.0 and mass < float("inf"):
-        message = (
-            "no inertia of wheels and motors given: the mass of a base that rolls is a lower bound, on the unsafe "
-            "side; give wheel_inertia (with the motor behind its gear, n^2 J_m), wheel_radius and half_track"
-        )
-        yield ResultWarning("no_motor_inertia", "robot.wheel_inertia", message)
 
 
 def _read(values: Mapping[str, Any], folder: Path) -> arms.Arm:
