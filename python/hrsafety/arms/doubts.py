@@ -127,12 +127,12 @@ def doubts_of_motors(
     if not any(given.values()):
         without = tuple(free) or tuple(names)
     else:
-        without = tuple(name for name in free if name not in given)  # a 0 beside other numbers is known
+        without = tuple(name for name in free if name not in given)
     if without:
         named = "" if without == tuple(free) else f" for {', '.join(without)}"
         yield ResultWarning("no_motor_inertia", "armature", NO_MOTOR_INERTIA.format(named))
     own = dict(zip(free, np.asarray(facts["largest_own"]).tolist(), strict=True))
-    small = [name for name in free if 0.0 < given.get(name, 0.0) < SMALL * own[name]]
+    small = [name for name in free if any(given.values()) and given.get(name, np.inf) < SMALL * own[name]]
     if small:
         first = small[0]
         yield ResultWarning(
@@ -140,7 +140,7 @@ def doubts_of_motors(
             f"armature[{first!r}]",
             f"motor inertia of {_several(small)} is below 1 % of the inertia that the joint moves ({first}: "
             f"{given[first]:g} of {own[first]:.3g} kg m^2): on the side of the rotor? It has to be multiplied by the "
-            "square of the gear ratio",
+            "square of the gear ratio; or has the joint no motor?",
         )
     kinds = dict(zip(names, facts["joint_kinds"], strict=True))
     for kind, unit in (("turning", "kg m^2"), ("sliding", "kg")):
