@@ -261,13 +261,13 @@ def _placeholders(facts: Mapping[str, Any], names: Array, mass: Array) -> Iterat
 
 def _alike(facts: Mapping[str, Any], real: npt.NDArray[np.intp], mass: Array, moments: Array) -> list[int]:
     """Return the largest group of links with one mass and one inertia, if three of them follow each other outwards."""
-    rows = [(mass[index], *moments[index]) for index in real]
-    largest: list[int] = []
-    for first, row in enumerate(rows):
-        same = [real[i] for i, other in enumerate(rows) if np.allclose(row, other, rtol=1e-9, atol=0.0)]
-        if len(same) > len(largest) and len(same) >= ALIKE and first == list(real).index(same[0]):
-            largest = same
-    return largest if _in_a_row(facts, largest) >= ALIKE else []
+    groups: dict[tuple[object, ...], list[int]] = {}
+    for index in real.tolist():
+        largest = float(moments[index, 2])
+        shape = np.round(moments[index] / largest, 9) + 0.0 if largest > 0.0 else np.zeros(3)
+        groups.setdefault((f"{mass[index]:.9e}", f"{largest:.9e}", *shape.tolist()), []).append(index)
+    most = max(groups.values(), key=len, default=[])
+    return most if _in_a_row(facts, most) >= ALIKE else []
 
 
 def _in_a_row(facts: Mapping[str, Any], links: Sequence[int]) -> int:

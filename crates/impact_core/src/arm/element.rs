@@ -24,10 +24,16 @@ impl<'a, 'input> Element<'a, 'input> {
     /// An element that is named by its kind and its attribute `name`.
     pub fn named(node: Node<'a, 'input>) -> Result<(Self, String)> {
         let kind = node.tag_name().name();
-        let line = node.document().text_pos_at(node.range().start).row;
-        let place = format!("{kind} in line {line}");
-        let anonymous = Self { node, place };
-        let name = anonymous.word("name")?;
+        let mut anonymous = Self {
+            node,
+            place: kind.to_owned(),
+        };
+        let name = anonymous.word("name").or_else(|_| {
+            // A line is counted from the beginning of the text: only for a message.
+            let line = node.document().text_pos_at(node.range().start).row;
+            anonymous.place = format!("{kind} in line {line}");
+            anonymous.word("name")
+        })?;
         let place = format!("{kind} {name:?}");
         Ok((Self { node, place }, name))
     }

@@ -58,10 +58,12 @@ pub fn declared(text: &str) -> String {
             prefixes.push(prefix);
         }
     }
-    let spaces: String = prefixes
-        .iter()
-        .map(|prefix| format!(" xmlns:{prefix}=\"urn:undeclared:{prefix}\""))
-        .collect();
+    let mut spaces = String::new();
+    for prefix in prefixes {
+        for part in [" xmlns:", prefix, "=\"urn:undeclared:", prefix, "\""] {
+            spaces.push_str(part);
+        }
+    }
     format!("{}{spaces}{}", &text[..at], &text[at..])
 }
 
