@@ -15,6 +15,7 @@ from hrsafety.cli import output, simulate_page, terminal, verdict
 from hrsafety.cli.output import decimal
 from hrsafety.cli.simulate_page import PageTable
 from hrsafety.navigation.outcomes import OUTCOMES
+from hrsafety.navigation.trajectory import CONTACT_SPEED
 
 __all__ = ["simulate_file"]
 
@@ -79,13 +80,29 @@ def _how_it_ended(run: nav.Trajectory) -> str:
     arrived = math.isfinite(run.arrival_time)
     end = f"arrived after {run.arrival_time:.2f} s" if arrived else f"ended {left:.2f} m from the goal"
     if run.outcome == "collided":
-        first = int(np.nanargmin(run.contact_time))
+        times = np.append(run.contact_time, run.map_contact_time)
+        first = int(np.nanargmin(times))
+        if first == len(run.contact_time):
+            return f"contact with a wall at {times[first]:.2f} s with {run.map_contact_speed:.2f} m/s, then {end}"
         kind = type(run.scenario.obstacles[first]).__name__
-        when = f"at {run.contact_time[first]:.2f} s with {run.contact_speed[first]:.2f} m/s"
+        when = f"at {times[first]:.2f} s with {run.contact_speed[first]:.2f} m/s ({_robot_then(run, first)})"
         return f"contact with obstacle {first} ({kind}) {when}, then {end}"
     if run.outcome == "timed_out":
         return f"timed out after {run.time[-1]:.2f} s, {left:.2f} m from the goal"
     return f"stopped for good after {run.time[-1]:.2f} s, {left:.2f} m from the goal"
+
+
+def _robot_then(run: nav.Trajectory, index: int) -> str:
+    """Return what the robot did at the first contact with an obstacle."""
+    if run.contact_apart[index] and math.isnan(run.contact_time[index]):
+        return "appeared on it"
+    if math.isnan(run.contact_time[index]):
+        return ""
+    if run.contact_speed[index] <= CONTACT_SPEED:
+        did = "standing"
+    else:
+        did = "toward it" if run.contact_toward[index] else "away"
+    return f"{did}, at fault" if run.contact_at_fault[index] else did
 
 
 def _summary(score: nav.Performance) -> Iterator[tuple[str, str]]:
@@ -102,7 +119,8 @@ def _summary(score: nav.Performance) -> Iterator[tuple[str, str]]:
 
 def _obstacle_table(run: nav.Trajectory) -> PageTable:
     names = ("obstacle", "kind", "r_3", "r_2", "least distance", "least clearance", "first contact", "robot speed then")
-    units = ("", "", "m", "m", "m", "m", "s", "m/s")
+    names = (*names, "robot moved")
+    units = ("", "", "m", "m", "m", "m", "s", "m/s", "")
     rows = [
         (
             index,
@@ -113,6 +131,7 @@ def _obstacle_table(run: nav.Trajectory) -> PageTable:
             decimal(float(run.min_clearance[index]), 3),
             decimal(float(run.contact_time[index])),
             decimal(float(run.contact_speed[index])),
+            _robot_then(run, index),
         )
         for index, obstacle in enumerate(run.scenario.obstacles)
     ]

@@ -206,13 +206,13 @@ def _not_toml(path: Path, text: str, reason: str) -> InvalidParameterError:
         reason, remedy = "a table (.csv)", "recorded people are given with --people"
         return InvalidParameterError(path.name, "be a TOML file", Shown(reason), remedy)
     if text.lstrip().startswith("<") or path.suffix.lower() in {".urdf", ".xacro"}:
-        found, remedy = "XML", None
+        found, remedy = "XML", ""
         if path.suffix.lower() in {".urdf", ".xacro"} or "<robot" in text:
             found = "a robot model in XML"
             remedy = (
                 "hrsafety arm reads a model (.urdf) by itself; cells and studies name it in a TOML file of their own"
             )
-        return InvalidParameterError(path.name, "be a TOML file", Shown(found), remedy)
+        return InvalidParameterError(path.name, "be a TOML file", Shown(found), remedy or None)
     place = _LINE.search(reason)
     lines = text.splitlines()
     line = lines[int(place[1]) - 1] if place and int(place[1]) <= len(lines) else ""

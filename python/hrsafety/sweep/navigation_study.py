@@ -291,8 +291,7 @@ class NavigationStudy(Study):
         if self.scenario is None:
             return [_changed(scene, values) for scene in self.scenarios]
         made = self.scenario(values)
-        single = isinstance(made, nav.Scenario) or not isinstance(made, Sequence)
-        scenes = [made] if single else list(made)  # type: ignore[arg-type]  # one or several
+        scenes: list[Any] = list(made) if isinstance(made, Sequence) else [made]
         strange = next((scene for scene in scenes if not isinstance(scene, nav.Scenario)), None)
         if strange is not None:
             raise InvalidParameterError("scenario", f"return {each} Scenario", *_no_scenario(strange))

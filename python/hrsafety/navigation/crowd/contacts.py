@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -135,7 +136,7 @@ def _within(start: Array, way: Array, reach: float) -> tuple[float, float, bool]
     def crossing(distance: float, side: float) -> float:
         if square == 0.0:
             return 0.0 if side < 0.0 else 1.0
-        root = max(along * along - square * (across - distance * distance), 0.0) ** 0.5
+        root = math.sqrt(max(along * along - square * (across - distance * distance), 0.0))
         return min(max((-along + side * root) / square, 0.0), 1.0)
 
     begin = crossing(reach, -1.0)

@@ -118,7 +118,8 @@ class CrowdTable(
     @property
     def touched(self) -> npt.NDArray[np.bool_]:
         """Whether the robot of each run had a contact with people or walls, however the run ended."""
-        return (self.contacts_moving + self.contacts_standing + self.values["wall_contacts"]) > 0
+        counts: npt.NDArray[np.int64] = self.values["wall_contacts"]
+        return (self.contacts_moving + self.contacts_standing + counts) > 0
 
     @property
     def contacts_moving(self) -> npt.NDArray[np.int64]:
