@@ -37,6 +37,17 @@ LAWS = (
 CROSSINGS = 24
 SUITE_CASES = {"circle_crossing": 500, "circle_crossing_unseen": 500, "antipodal": 100, "bottleneck": 20}
 COUNTED = ("antipodal", "bottleneck")
+CORRIDOR = (
+    *((0.13, 1.37), (0.28, 1.41), (0.49, 1.42), (0.69, 1.36), (0.88, 1.28), (1.10, 1.21), (1.30, 1.13), (1.51, 1.06)),
+    *((1.70, 0.93), (1.89, 0.80), (2.10, 0.62), (2.30, 0.52), (2.49, 0.47), (2.69, 0.41), (2.90, 0.35), (3.12, 0.31)),
+    *((3.33, 0.29), (3.47, 0.28)),
+)
+"""People for each square meter and their speed in m/s, measured in corridors: what ``laboratory_data.py`` prints."""
+DOORS = ((0.70, 1.61), (0.95, 1.76), (1.20, 2.27), (1.30, 2.72), (1.60, 3.10), (2.00, 3.85))
+"""Widths of doors in m and people per second, likewise; of 1.6 m the mean of two."""
+WALKED = {"length": 20.0, "width": 3.0, "two_way": False, "radius": 0.2, "time_limit": 40.0}
+"""Corridor in which people of a model walk."""
+LABORATORY_SEEDS = 5
 STANDS = 0.05
 """Speed in m/s up to which a robot stands."""
 
@@ -74,6 +85,61 @@ def encounters(model: nav.crowd.Pedestrian, recording: datasets.Recording, law: 
         standing += bool((touched & (speed <= STANDS)).any())
         moving += bool((touched & (speed > STANDS)).any())
     return standing, moving
+
+
+def laboratory() -> str:
+    """Return speeds over density and flows through doors, beside those of the laboratory."""
+    people = {kind.__name__: kind() for kind in MODELS}
+    people = {"CollisionFreeSpeed(time_gap=0.5)": nav.crowd.CollisionFreeSpeed(time_gap=0.5)} | people
+    density, measured = np.array(CORRIDOR).T
+    say("corridor")
+    speeds = {name: walked(model, density) for name, model in people.items()}
+    width, through = np.array(DOORS).T
+    say("doors")
+    flows = {name: [flow(model, door) for door in width.tolist()] for name, model in people.items()}
+    names = [f"`{name}`" for name in people]
+    lines = head("people, 1/m²", "laboratory, m/s", *names)
+    for row, (one, other) in enumerate(CORRIDOR):
+        lines.append(line(f"{one:.2f}", f"{other:.2f}", *(f"{each[row]:.2f}" for each in speeds.values())))
+    shares = [100.0 * float(np.mean(each / measured) - 1.0) for each in speeds.values()]
+    lines.append(line("mean difference, %", "", *(f"{share:+.0f}" for share in shares)))
+    ratios = [float(np.max(each / measured)) for each in speeds.values()]
+    lines.append(line("largest ratio", "", *(f"{ratio:.2f}" for ratio in ratios)))
+    rms = [float(np.sqrt(np.mean((each - measured) ** 2))) for each in speeds.values()]
+    lines += [line("rms, m/s", "", *(f"{value:.2f}" for value in rms)), ""]
+    lines += head("door, m", "laboratory, 1/s", *names)
+    for row, (one, other) in enumerate(DOORS):
+        lines.append(line(f"{one:.2f}", f"{other:.2f}", *(each[row][0] for each in flows.values())))
+    parts = [np.array([share for _, share in each]) / through for each in flows.values()]
+    lines.append(line("mean difference, %", "", *(f"{100 * float(np.mean(part) - 1):+.0f}" for part in parts)))
+    return "\n".join(lines) + "\n"
+
+
+def walked(model: nav.crowd.Pedestrian, density: np.ndarray) -> np.ndarray:
+    """Return how fast people walk in corridors at densities."""
+    area = float(WALKED["length"]) * float(WALKED["width"])
+    worlds = [
+        scenarios.corridor(round(each * area), model=model, seed=seed, **WALKED)
+        for each in density.tolist()
+        for seed in range(LABORATORY_SEEDS)
+    ]
+    found = nav.crowd.fundamental_diagram(worlds, width=float(WALKED["width"]))
+    return found.speed.reshape(-1, LABORATORY_SEEDS).mean(axis=1)
+
+
+def flow(model: nav.crowd.Pedestrian, door: float) -> tuple[str, float]:
+    """Return people per second through a door, from the first fifth of them to the fourth, and how many stay."""
+    rooms = [scenarios.bottleneck(100, door=door, model=model, seed=seed) for seed in range(LABORATORY_SEEDS)]
+    flows, inside = [], 0
+    for run in nav.crowd.simulate_crowds(rooms):
+        out = ~(run.position[..., 0] < 8.0)
+        times = np.sort(run.time[out.argmax(axis=0)[out.any(axis=0)]])
+        inside += int((~out[-1]).sum())
+        first, last = int(0.2 * len(times)), int(0.8 * len(times))
+        flows.append((last - first) / (times[last] - times[first]) if last - first > 5 else 0.0)
+    found = float(np.mean(flows))
+    stay = inside / len(rooms)
+    return f"{found:.2f}" + (f" ({stay:.0f} stay)" if stay >= 0.5 else ""), found
 
 
 def suites() -> str:
@@ -143,6 +209,7 @@ if __name__ == "__main__":
         DOCS / "validation.md",
         {
             "crossings": ("crossings of measure_crowds.py", crossings),
+            "laboratory": ("laboratory of measure_crowds.py", laboratory),
             "suites": ("suites of measure_crowds.py", suites),
         },
     )
