@@ -28,7 +28,7 @@ from hrsafety.arms.inputs import (
 from hrsafety.arms.masses import RULES, EffectiveMass, Extremes, PointMasses, mass_by_rule
 from hrsafety.arms.payload import Payload, payloads_of
 from hrsafety.errors import InvalidParameterError
-from hrsafety.plausibility import ResultWarning
+from hrsafety.plausibility import ResultWarning, telling
 
 __all__ = ["Arm"]
 
@@ -101,6 +101,7 @@ class Arm(Facts):
         self._set(_doubts=self._doubted())
 
     @classmethod
+    @telling()
     def from_urdf(
         cls,
         path_or_text: str | os.PathLike[str],
@@ -186,6 +187,7 @@ class Arm(Facts):
 
     # ---- masses ---------------------------------------------------------------------------------
 
+    @telling()
     def effective_mass(
         self,
         joints: object = None,
@@ -234,6 +236,7 @@ class Arm(Facts):
             threads=threads,
         )
 
+    @telling()
     def point_masses(
         self,
         joints: object = None,
@@ -271,6 +274,7 @@ class Arm(Facts):
             warnings=(*self.warnings, *doubts_of_point(points, self.reach)),
         )
 
+    @telling()
     def extremes(
         self,
         joints: object = None,
@@ -376,6 +380,7 @@ class Arm(Facts):
         given = self._given(link, poses, points, shape, check_limits, threads)
         return self._native.velocities(given, speeds).reshape((*shape, 3))
 
+    @telling()
     def robot_mass(
         self,
         joints: object = None,

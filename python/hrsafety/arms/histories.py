@@ -15,7 +15,7 @@ from hrsafety.arms.doubts import DIRECTIONAL, doubts_of_point, for_rule, governs
 from hrsafety.arms.inputs import poses_of, vectors_of
 from hrsafety.arms.masses import RULES, mass_by_rule
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.plausibility import ResultWarning, unsafe_doubts
+from hrsafety.plausibility import ResultWarning, telling, unsafe_doubts
 from hrsafety.standards import ContactLimit
 from hrsafety.tables import Columns, Table
 
@@ -98,6 +98,7 @@ class MassHistory(Table):
         return table
 
 
+@telling()
 def along(
     arm: Arm,
     time: object,

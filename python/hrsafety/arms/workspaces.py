@@ -16,7 +16,7 @@ from hrsafety.arms.doubts import doubts_of_point
 from hrsafety.arms.histories import plane_of
 from hrsafety.arms.inputs import vectors_of
 from hrsafety.errors import InvalidParameterError
-from hrsafety.plausibility import ResultWarning
+from hrsafety.plausibility import ResultWarning, telling
 from hrsafety.tables import Columns, Table, unit_suffix
 
 __all__ = ["Workspace", "workspace"]
@@ -83,6 +83,7 @@ class Workspace(Table):
         return list(zip(self.joint_names, units, strict=True))
 
 
+@telling()
 def workspace(
     arm: Arm,
     *,

@@ -11,7 +11,7 @@ from api.arms.arm_models import EXAMPLE, INERTIA, INERTIAL, LINKS, TWO, joint, l
 from hrsafety import arms, standards
 from hrsafety.arms.masses import RULES
 from hrsafety.errors import InvalidParameterError
-from hrsafety.plausibility import ResultWarning, unsafe_doubts
+from hrsafety.plausibility import ResultWarning, UnitWarning, unsafe_doubts
 
 MOTORS = [1.2, 1.2, 1.0, 0.3, 0.3, 0.3]
 ARM = arms.Arm.example(armature=MOTORS)
@@ -176,6 +176,13 @@ def test_payloads_in_other_units_are_told(payload: object, subject: str) -> None
     arm = arms.Arm.example(armature=MOTORS, payload=payload)
     assert [(each.code, each.subject) for each in arm.warnings] == [("implausible", subject)]
     assert arm.effective_mass(POSE, **PLACE).warnings == arm.warnings
+
+
+def test_numbers_in_another_unit_are_issued_as_warnings_of_python() -> None:
+    with pytest.warns(UnitWarning, match="payload of 1200 kg"):
+        arms.Arm.from_urdf(EXAMPLE, armature=MOTORS, payload=("tool", 1200.0))
+    with pytest.warns(UnitWarning, match="point is 60 m off its link"):
+        ARM.effective_mass(POSE, **PLACE, point=(60.0, 0.0, 0.0))
 
 
 def test_motor_inertias_on_the_side_of_the_rotor_do_not_silence_the_doubt() -> None:
