@@ -124,7 +124,7 @@ def named(limits: object) -> str:
 
 
 def _same(value: float, own: float) -> bool:
-    return value == own or abs(value - own) <= _EQUAL * abs(own)
+    return math.isclose(value, own, rel_tol=_EQUAL)
 
 
 def agreeing(name: str, value: Any, own: float | None, limits: object) -> None:

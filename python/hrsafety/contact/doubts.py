@@ -152,6 +152,11 @@ def implausible_numbers(
             # One of both numbers of a power law may be 0.
             if name in ("modulus", "plateau") or (isinstance(law, Rusch) and name in ("a", "b")):
                 values[name], quantities[name] = numbers[f"material_{place}"], "covering_stress"
+        if isinstance(law, GibsonAshby):
+            names = list(law.keys.values())
+            modulus, plateau = (np.asarray(numbers[f"material_{names.index(name)}"]) for name in ("modulus", "plateau"))
+            with np.errstate(invalid="ignore", divide="ignore"):
+                values["yield_strain"] = plateau / modulus
         if isinstance(law, StressTable):
             values["stress"], quantities["stress"] = float(np.max(law.stress)), "covering_stress"
             values["strain"], quantities["strain"] = float(np.max(law.strain)), "covering_strain"

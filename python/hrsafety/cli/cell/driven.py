@@ -8,11 +8,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hrsafety import contact, standards
+from hrsafety import contact
 from hrsafety.cli.cell.file import Cell, Planned, pad_of
 from hrsafety.cli.cell.stops import stopping_of
 from hrsafety.errors import InvalidParameterError
-from hrsafety.plausibility import ResultWarning
+from hrsafety.plausibility import ResultWarning, implausible
 
 __all__ = ["Driven", "drive_doubts", "drive_fields", "driven_of"]
 
@@ -37,6 +37,8 @@ class Driven(NamedTuple):
         is pressed farther than anything is known of.
     stiffness : float
         Stiffness of the drive with the largest force in N/m, inf if it is rigid.
+    deceleration : float
+        In m/s^2, NaN where it is not known.
     keeps : bool
         Whether every limit is kept.
     """
@@ -46,6 +48,7 @@ class Driven(NamedTuple):
     pressure: float
     strain: float
     stiffness: float
+    deceleration: float
     keeps: bool
 
 
@@ -72,7 +75,7 @@ def driven_of(cell: Cell, planned: Planned, speed: float) -> Driven | None:
     try:
         braking = _braking(cell.separation, speed)
     except InvalidParameterError:
-        return Driven(math.nan, math.inf, math.inf, math.inf, math.inf, keeps=False)
+        return Driven(math.nan, math.inf, math.inf, math.inf, math.inf, math.nan, keeps=False)
     path = speed * (reaction + 0.5 * speed / braking)
     pad = pad_of(cell, planned, planned.covering)
     k = float(planned.limit.spring_constant or math.nan)
@@ -90,7 +93,7 @@ def driven_of(cell: Cell, planned: Planned, speed: float) -> Driven | None:
     if pad is None and planned.area is not None:
         pressures = forces / planned.area
     if rows.rising.any() or not np.isfinite(forces).all():
-        return Driven(path, math.inf, math.inf, math.inf, math.inf, keeps=False)
+        return Driven(path, math.inf, math.inf, math.inf, math.inf, braking, keeps=False)
     force, pressure, strain = _rigid(pad, k, path, speed)
     if pad is None and planned.area is not None:
         pressure = force / planned.area
@@ -108,24 +111,18 @@ def driven_of(cell: Cell, planned: Planned, speed: float) -> Driven | None:
         "strain": None if pad is None else (pad.bottom[0] if own is None else own),
     }
     keeps = all(not (limit is not None and found[name] > limit * (1.0 + 1e-9)) for name, limit in most.items())
-    return Driven(path, **found, stiffness=stiffness, keeps=keeps)
+    return Driven(path, **found, stiffness=stiffness, deceleration=braking, keeps=keeps)
 
 
 def _braking(separation: Mapping[str, Any], speed: float) -> float:
     """Return the deceleration in m/s^2, of measured stops that with the same way from the speed."""
     if "stopping" not in separation:
         return float(separation["deceleration"])
-    way = standards.separation_distance(
-        speed,
-        reaction_time=0.0,
-        human_speed=0.0,
-        intrusion=0.0,
-        uncertainty=0.0,
-        stopping=stopping_of(separation),
-        load=separation.get("load"),
-        extension=separation.get("extension"),
-    )
-    return _FASTEST_BRAKE if way <= 0.0 else min(0.5 * speed**2 / float(way), _FASTEST_BRAKE)
+    curve = stopping_of(separation).curve(separation.get("load"), separation.get("extension"))
+    # Without reaction and person the distance is the way of the stop.
+    rules = ("human_speed", "reaction_time", "intrusion", "uncertainty", "target_speed")
+    way = float(curve.distances(np.array([speed]), {name: np.zeros(1) for name in rules})[0])
+    return _FASTEST_BRAKE if way <= 0.0 else min(0.5 * speed**2 / way, _FASTEST_BRAKE)
 
 
 def _rigid(pad: contact.Covering | None, k: float, path: float, speed: float) -> tuple[float, float, float]:
@@ -168,9 +165,13 @@ def _words(cell: Cell) -> str:
 
 
 def drive_doubts(cell: Cell, planned: Planned, driven: Driven | None) -> tuple[ResultWarning, ...]:
-    """Return the doubt about a clamped contact that keeps its limits only without the drive of its own cell."""
-    if driven is None or driven.keeps:
+    """Return the doubts about a clamped contact: kept only without the drive, or a stop that is hardly meant."""
+    if driven is None:
         return ()
+    stop = {"reaction_time": (cell.separation or {})["reaction_time"], "deceleration": driven.deceleration}
+    doubts = implausible(stop, {"deceleration": "robot_deceleration"})
+    if driven.keeps:
+        return doubts
     if not math.isfinite(driven.force):
         found = "the loads are not known: the stop or the covering is outside what was measured"
     else:
@@ -178,7 +179,7 @@ def drive_doubts(cell: Cell, planned: Planned, driven: Driven | None) -> tuple[R
         limit = "" if planned.limit.force is None else f" (limit {planned.limit.force:g} N)"
         found = f"the force is up to {driven.force:.4g} N{limit}, with {kind}"
     message = f"the allowed speed holds for {WITHOUT}: with {_words(cell)} {found}"
-    return (ResultWarning("drive_not_given", "separation", message),)
+    return (*doubts, ResultWarning("drive_not_given", "separation", message))
 
 
 def drive_fields(cell: Cell, planned: Planned, closing: float, driven: Driven | None) -> dict[str, Any]:

@@ -32,7 +32,7 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
 from hrsafety.standards.verdicts import strictest
 
-__all__ = ["Study", "numbers_of", "studied"]
+__all__ = ["Study", "numbers_of", "studied", "verdicts_of"]
 
 SPEEDS = 41
 MAP_POINTS = 25
@@ -102,23 +102,8 @@ def studied(cell: Cell, shown: Report | None = None) -> Study:
     Study
         With the warnings of all results.
     """
-    found = [judged_of(cell, planned) for planned in cell.contacts]
-    loads = [_loads(cell, each) for each in found]
-    curves = _over_speed(cell, found)
-    chances = [chance_of(cell, each.planned, each.chosen) for each in found]
-    judged = []
-    for each, impacts, chance in zip(found, loads, chances, strict=True):
-        driven = None if _yields(each) else driven_of(cell, each.planned, each.verdict["planned_closing_speed"])
-        chosen = impacts.get(each.planned.covering)
-        doubts = (
-            *(() if chosen is None else chosen.warnings),
-            *drive_doubts(cell, each.planned, driven),
-            *chance_doubts(cell, chance),
-        )
-        decision = decided(cell, each, doubts)
-        closing = each.verdict["planned_closing_speed"]
-        drive = None if _yields(each) else drive_fields(cell, each.planned, closing, driven)
-        judged.append(decision._replace(verdict=decision.verdict | {"drive": drive}))
+    judged, loads, chances = verdicts_of(cell)
+    curves = _over_speed(cell, judged)
     least = governing(judged)
     speeds = _over_distance(cell, judged)
     drawn = _by_region(judged, loads)
@@ -143,6 +128,40 @@ def studied(cell: Cell, shown: Report | None = None) -> Study:
         speeds=speeds,
         warnings=(*_warnings(cell, judged, drawn), *(() if speeds is None else speeds.warnings)),
     )
+
+
+def verdicts_of(
+    cell: Cell,
+) -> tuple[list[Judged], list[dict[str | None, contact.ContactImpact]], list[dict[str, Any]]]:
+    """Return the contacts with their verdicts, their loads at the planned speed by covering, and their chances.
+
+    Parameters
+    ----------
+    cell : Cell
+        What was asked.
+
+    Returns
+    -------
+    tuple of three lists
+        In the order of the contacts.
+    """
+    found = [judged_of(cell, planned) for planned in cell.contacts]
+    loads = [_loads(cell, each) for each in found]
+    chances = [chance_of(cell, each.planned, each.chosen) for each in found]
+    judged = []
+    for each, impacts, chance in zip(found, loads, chances, strict=True):
+        closing = each.verdict["planned_closing_speed"]
+        driven = None if _yields(each) else driven_of(cell, each.planned, closing)
+        chosen = impacts.get(each.planned.covering)
+        doubts = (
+            *(() if chosen is None else chosen.warnings),
+            *drive_doubts(cell, each.planned, driven),
+            *chance_doubts(cell, chance),
+        )
+        decision = decided(cell, each, doubts)
+        drive = None if _yields(each) else drive_fields(cell, each.planned, closing, driven)
+        judged.append(decision._replace(verdict=decision.verdict | {"drive": drive}))
+    return judged, loads, chances
 
 
 def _yields(judged: Judged) -> bool:
