@@ -388,7 +388,7 @@ def _taken_as_none(intrusion: Any, uncertainty: Any) -> tuple[tuple[ResultWarnin
         f"no {' and no '.join(missing)} given, taken as 0 m: a distance with them is longer; give 0 where there is none"
     )
     doubt = ResultWarning("taken_as_zero", " and ".join(missing), words)
-    return (doubt,), *(0.0 if each is None else each for each in (intrusion, uncertainty))
+    return (doubt,), 0.0 if intrusion is None else intrusion, 0.0 if uncertainty is None else uncertainty
 
 
 def _warn(taken: tuple[ResultWarning, ...]) -> None:
