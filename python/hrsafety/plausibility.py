@@ -30,6 +30,7 @@ __all__ = [
     "UnitWarning",
     "gathered",
     "implausible",
+    "issue",
     "telling",
     "unsafe_doubts",
     "warn_implausible",
@@ -415,7 +416,27 @@ def warn_implausible(
     'ImplausibleWarning'
     """
     for found in _implausible(values, quantities or {}):
-        warnings.warn(found.message, ImplausibleWarning, stacklevel=stacklevel)
+        issue(found.message, ImplausibleWarning, stacklevel=stacklevel + 1)
+
+
+def issue(message: str, category: type[HrsafetyWarning] = HrsafetyWarning, *, stacklevel: int = 2) -> None:
+    """Issue a warning at a caller as `warnings.warn` does; functions that only pass calls on do not count.
+
+    Parameters
+    ----------
+    message : str
+        What is told.
+    category : type
+        Of the warning.
+    stacklevel : int
+        Which caller the warning points at: 2 is that of the function which calls this one.
+    """
+    level, counted, frame = 1, 1, sys._getframe()
+    while frame.f_back is not None and counted < stacklevel:
+        frame = frame.f_back
+        level += 1
+        counted += frame.f_globals.get("__name__") != suggesting.__module__
+    warnings.warn(message, category, stacklevel=level)
 
 
 def _implausible(values: Mapping[str, object], quantities: Mapping[str, str]) -> Iterable[ResultWarning]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import field
 from typing import Any
 
@@ -13,7 +12,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, number, numbers, own, vector
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.plausibility import HrsafetyWarning, ResultWarning, implausible, warn_implausible
+from hrsafety.plausibility import ResultWarning, implausible, issue, warn_implausible
 from hrsafety.tables import Columns, Table
 
 __all__ = ["SpeedCurve", "StoppingData", "separation_distance", "separation_speed", "speed_over_distance"]
@@ -394,7 +393,7 @@ def _taken_as_none(intrusion: Any, uncertainty: Any) -> tuple[tuple[ResultWarnin
 def _warn(taken: tuple[ResultWarning, ...]) -> None:
     """Issue the doubts of a plain number, which carries none, at the caller of the function that returns it."""
     for doubt in taken:
-        warnings.warn(doubt.message, HrsafetyWarning, stacklevel=3)
+        issue(doubt.message, stacklevel=3)
 
 
 # ---- crossing the boundary ----------------------------------------------------------------------
