@@ -38,6 +38,8 @@ ARM, FOAM, HEAD = impact.MANIPULATOR_1, impact.FOAM_1, impact.Head.minimum()
 
 CALLS: dict[str, tuple[Callable[[], Any], str]] = {
     "a run": (lambda: nav.simulate(DEGREES, FIELD), "heading is 90 rad"),
+    "a run by keywords": (lambda: nav.simulate(scenario=DEGREES, law=FIELD), "heading is 90 rad"),
+    "many runs by keywords": (lambda: nav.simulate_many(scenarios=[DEGREES], laws=FIELD), "heading is 90 rad"),
     "radii": (lambda: nav.simulate(MILLIMETERS, FIELD), r"obstacles\[0\].critical_radius is 80 m"),
     "a score": (lambda: nav.evaluate(DEGREES, FIELD), "heading is 90 rad"),
     "many runs": (lambda: nav.simulate_many([scene(), DEGREES], FIELD), "heading is 90 rad"),

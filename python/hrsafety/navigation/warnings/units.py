@@ -14,14 +14,15 @@ MOST_SCENES = 100
 """So many scenarios are looked at when runs end; the warnings of a table look at all."""
 
 
-def of_scenarios(scenarios: object, *_args: object, **_options: object) -> Iterator[ResultWarning]:
+def of_scenarios(*positional: object, **named: object) -> Iterator[ResultWarning]:
     """Yield doubts about units of the first scenarios of a call, which may be one, a sequence or a mapping.
 
     Parameters
     ----------
-    scenarios : object
-        First argument of the call.
+    *positional, **named
+        Arguments of the call: scenarios are the first one, or named ``scenario`` or ``scenarios``.
     """
+    scenarios = positional[0] if positional else named.get("scenario", named.get("scenarios"))
     given: Iterable[object] = ()
     if isinstance(scenarios, Scenario):
         given = (scenarios,)
