@@ -29,7 +29,8 @@ def main(path: str) -> None:
         print(f"  reached the goal                  {int((table.arrival_time > 0).sum()):3d} of {len(table)}")
         print(f"  without touching anybody          {int((table.outcome == 'arrived').sum()):3d}")
         print(f"  people in the active region       {int(table.entered_active.sum()):3d}")
-        print(f"  touched by the moving robot       {int(table.contacts_moving.sum()):3d}")
+        print(f"  toward whom the robot moved       {int(table.contacts_toward.sum()):3d}")
+        print(f"  who touched it while it retreated {int(table.contacts_away.sum()):3d}")
         print(f"  walked into the standing robot    {int(table.contacts_standing.sum()):3d}")
 
 
