@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 __all__ = [
     "CONTACT_SPEED",
+    "DECIDED_OVERLAP",
     "Arm",
     "AsBuilt",
     "Burst",
