@@ -235,7 +235,11 @@ class Controller:
     def _told(self, fields: Mapping[str, Any], before: Pair, faster: tuple[Hashable, ...]) -> Command:
         rules, robot = self._rules, self._rules["robot"]
         limits = {"period": rules["control_period"], "max_acceleration": robot.max_acceleration}
-        return Command(before=before, faster=faster, **limits, **fields)
+        told = dict(fields)
+        if isinstance(robot, DifferentialDriveRobot) and told["speed"] is None:
+            # Two wheels that were never told where they are stand.
+            told |= {"speed": 0.0, "turn_rate": 0.0}
+        return Command(before=before, faster=faster, **limits, **told)
 
     def _seen(
         self, people: Mapping[Hashable, Sequence[float | None]] | npt.ArrayLike
