@@ -84,6 +84,7 @@ __all__ = [
     "bare_forces",
     "burst_trial_delays",
     "cast_rays",
+    "cell_distances",
     "check_takeover",
     "codes_there",
     "collision_feet",
@@ -166,7 +167,7 @@ __all__ = [
     "separation_distances",
     "separation_speeds",
     "shield_speed_bound",
-    "signal_push",
+    "signal_shape",
     "simulate",
     "simulate_batch",
     "simulate_direct_drive",
@@ -182,7 +183,6 @@ __all__ = [
     "sonar_readings",
     "sound_delays",
     "speed_of_sound",
-    "squared_cell_distances",
     "steady_gains",
     "stopping_segments",
     "track",
@@ -1033,8 +1033,10 @@ def foam_fastest(
 def hic(time: _Array, acceleration_g: _Array, window: float, interpolate: bool) -> _Triple:
     """Return value, start and end of the head injury criterion of a signal."""
 
-def signal_push(time: _Array, acceleration_g: _Array, start: float, end: float) -> _Triple:
-    """Return the least and the largest value of a signal, and the area of the push around a window."""
+def signal_shape(
+    time: _Array, values: _Array, rest: float, window: tuple[float, float]
+) -> tuple[float, float, float, float, float, float, float, int, int, float]:
+    """Return features of a signal, and the area of the push around a window."""
 
 def moving_average(time: _Array, acceleration_g: _Array, width: float) -> _Triple:
     """Return value, start and end of the largest moving average of a signal."""
@@ -1042,8 +1044,10 @@ def moving_average(time: _Array, acceleration_g: _Array, width: float) -> _Tripl
 def contiguous_level(time: _Array, acceleration_g: _Array, width: float) -> _Triple:
     """Return value, start and end of the level that a signal exceeds without a break."""
 
-def recorded_metrics(time: _Array, acceleration_g: _Array, **given: object) -> _Row:
-    """Return numbers, status and whether the foam leaves its linear range, of a recorded impact."""
+def recorded_metrics(
+    time: _Array, acceleration_g: _Array, **given: object
+) -> tuple[_Row, tuple[float, ...]]:
+    """Return numbers, status and whether the foam leaves its linear range, of a recorded impact, and of all of it."""
 
 def hic_of_pulse(shape: str, peak_g: float, duration: float, window: float) -> float:
     """Return the head injury criterion of a pulse of a known shape."""
@@ -1813,8 +1817,8 @@ class StaticMap:
     def bounds(self) -> tuple[_Pair, _Pair] | None:
         """Return lower and upper corner in m."""
 
-def squared_cell_distances(occupied: _Occupied) -> _Array:
-    """Squared distances of cells from the nearest occupied one, in cells."""
+def cell_distances(occupied: _Occupied, resolution: float) -> _Array:
+    """Distances of cells of a side from the nearest occupied one."""
 
 @final
 class Guide:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from typing import NamedTuple
 
@@ -14,11 +15,16 @@ from hrsafety._bounds import MOST_RESAMPLES
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Mean", "Paired", "Share", "compare_paired", "mean_interval", "wilson"]
 
 # Two-sided 95 % of the normal distribution.
 _Z95 = 1.959963984540054
+# Degrees of freedom above which a series tells Student's quantile to 1e-7.
+_MANY = 200
+# Runs from which an interval of a mean is told without a doubt.
+_FEW_RUNS = 10
 
 
 @displayed
@@ -114,8 +120,10 @@ def compare_paired(first: npt.NDArray[np.bool_], second: npt.NDArray[np.bool_]) 
 
     Raises
     ------
+    InvalidParameterError
+        If they are not made of truth values, or of 0 and 1.
     ShapeError
-        If the two are not of the same length.
+        If the two are not of the same length, or not one-dimensional.
 
     Examples
     --------
@@ -124,8 +132,8 @@ def compare_paired(first: npt.NDArray[np.bool_], second: npt.NDArray[np.bool_]) 
     >>> compare_paired(np.array([True] * 6), np.array([False] * 6)).p_value
     0.03125
     """
-    one, other = np.asarray(first, dtype=bool), np.asarray(second, dtype=bool)
-    if one.ndim != 1 or one.shape != other.shape:
+    one, other = _outcomes("first", first), _outcomes("second", second)
+    if one.shape != other.shape:
         raise ShapeError("second", f"({one.size},)", other.shape)
     only_first = int(np.sum(one & ~other))
     only_second = int(np.sum(other & ~one))
@@ -136,17 +144,58 @@ def compare_paired(first: npt.NDArray[np.bool_], second: npt.NDArray[np.bool_]) 
     return Paired(only_first, only_second, min(1.0, 2 * tail / 2**differing))
 
 
+def _outcomes(name: str, value: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+    """Return outcomes of runs, or say what they should have been."""
+    rule = "be an array of truth values, one for each run"
+    try:
+        given = np.asarray(value)
+    except (TypeError, ValueError):  # rows of different lengths
+        raise InvalidParameterError(name, rule, value) from None
+    if given.ndim != 1:
+        raise ShapeError(name, "(n,)", given.shape)
+    if len(given) and (given.dtype.kind not in "biuf" or not np.isin(given, (0, 1)).all()):
+        raise InvalidParameterError(name, rule, value)
+    return given.astype(np.bool_)
+
+
+@functools.cache
+def _student(degrees: int) -> float:
+    """Return the two-sided 95 % quantile of Student's distribution (Abramowitz and Stegun, 26.7.3 to 26.7.5)."""
+    if degrees > _MANY:
+        z, n = _Z95, degrees
+        first = (z**3 + z) / (4.0 * n)
+        return z + first + (5.0 * z**5 + 16.0 * z**3 + 3.0 * z) / (96.0 * n**2)
+    low, high = 0.0, 0.5 * math.pi
+    # Halves of the interval of theta = atan(t / sqrt(n)), until they are one number.
+    while low < (middle := 0.5 * (low + high)) < high:
+        low, high = (middle, high) if _inside(middle, degrees) < 0.95 else (low, middle)
+    return math.tan(high) * math.sqrt(degrees)
+
+
+def _inside(theta: float, degrees: int) -> float:
+    """Return the chance of an absolute value below tan(theta) sqrt(n) of Student's distribution."""
+    odd = degrees % 2
+    square = math.cos(theta) ** 2
+    term = math.cos(theta) if odd else 1.0
+    total = term if degrees > 1 else 0.0
+    for k in range(2 + odd, degrees - 1, 2):
+        term *= square * (k - 1) / k
+        total += term
+    found = math.sin(theta) * total
+    return 2.0 / math.pi * (theta + found) if odd else found
+
+
 @displayed
 @dataclass(frozen=True, slots=True)
 class Mean:
-    """A mean with its 95 % bootstrap interval.
+    """A mean with its 95 % interval.
 
     Attributes
     ----------
     runs : int
         Of how many runs.
     value, low, high : float
-        Mean and interval; NaN without any run, and the mean itself of a single run.
+        Mean and interval; NaN without any run, and the mean itself of a single run, which has none.
     """
 
     runs: int
@@ -156,11 +205,34 @@ class Mean:
 
     def __str__(self) -> str:
         """Return the mean with its interval, and of how many runs."""
-        return f"{self.value:.4g} ({self.low:.4g} to {self.high:.4g}), {self.runs} runs"
+        if self.runs == 1:
+            return f"{self.value:.4g} (no interval), 1 run"
+        few = ", too few for an interval to be relied on" if self.warnings else ""
+        return f"{self.value:.4g} ({self.low:.4g} to {self.high:.4g}), {self.runs} runs{few}"
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """That the mean is of less than ten runs: its interval holds for numbers of the normal distribution only."""
+        if not 0 < self.runs < _FEW_RUNS:
+            return ()
+        runs = "1 run" if self.runs == 1 else f"{self.runs} runs"
+        interval = (
+            "nothing is known of how far off it is"
+            if self.runs == 1
+            else "its interval is right if they are normally distributed, and too narrow if they are skewed"
+        )
+        message = f"a mean of {runs}: {interval}; use {_FEW_RUNS} runs or more"
+        return (ResultWarning("few_runs", "runs", message),)
 
 
 def mean_interval(values: npt.ArrayLike, *, resamples: int = 2000, seed: int = 0) -> Mean:
-    """Return a mean with its 95 % percentile bootstrap interval.
+    """Return a mean with its 95 % bootstrap interval, as wide as few runs make it.
+
+    The ends of the percentile bootstrap interval are moved away from the mean by the factor
+    ``t sqrt(n / (n - 1)) / z`` of Student's quantile with n - 1 degrees of freedom and the normal one: by itself the
+    interval of n runs knows neither that their spread is less than that of all by (n - 1) / n, nor that the spread is
+    estimated. It then covers the mean of normal numbers as often as it says (of 3 runs in 94.6 %, without the factor
+    in 73 %); that of an exponential distribution in 87 % of 3 and in 90 % of 10 runs.
 
     Parameters
     ----------
@@ -188,8 +260,8 @@ def mean_interval(values: npt.ArrayLike, *, resamples: int = 2000, seed: int = 0
     >>> from hrsafety._statistics import mean_interval
     >>> mean_interval([1.0, 1.0, 1.0])
     Mean(runs=3, value=1.0, low=1.0, high=1.0)
-    >>> print(mean_interval([1.0, 1.0, 1.0]))
-    1 (1 to 1), 3 runs
+    >>> print(mean_interval([1.0, 1.2, 1.1] * 4))
+    1.1 (1.046 to 1.154), 12 runs
     """
     whole("resamples", resamples, most=MOST_RESAMPLES)
     given = vector("values", values)
@@ -199,5 +271,9 @@ def mean_interval(values: npt.ArrayLike, *, resamples: int = 2000, seed: int = 0
     means = np.empty(resamples)
     for index in range(resamples):
         means[index] = given[generator.integers(0, len(given), len(given))].mean()
-    low, high = np.quantile(means, [0.025, 0.975])
-    return Mean(len(given), float(given.mean()), float(low), float(high))
+    mean, runs = float(given.mean()), len(given)
+    if runs == 1:
+        return Mean(1, mean, mean, mean)
+    factor = _student(runs - 1) / _Z95 * math.sqrt(runs / (runs - 1))
+    low, high = (mean + factor * (float(end) - mean) for end in np.quantile(means, [0.025, 0.975]))
+    return Mean(runs, mean, low, high)

@@ -12,6 +12,9 @@ from hrsafety import impact
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.impact.criteria import filters
 
+# Random and coarse signals are doubtful, which is tested beside the units; here only the numbers count.
+pytestmark = pytest.mark.filterwarnings("ignore::hrsafety.plausibility.HrsafetyWarning")
+
 # Only the order of the sums differs.
 BRUTE_FORCE = 1e-12
 # Formulas of pulses, with windows whose ends are free.

@@ -97,7 +97,7 @@ mod _hrsafety {
     use crate::impact::parameters::{ConstrainedHead, Foam, Head, Manipulator};
     #[pymodule_export]
     use crate::impact::signal::{
-        contiguous_level, hic, hic_of_pulse, moving_average, recorded_metrics, signal_push,
+        contiguous_level, hic, hic_of_pulse, moving_average, recorded_metrics, signal_shape,
     };
     #[pymodule_export]
     use crate::impact::single::{
@@ -106,7 +106,7 @@ mod _hrsafety {
     #[pymodule_export]
     use crate::laws::Law;
     #[pymodule_export]
-    use crate::maps::{Guide, Lidar, Plan, StaticMap, check_takeover, squared_cell_distances};
+    use crate::maps::{Guide, Lidar, Plan, StaticMap, cell_distances, check_takeover};
     #[pymodule_export]
     use crate::parameters::{
         DifferentialDriveRobot, HolonomicRobot, Measurement, Obstacle, Scenario, region_radii,

@@ -8,7 +8,7 @@ use vff_core::laws::guide::{self, LocalGoal};
 use vff_core::sensing::sonar::ranging::Normals;
 use vff_core::sensing::{RobotSensor, lidar};
 use vff_core::world::frame::Frame;
-use vff_core::world::map::distance_transform::squared_distances;
+use vff_core::world::map::distance_transform::distances;
 use vff_core::world::map::{self, GridPlace, MapShapes};
 use vff_core::world::obstacle::PlacedShape;
 
@@ -166,16 +166,20 @@ impl StaticMap {
     }
 }
 
-/// Squared distances of cells from the nearest occupied one.
+/// Distances of cells of a side in m from the nearest occupied one.
 #[pyfunction]
 #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
-pub fn squared_cell_distances<'py>(py: Python<'py>, occupied: Cells<'py>) -> PyResult<Matrix<'py>> {
+pub fn cell_distances<'py>(
+    py: Python<'py>,
+    occupied: Cells<'py>,
+    resolution: f64,
+) -> PyResult<Matrix<'py>> {
     let (rows, columns) = occupied.as_array().dim();
     let cells = occupied.as_slice()?;
-    let squares = watched(py, Report::none(), |control| {
-        squared_distances(cells, columns, &|| control.interrupted())
+    let found = watched(py, Report::none(), |control| {
+        distances(cells, columns, resolution, &|| control.interrupted())
     })?;
-    squares.into_pyarray(py).reshape([rows, columns])
+    found.into_pyarray(py).reshape([rows, columns])
 }
 
 parameter_class! {

@@ -7,7 +7,7 @@ from dataclasses import fields
 from types import MappingProxyType
 
 from hrsafety import navigation as nav
-from hrsafety._arguments import meant
+from hrsafety._arguments import checked_text, meant
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.laws.known import LAWS
@@ -123,6 +123,7 @@ def entry(word: str) -> Entry:
     >>> entry("field(attractive_gain=13)").law.attractive_gain
     13.0
     """
+    checked_text("laws", word, "hold words such as field+shield")
     name, *parts = word.strip().lower().split("+")
     for part in parts:
         if part not in PARTS:

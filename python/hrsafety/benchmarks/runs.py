@@ -5,17 +5,18 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from hrsafety import __version__
 from hrsafety._arguments import callback, checked_seed, count, number, positive, readable, sequence, thread_count, word
-from hrsafety._atomic import write_file
+from hrsafety._atomic import only_writer, write_file
 from hrsafety.benchmarks.entries import MARGIN, Entry, entry
 from hrsafety.benchmarks.protocol import Case, Suite
 from hrsafety.benchmarks.results import Result, Row, read_rows, row_text
 from hrsafety.benchmarks.suites import CHUNK, SUITES
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import FolderInUseError, InvalidParameterError, Shown, StorageError
 from hrsafety.navigation.metrics.between import CONTACT_BETWEEN
 from hrsafety.navigation.warnings.shields import ASSUMES_LESS
 from hrsafety.plausibility import ResultWarning
@@ -23,6 +24,9 @@ from hrsafety.plausibility import ResultWarning
 __all__ = ["benchmark", "case_of"]
 
 Progress = Callable[[int, int], object]
+
+NOTHING_LOST = "all rows that were there"
+WRITABLE = "choose a folder that can be written, then start again: it resumes there"
 
 
 def benchmark(
@@ -76,6 +80,10 @@ def benchmark(
     ------
     InvalidParameterError
         If a word is unknown, a number out of range, or the folder holds something else.
+    FolderInUseError
+        If another process is writing the same rows.
+    StorageError
+        If the folder cannot be written.
 
     Examples
     --------
@@ -112,9 +120,7 @@ def benchmark(
             rule = f"be 0 in {kind.name}, whose protocol has its own sensing"
             raise InvalidParameterError(name, rule, value)
     told = callback("progress", progress)
-    place = None if out is None else Path(out)
-    if place is not None:
-        place.mkdir(parents=True, exist_ok=True)
+    place = None if out is None else _folder(out)
     done = 0
     rows: dict[str, Sequence[Row]] = {}
     for each in entries:
@@ -145,6 +151,22 @@ def _conditions(kind: Suite, settings: Mapping[str, Any]) -> str:
     if not kind.sensed:
         sensing = "sensing of the protocol"
     return f"{kind.summary}; {sensing}; shields assume people of up to {settings['person_speed']:g} m/s"
+
+
+def _folder(out: object) -> Path:
+    """Return the folder for rows, made if it is not there."""
+    if not isinstance(out, (str, PathLike)):
+        raise InvalidParameterError("out", "be the path of a folder", out)
+    try:
+        place = Path(out)
+        if place.exists() and not place.is_dir():
+            raise InvalidParameterError("out", "be a folder or not exist", str(place), "this is a file or a device")
+        place.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise StorageError(place, error, kept=NOTHING_LOST, remedy=WRITABLE) from None
+    except ValueError as error:  # a null character
+        raise InvalidParameterError("out", "be the path of a folder", Shown(f"{out!r} ({error})")) from None
+    return place
 
 
 def _doubts(kind: Suite, person_speed: float) -> Iterator[ResultWarning]:
@@ -211,7 +233,28 @@ def _run(
     place: Path | None,
     heard: Callable[[int], None],
 ) -> list[Row]:
-    path = None if place is None else _file(place, suite, each, settings)
+    if place is None:
+        return _missing(suite, each, runs, settings, None, heard)
+    path = _file(place, suite, each, settings)
+    # Another process that writes the same rows would write them twice.
+    with only_writer(path.with_name(f".{path.name}.lock"), FolderInUseError):
+        try:
+            return _missing(suite, each, runs, settings, path, heard)
+        except OSError as error:
+            if isinstance(error, StorageError):
+                raise
+            raise StorageError(path, error, kept=NOTHING_LOST, remedy=WRITABLE) from None
+
+
+def _missing(
+    suite: Suite,
+    each: Entry,
+    runs: int,
+    settings: Mapping[str, object],
+    path: Path | None,
+    heard: Callable[[int], None],
+) -> list[Row]:
+    """Return the rows of a file and those that it lacks, which are computed and added to it."""
     rows = [] if path is None else read_rows(path)
     known = {row.case for row in rows}
     if path is not None:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, number, positive
+from hrsafety._arguments import Array, flag, number, positive
 from hrsafety._records import dataclass
 from hrsafety.contact.bodies import agreeing, body_of
 from hrsafety.contact.covering import Covering, Region, covering_of
@@ -152,7 +152,7 @@ class ContactImpact(Table):
 def _gravity(head: bool | None, body_mass: object) -> float | None:
     """Return the gravity of the head injury criterion if it is asked for."""
     light = body_mass is not None and number("body_mass", body_mass) < HEAD_MASS
-    return GRAVITY if (light if head is None else head) else None
+    return GRAVITY if (light if head is None else flag("head", head)) else None
 
 
 @telling()

@@ -35,7 +35,7 @@ from hrsafety.impact.parameters import (
     Manipulator,
     default_linear_range,
 )
-from hrsafety.plausibility import ResultWarning, telling
+from hrsafety.plausibility import ResultWarning, telling, unsafe_doubts
 
 __all__ = ["FoamDesign", "design_foam"]
 
@@ -203,6 +203,8 @@ class FoamDesign:
             found.status = "beyond_linear_range"
         elif least < 0.0:
             found.status = "exceeded"
+        elif unsafe_doubts((*self.warnings, *checked.warnings)):
+            found.status = "not_checked"
         return found
 
     def accepts(self, foam: Foam, margin: float = 0.0) -> bool:

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import NamedTuple
 
-from hrsafety._arguments import Parameters, positive
+from hrsafety._arguments import Parameters, instance, positive
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.plausibility import ResultWarning, implausible
+from hrsafety.impact.criteria.loads import ImpactMetrics
+from hrsafety.plausibility import ResultWarning, implausible, unsafe_doubts
 
 __all__ = ["FoamFeasibility", "FoamLimits", "FoamMargin"]
 
@@ -63,6 +64,45 @@ class FoamLimits(Parameters):
             {f"limits.{name}": limit for name, limit in given.items()}, {f"limits.{name}": name for name in given}
         )
 
+    def verdict(self, loads: ImpactMetrics) -> str:
+        """Return what loads mean for these limits, doubts included.
+
+        Parameters
+        ----------
+        loads : ImpactMetrics
+            Computed, or measured as by `recorded_metrics`.
+
+        Returns
+        -------
+        str
+            ``"exceeds"`` if a limit is exceeded; ``"within_limits"`` only if every limit is kept, the impact ended
+            within what was looked at, the foam stayed in its linear range, and no doubt about loads or limits may err
+            on the unsafe side; else ``"not_checked"``.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the loads are none.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from hrsafety import impact
+        >>> time = np.linspace(-0.02, 0.04, 601)
+        >>> pulse = 8.0 * np.sin(np.pi * time / 0.02) * ((time > 0.0) & (time < 0.02))
+        >>> limits = impact.FoamLimits(peak_head_acceleration_g=10.0, max_compression=None)
+        >>> limits.verdict(impact.recorded_metrics(time, pulse))
+        'within_limits'
+        """
+        instance("loads", loads, ImpactMetrics)
+        given = {name: (getattr(loads, name), limit) for name, limit in self.given().items()}
+        if any(load > limit for load, limit in given.values()):
+            return "exceeds"
+        known = all(load <= limit for load, limit in given.values())
+        whole = loads.status == "released" and not loads.beyond_linear_range
+        certain = not unsafe_doubts((*loads.warnings, *self.warnings))
+        return "within_limits" if known and whole and certain else "not_checked"
+
     def given(self) -> dict[str, float]:
         """Return the limits that are set.
 
@@ -100,7 +140,8 @@ class FoamMargin(_Shares):
         infinity if it never does. Like ``status`` no item of the tuple.
     status : str
         ``"kept"``; ``"exceeded"``: a limit is; ``"beyond_linear_range"``: the foam is compressed beyond its linear
-        range; ``"bottomed"``: by more than it is thick. The last two come first, because loads mean little there.
+        range; ``"bottomed"``: by more than it is thick; ``"not_checked"``: all is kept, but a doubt about the numbers
+        of the design or the foam may err on the unsafe side. What makes loads mean little comes first.
     """
 
     linear_range: float = 0.0

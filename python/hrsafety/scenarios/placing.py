@@ -10,10 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import navigation as nav
-from hrsafety._arguments import checked_seed, instance
+from hrsafety._arguments import checked_seed, instance, positive
+from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.crowd import Pedestrian
 
-__all__ = ["MOST_PEOPLE", "RADIUS", "drawn", "lattice", "model_of"]
+__all__ = ["FAR", "MOST_PEOPLE", "RADIUS", "drawn", "extent", "lattice", "model_of"]
 
 Array = npt.NDArray[np.float64]
 
@@ -21,6 +22,18 @@ MOST_PEOPLE = 100_000
 """Most people of a world that is drawn here."""
 RADIUS = 0.25
 """Radius of a person in m."""
+FAR = 1e6
+"""Distance in m of goals that nobody reaches; no world that is drawn is larger."""
+MOST_CELLS_EACH = 1000
+"""Most cells of a lattice for each person: thinner rectangles have no room for the others."""
+
+
+def extent(name: str, value: float) -> float:
+    """Return a length of a world that is drawn, or say what it should have been."""
+    length = positive(name, value)
+    if length > FAR:
+        raise InvalidParameterError(name, f"be at most {FAR:g} m", value)
+    return length
 
 
 @functools.cache
@@ -42,7 +55,7 @@ def drawn(seed: int) -> tuple[int, np.random.Generator]:
 def lattice(generator: np.random.Generator, people: int, low: Sequence[float], high: Sequence[float]) -> Array:
     """Return places in a rectangle, one in each of so many equal cells, at random within the room of the cell."""
     size = np.subtract(high, low)
-    columns = max(1, math.ceil(math.sqrt(people * size[0] / size[1])))
+    columns = max(1, math.ceil(min(math.sqrt(people * size[0] / size[1]), MOST_CELLS_EACH * people)))
     rows = max(1, math.ceil(people / columns))
     chosen = np.sort(generator.permutation(columns * rows)[:people])
     cell = size / (columns, rows)

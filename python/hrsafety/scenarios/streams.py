@@ -7,12 +7,10 @@ from collections.abc import Sequence
 from hrsafety._arguments import count, flag, number, positive
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.crowd import CrowdRobot, Pedestrian, Person, Source, World
-from hrsafety.scenarios.placing import MOST_PEOPLE, RADIUS, drawn, lattice, model_of
+from hrsafety.scenarios.placing import FAR, MOST_PEOPLE, RADIUS, drawn, extent, lattice, model_of
 
 __all__ = ["bottleneck", "corridor", "cross_torus", "crossing"]
 
-FAR = 1e6
-"""Distance in m of goals that nobody reaches."""
 FASTEST = 4.0
 """Faster than anybody walks, in m/s: walls of worlds that repeat themselves are long enough for it."""
 CORRIDOR = 3.0
@@ -80,7 +78,7 @@ def corridor(
     """
     people = count("n", n, least=0, most=MOST_PEOPLE)
     checked, generator = drawn(seed)
-    long, wide = positive("length", length), positive("width", width)
+    long, wide = extent("length", length), extent("width", width)
     limit = positive("time_limit", time_limit)
     body = positive("radius", radius)
     of, both = model_of(model), flag("two_way", two_way)
@@ -238,7 +236,7 @@ def cross_torus(
     """
     people = count("n", n, least=0, most=MOST_PEOPLE)
     checked, generator = drawn(seed)
-    length = positive("side", side)
+    length = extent("side", side)
     of = model_of(model)
     places = lattice(generator, people, (0.0, 0.0), (length, length))
     ways = generator.permutation(people) % 2

@@ -19,6 +19,9 @@ __all__ = ["SweepEstimate", "estimate", "size_words", "time_words"]
 
 # Measured rows are taken in ever larger blocks until that took so long, in s.
 _ENOUGH = 0.5
+# And until so many were measured, unless that takes too long, in s.
+_ENOUGH_ROWS = 1000
+_TOO_LONG = 1.0
 _GROWTH = 4
 # Successive multiples of the golden section spread over the design whatever their number.
 _GOLDEN = 0.6180339887498949
@@ -92,8 +95,9 @@ def estimate(
 ) -> SweepEstimate:
     """Return what a sweep will take, from a few rows that are computed for it; nothing is written.
 
-    Rows are taken from all over the design, in ever larger blocks for about half a second, and the largest block
-    counts. Time does not include the disk.
+    Rows are taken from all over the design, in ever larger blocks, until there are 1,000 and half a second has passed,
+    or a second where rows take long; the largest block counts. The first row is computed twice, and only the
+    second time counts: the first one in a process loads libraries. Time does not include the disk.
 
     Parameters
     ----------
@@ -168,12 +172,19 @@ class _Block(NamedTuple):
 def _measured(plan: Plan, store: str) -> list[_Block]:
     """Return blocks of 1, 4, 16, ... rows, at most a chunk, from all over the design."""
     files = chunk_files(store, plan.task.columns)
-    blocks: list[_Block] = []
-    rows, begin = 1, time.perf_counter()
-    while rows <= plan.chunk_rows and (not blocks or time.perf_counter() - begin < _ENOUGH):
-        start = int((len(blocks) + 1) * _GOLDEN % 1.0 * (plan.rows - rows))
+
+    def block(start: int, rows: int) -> _Block:
         before, kept = time.perf_counter(), io.BytesIO()
         files.write(kept, "0" * _MARK_LENGTH, computed(plan.task, start, start + rows))
-        blocks.append(_Block(rows, time.perf_counter() - before, kept.tell()))
+        return _Block(rows, time.perf_counter() - before, kept.tell())
+
+    block(0, 1)  # loads what the first row of a process loads
+    blocks: list[_Block] = []
+    rows, begin = 1, time.perf_counter()
+    while rows <= plan.chunk_rows:
+        blocks.append(block(int((len(blocks) + 1) * _GOLDEN % 1.0 * (plan.rows - rows)), rows))
+        passed, measured = time.perf_counter() - begin, sum(each.rows for each in blocks)
+        if passed > (_ENOUGH if measured >= _ENOUGH_ROWS else _TOO_LONG):
+            break
         rows = min(rows * _GROWTH, plan.chunk_rows) if rows < plan.chunk_rows else plan.chunk_rows + 1
     return blocks

@@ -100,6 +100,7 @@ def test_numbers_that_overflow_are_refused() -> None:
             impact.identification.fit_static(force, compression)
 
 
+@pytest.mark.filterwarnings("ignore:.*less than 6 steps:hrsafety.plausibility.HrsafetyWarning")
 def test_masked_values_are_refused_by_name() -> None:
     time = np.ma.masked_array([0.0, 0.001, 0.002], mask=[False, True, False])
     with pytest.raises(InvalidParameterError, match=r"time must have no masked values, got 1 masked of 3"):

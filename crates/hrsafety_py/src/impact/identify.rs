@@ -11,10 +11,7 @@ use pyo3::types::PyDict;
 use crate::arrays::Fields;
 use crate::errors::CoreError;
 use crate::keywords::{Keywords, taken};
-use crate::watch::{Report, watched};
-
-/// Samples, and radians of a foam's oscillation, that take less than a look at signals.
-const SHORT: usize = 10_000;
+use crate::watch::{Report, here, watched};
 
 type Samples<'py> = PyReadonlyArray1<'py, f64>;
 
@@ -129,18 +126,10 @@ pub fn drop_trajectory<'py>(
     };
     given.done()?;
     let time = time.as_slice()?;
-    let end = time
-        .last()
-        .zip(time.first())
-        .map_or(0.0, |(last, first)| last - first);
-    let heights =
-        if time.len() < SHORT && end * (model.stiffness / model.mass).sqrt() < SHORT as f64 {
-            identify::drop_trajectory(time, &model).map_err(CoreError::from)?
-        } else {
-            watched(py, Report::none(), |control| {
-                identify::drop_trajectory_until(time, &model, &|| control.interrupted())
-            })?
-        };
+    // How many events there are is known only afterwards: work of any length looks at signals.
+    let heights = here(py, Report::none(), |control| {
+        identify::drop_trajectory_until(time, &model, &|| control.interrupted())
+    })?;
     Ok(heights.into_pyarray(py).into_any())
 }
 

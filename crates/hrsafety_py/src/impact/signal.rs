@@ -59,16 +59,33 @@ pub fn hic(
     Ok((found.value, found.start, found.end))
 }
 
-/// Extremes of a signal and the area of the push around a window.
+/// Features of a signal, see `signal::Shape`, with the rest looked for over `rest` seconds, and the
+/// area of the push around a window.
 #[pyfunction]
-pub fn signal_push(
+pub fn signal_shape(
+    py: Python<'_>,
     time: Samples<'_>,
-    acceleration_g: Samples<'_>,
-    start: f64,
-    end: f64,
-) -> PyResult<Window> {
-    let found = signal::push_around(time.as_slice()?, acceleration_g.as_slice()?, start, end);
-    Ok((found.least, found.most, found.area))
+    values: Samples<'_>,
+    rest: f64,
+    window: (f64, f64),
+) -> PyResult<(f64, f64, f64, f64, f64, f64, f64, usize, usize, f64)> {
+    let (time, signal) = (time.as_slice()?, values.as_slice()?);
+    let (found, area) = stopped(py, time.len(), |interrupted| {
+        let found = signal::shape_until(time, signal, rest, interrupted)?;
+        Ok((found, signal::push_around(time, signal, window.0, window.1)))
+    })?;
+    Ok((
+        found.least,
+        found.most,
+        found.width,
+        found.step,
+        found.longest_step,
+        found.rest,
+        found.noise,
+        found.rest_samples,
+        found.flat,
+        area,
+    ))
 }
 
 /// Largest moving average of a signal: value, start, end.
@@ -123,7 +140,8 @@ fn slice<'a>(samples: Option<&'a Samples<'_>>) -> PyResult<Option<&'a [f64]>> {
     Ok(samples.map(|samples| samples.as_slice()).transpose()?)
 }
 
-/// Numbers, status and whether the foam leaves its linear range, of a recorded impact.
+/// Numbers, status and whether the foam leaves its linear range, of a recorded impact, and the
+/// numbers over the whole record.
 #[pyfunction]
 #[pyo3(signature = (time, acceleration_g, **given))]
 pub fn recorded_metrics<'py>(
@@ -131,29 +149,29 @@ pub fn recorded_metrics<'py>(
     time: Samples<'py>,
     acceleration_g: Samples<'py>,
     given: Option<Keywords<'py>>,
-) -> PyResult<Bound<'py, PyTuple>> {
+) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyTuple>)> {
     let given = given.unwrap_or_default();
     let signal = |name| given.take::<Option<Samples<'py>>>(name);
     let (contact_force, compression) = (signal("contact_force")?, signal("compression")?);
     let manipulator_velocity = signal("manipulator_velocity")?;
     let time = time.as_slice()?;
-    let start: Option<f64> = given.take("start")?;
     let recording = Recording {
         time,
         acceleration_g: acceleration_g.as_slice()?,
         contact_force: slice(contact_force.as_ref())?,
         compression: slice(compression.as_ref())?,
         manipulator_velocity: slice(manipulator_velocity.as_ref())?,
-        start: start.or(time.first().copied()).unwrap_or(f64::NAN),
+        start: given.take("start")?,
         linear_range: given.take("linear_range")?,
         thickness: given.take("thickness")?,
         gravity: GRAVITY,
     };
     given.done()?;
-    let row = stopped(py, time.len(), |interrupted| {
-        let row = recording.metrics_until(interrupted)?;
+    let found = stopped(py, time.len(), |interrupted| {
+        let found = recording.metrics_until(interrupted)?;
         signal::check_step(time, INJURY_WINDOWS[0], interrupted)?;
-        Ok(row)
+        Ok(found)
     })?;
-    row_tuple(py, &row, recording.linear_range)
+    let row = row_tuple(py, &found.metrics, recording.linear_range)?;
+    Ok((row, PyTuple::new(py, found.whole.into_array())?))
 }

@@ -19,14 +19,23 @@ pub struct Recording<'a> {
     pub compression: Option<&'a [f64]>,
     /// Velocity of the manipulator, in m/s.
     pub manipulator_velocity: Option<&'a [f64]>,
-    /// First contact, in s.
-    pub start: f64,
+    /// First contact, in s; unknown where `None`, then nothing of the record is left out.
+    pub start: Option<f64>,
     /// Compression up to which the foam is linear, in m.
     pub linear_range: f64,
     /// Thickness of the foam, in m.
     pub thickness: f64,
     /// Acceleration of gravity, in m/s^2.
     pub gravity: f64,
+}
+
+/// Loads of a recording.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Recorded {
+    /// Over the impact period.
+    pub metrics: Metrics,
+    /// The same criteria over everything from first contact to the end of the record.
+    pub whole: Loads<f64>,
 }
 
 /// The part of the record that is looked at: whole cells between two interpolated ends.
@@ -37,15 +46,17 @@ struct Part<'a> {
 }
 
 impl Recording<'_> {
-    /// Loads over the impact period, from first contact to the first zero at which the acceleration
-    /// falls after it was positive; to the end of the record with `no_release` if there is none.
+    /// Loads over the impact period around the largest acceleration of the record: from the last
+    /// zero before it, or the first contact if that is told and the acceleration is not negative in
+    /// between, to the first zero after it; to the end of the record with `no_release` if there is
+    /// none. The same criteria over the whole record show what the period leaves out.
     ///
     /// The power of the manipulator is the maximum of the product of two piecewise linear signals,
     /// that of the foam the largest mean over a sampling interval. What was not recorded is NaN.
     ///
     /// # Errors
     /// Bad signals; a start outside the record or at its end.
-    pub fn metrics(&self) -> Result<Metrics> {
+    pub fn metrics(&self) -> Result<Recorded> {
         self.metrics_until(&|| false)
     }
 
@@ -53,16 +64,37 @@ impl Recording<'_> {
     ///
     /// # Errors
     /// Also that the caller asked to stop.
-    pub fn metrics_until(&self, interrupted: Interrupted<'_>) -> Result<Metrics> {
+    pub fn metrics_until(&self, interrupted: Interrupted<'_>) -> Result<Recorded> {
         let signal = Signal::new_until(self.time, self.acceleration_g, interrupted)?;
         self.check()?;
-        let found = falls_to_zero(&signal, self.start);
-        let end = found.unwrap_or(self.time[self.time.len() - 1]);
-        let part = Part {
+        let record = Part {
             time: self.time,
-            start: self.start,
-            end,
+            start: self.start.unwrap_or(self.time[0]),
+            end: self.time[self.time.len() - 1],
         };
+        let (start, end) = around_peak(&signal, record.start, self.start.is_some());
+        let period = Part {
+            time: self.time,
+            start,
+            end: end.unwrap_or(record.end),
+        };
+        let mut loads = self.loads(&period, interrupted)?;
+        let whole = if period.start <= record.start && period.end >= record.end {
+            loads
+        } else {
+            self.loads(&record, interrupted)?
+        };
+        loads.impact_duration = end.map_or(f64::INFINITY, |end| end - start);
+        let status = match end {
+            None => Status::NoRelease,
+            Some(_) => Status::released(loads.max_compression, &self.foam()),
+        };
+        let metrics = Metrics { loads, status };
+        Ok(Recorded { metrics, whole })
+    }
+
+    /// Every load over a part of the record but the duration.
+    fn loads(&self, part: &Part<'_>, interrupted: Interrupted<'_>) -> Result<Loads<f64>> {
         let time = part.times();
         let cut = |values: Option<&[f64]>| values.map(|values| part.cut(values));
         let (force, compression) = (cut(self.contact_force), cut(self.compression));
@@ -78,12 +110,7 @@ impl Recording<'_> {
             let power = velocity.map(|velocity| largest_product(force, &velocity));
             loads.peak_power_manipulator = power.unwrap_or(f64::NAN);
         }
-        loads.impact_duration = found.map_or(f64::INFINITY, |end| end - self.start);
-        let status = match found {
-            None => Status::NoRelease,
-            Some(_) => Status::released(loads.max_compression, &self.foam()),
-        };
-        Ok(Metrics { loads, status })
+        Ok(loads)
     }
 
     /// The foam as far as its compression goes.
@@ -111,9 +138,12 @@ impl Recording<'_> {
             check_finite(name, values)?;
         }
         positive("gravity", self.gravity)?;
-        finite("start", self.start)?;
-        if self.start < self.time[0] || self.start >= self.time[self.time.len() - 1] {
-            let given = Given::Number(self.start);
+        let Some(start) = self.start else {
+            return Ok(());
+        };
+        finite("start", start)?;
+        if start < self.time[0] || start >= self.time[self.time.len() - 1] {
+            let given = Given::Number(start);
             let rule = "lie in the record, before its last sample";
             return Err(Failure::invalid("start", rule, given));
         }
@@ -159,24 +189,45 @@ fn acceleration(
     })
 }
 
-/// First zero after the start at which the signal falls, once it has been positive.
-fn falls_to_zero(signal: &Signal<'_>, start: f64) -> Option<f64> {
-    let cells = signal.time.windows(2).zip(signal.value.windows(2));
-    let mut positive = false;
-    for (times, values) in cells {
-        if times[1] <= start {
-            continue;
+/// Start of the positive part around the largest value from `start` on, and its end if the record has it.
+///
+/// A signal that is never positive has no such part: all of it is returned. A known first contact is the start as long
+/// as the signal is not negative between it and the largest value.
+fn around_peak(signal: &Signal<'_>, start: f64, known: bool) -> (f64, Option<f64>) {
+    let (time, value) = (signal.time, signal.value);
+    // The samples after the start, and the value at the start itself.
+    let first = time.partition_point(|time| *time <= start);
+    let at_start = interpolated(&time[first - 1..=first], &value[first - 1..=first], start);
+    let mut peak = None;
+    let mut most = at_start.max(0.0);
+    for (place, &value) in value.iter().enumerate().skip(first) {
+        if value > most {
+            (peak, most) = (Some(place), value);
         }
-        let from = times[0].max(start);
-        positive |= interpolated(times, values, from) > 0.0;
-        if positive && values[1] <= 0.0 {
-            let share = values[0] / (values[0] - values[1]);
-            let zero = (times[0] + share * (times[1] - times[0])).clamp(times[0], times[1]);
-            return (zero > start).then_some(zero);
-        }
-        positive |= values[1] > 0.0;
     }
-    None
+    if most <= 0.0 {
+        return (start, None);
+    }
+    let crossing = |cell: usize| {
+        let share = value[cell] / (value[cell] - value[cell + 1]);
+        (time[cell] + share * (time[cell + 1] - time[cell])).clamp(time[cell], time[cell + 1])
+    };
+    let after = peak.unwrap_or(first);
+    let begin = match peak {
+        None => start,
+        Some(peak) => {
+            let ended = |value: &f64| if known { *value < 0.0 } else { *value <= 0.0 };
+            match value[first..peak].iter().rposition(ended) {
+                Some(place) => crossing(first + place),
+                // Between the start and the first sample after it.
+                None if ended(&at_start) => crossing(first - 1).max(start),
+                None => start,
+            }
+        }
+    };
+    let fall = value[after..].iter().position(|value| *value <= 0.0);
+    let end = fall.map(|place| crossing(after + place - 1));
+    (begin, end.filter(|end| *end > begin))
 }
 
 fn interpolated(times: &[f64], values: &[f64], at: f64) -> f64 {

@@ -86,6 +86,8 @@ class Judged:
         """Whether the foam fits, and if its model says nothing about that, why."""
         if self.accepted:
             return "fits"
+        if self.status == "not_checked":
+            return "not checked: see the warnings"
         why = {"bottomed": ": bottomed", "beyond_linear_range": ": beyond linear range"}
         return f"does not fit{why.get(self.status, '')}"
 

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from hrsafety import _hrsafety
 from hrsafety._arguments import Array, columns
 from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.impact.criteria.doubts import issued
+from hrsafety.plausibility import ResultWarning
 
 __all__ = ["CHANNEL_CLASSES", "channel_corner", "channel_filter"]
 
@@ -21,8 +25,15 @@ _CORNER = 2.0775
 # Padding at both ends: at least 10 ms and 20 time constants of a pass, so that its start is forgotten.
 _PADDING = 0.01
 _TIME_CONSTANTS = 20.0
-# Sampling may wander by this share of its step (rounded time columns do).
+# Sampling may wander by this share of its step.
 _UNEVEN = 1e-3
+# Times may be off an even grid by this share of the step, as rounded ones are.
+_ROUNDED = 0.25
+# Samples per second for each Hz of a class, at least.
+_SAMPLES_PER_CLASS = 8.0
+# Window of the criterion by which a pulse is judged, in s, and the share of it that has to pass.
+_WINDOW = 0.015
+_PASSED = 0.95
 
 
 def channel_corner(channel_class: int) -> float:
@@ -62,12 +73,14 @@ def channel_filter(time: npt.ArrayLike, signal: npt.ArrayLike, channel_class: in
     phase shift. With w_d = 2 pi 2.0775 CFC and w_a = tan(w_d T / 2), each pass is
     b = w_a^2 (1, 2, 1) / (1 + sqrt(2) w_a + w_a^2). Both ends are continued by point reflection
     before the passes: a signal that runs on keeps its slope there, and noise in the very first and
-    last sample stays, so a record should begin before the impact and end after it.
+    last sample stays, so a record should begin before the impact and end after it. A class that
+    takes more than a twentieth of the head injury criterion of the strongest pulse is issued as a
+    `HrsafetyWarning`: the pulse is too short for it.
 
     Parameters
     ----------
     time : array_like of shape (n,)
-        Sample times in s, evenly spaced.
+        Sample times in s, evenly spaced but for their rounding: within a quarter of a step of an even grid.
     signal : array_like of shape (n,)
         Samples, in any unit.
     channel_class : int
@@ -82,7 +95,7 @@ def channel_filter(time: npt.ArrayLike, signal: npt.ArrayLike, channel_class: in
     ------
     InvalidParameterError
         If the class is none of the four, samples are not finite, uneven or fewer than four, or the
-        sampling is too slow for the class: its corner must lie below half the sampling frequency.
+        sampling is too slow for the class: less than 8 samples per second for each Hz of it.
     ShapeError
         If the arrays are not one-dimensional and of one length.
     ImportError
@@ -100,17 +113,55 @@ def channel_filter(time: npt.ArrayLike, signal: npt.ArrayLike, channel_class: in
     >>> bool(np.abs(left[100:-100]).max() < 1e-4)
     True
     """
-    corner = channel_corner(channel_class)
+    channel_corner(channel_class)
     instants, samples = columns(time=time, signal=signal)
+    filtered = _filtered(instants, samples, channel_class)
+    issued(tuple(filtered_pulse(instants, samples, channel_class, filtered)))
+    return filtered
+
+
+def filtered_pulse(
+    time: Array, signal: Array, channel_class: int, filtered: Array | None = None
+) -> Iterator[ResultWarning]:
+    """Give the doubt that a channel class takes away part of the strongest pulse of a signal.
+
+    The pulse is judged by its head injury criterion, in which noise of high frequency averages out. Without the
+    ``filtered`` signal the given one has been through the class and goes once more: what lies below it passes again.
+    """
+    corner = channel_corner(channel_class)
+    after = _filtered(time, signal, channel_class) if filtered is None else filtered
+    scale = float(max(signal.max(), signal.min(), key=abs)) or 1.0
+    before, passed = (_hrsafety.hic(time, each / scale, _WINDOW, True)[0] for each in (signal, after))
+    if passed >= _PASSED * before:
+        return
+    wider = [each for each in CHANNEL_CLASSES if each > channel_class]
+    remedy = f"use class {wider[0]} or a wider one" if wider else "measure with a channel that is not filtered"
+    message = (
+        f"{'a second pass through ' if filtered is None else ''}class {channel_class} (corner {corner:g} Hz) leaves "
+        f"{passed / before:.0%} of the head injury criterion of the signal: the pulse is too short for it, and loads "
+        f"are too low; {remedy}"
+    )
+    yield ResultWarning("filtered_pulse", "channel_class", message)
+
+
+def _filtered(instants: Array, samples: Array, channel_class: int) -> Array:
+    """Return a signal through the filter of a channel class."""
+    corner = channel_corner(channel_class)
     if len(instants) < 4:
         raise InvalidParameterError("time", "have at least 4 samples", len(instants))
     for name, values in (("time", instants), ("signal", samples)):
         if not np.isfinite(values).all():
             raise InvalidParameterError(name, "be finite", float(values[~np.isfinite(values)][0]))
     rate = _sampling_rate(instants)
-    if corner >= 0.5 * rate:
-        requirement = f"be sampled at more than {2.0 * corner:g} Hz for class {channel_class}"
-        raise InvalidParameterError("time", requirement, Shown(f"{rate:g} Hz"))
+    least = _SAMPLES_PER_CLASS * channel_class
+    if rate * (1.0 + _UNEVEN) < least:
+        usable = [each for each in CHANNEL_CLASSES if rate * (1.0 + _UNEVEN) >= _SAMPLES_PER_CLASS * each]
+        raise InvalidParameterError(
+            "time",
+            f"be sampled at more than {least:g} Hz for class {channel_class}",
+            Shown(f"{rate:g} Hz"),
+            f"class {usable[-1]} can be used at this rate" if usable else "no class can be used at this rate",
+        )
     scipy_signal = _scipy_signal()
     # The bilinear transform with the frequency bent back, as the tangent of the standard's formula does.
     numerator, denominator = scipy_signal.butter(2, corner / (0.5 * rate))
@@ -127,7 +178,21 @@ def _sampling_rate(time: Array) -> float:
     if not (steps > 0.0).all():
         raise InvalidParameterError("time", "rise from sample to sample", float(time[1:][steps <= 0.0][0]))
     if np.abs(steps - step).max() > _UNEVEN * step:
-        raise InvalidParameterError("time", "be evenly spaced", float(steps[np.abs(steps - step).argmax()]))
+        # Rounded times stay near an even grid, however many there are; a clock that wanders, or a gap, does not.
+        count = np.arange(len(time)) - 0.5 * (len(time) - 1)
+        middle = time - time.mean()
+        step = float((count @ middle) / (count @ count))
+        away = np.abs(middle - step * count)
+        if away.max() > _ROUNDED * step:
+            worst = int(np.abs(steps - step).argmax())
+            raise InvalidParameterError(
+                "time",
+                f"be evenly spaced, to {_ROUNDED:.0%} of the step of {step:.6g} s, also between samples {worst} and "
+                f"{worst + 1}",
+                float(steps[worst]),
+                "resample first: even = np.linspace(time[0], time[-1], len(time)); signal = np.interp(even, time, "
+                "signal); a gap has to be cut out",
+            )
     return float(1.0 / step)
 
 

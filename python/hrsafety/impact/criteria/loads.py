@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Literal, NamedTuple, Self, get_args
 
 import numpy as np
@@ -14,6 +14,7 @@ from hrsafety._arguments import Array, columns, flag, instance, number, word
 from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.impact.criteria.declared import LoadRow, with_criteria
+from hrsafety.impact.criteria.doubts import SignalShape, issued, measurement_doubts, mirrored_doubt
 from hrsafety.impact.parameters import ConstrainedHead, Foam, Head, Manipulator
 from hrsafety.plausibility import RANGES, ResultWarning, implausible, telling
 
@@ -140,6 +141,8 @@ class MovingLevel(_Window):
 # Faster ones would only overflow: loads go with up to the power 2.5 of the speed.
 MOST_SPEED = 1e100
 _LEAST_PLAUSIBLE, _MOST_PLAUSIBLE = RANGES["closing_speed"][:2]
+# Steps of sampling in the longest window between samples, at least.
+_STEPS_OF_WINDOW = 10.0
 # Ends of the ranges of the mean step, the smallest and largest acceleration and the gained velocity.
 _PLAUSIBLE_SIGNAL = tuple(
     RANGES[name][:2] for name in ("sampling_step", "head_acceleration_g", "head_acceleration_g", "head_velocity_gain")
@@ -297,7 +300,10 @@ def hic(
     instants, signal = columns(time=time, acceleration_g=acceleration_g)
     width, free = number("window", window), flag("interpolate", interpolate)
     found = HeadInjury._make(_hrsafety.hic(instants, signal, width, free))
-    found.warnings = signal_warnings(instants, signal, found)
+    shape = SignalShape.of(instants, signal, found[1:])
+    doubts = signal_doubts(instants, shape)
+    doubts += tuple(hic_doubts(instants, signal, shape, found.value, width, free))
+    found.warnings = issued(merged(doubts))
     return found
 
 
@@ -372,23 +378,35 @@ def _moving_level(
     width: float,
 ) -> MovingLevel:
     instants, signal = columns(time=time, acceleration_g=acceleration_g)
-    found = MovingLevel._make(level(instants, signal, number("width", width)))
-    found.warnings = signal_warnings(instants, signal, found)
+    length = number("width", width)
+    found = MovingLevel._make(level(instants, signal, length))
+    shape = SignalShape.of(instants, signal, found[1:])
+    doubts = signal_doubts(instants, shape)
+    doubts += tuple(
+        mirrored_doubt(
+            "acceleration_g",
+            f"the level over {length:g} s",
+            max(found.value, 0.0),
+            -shape.least,
+            lambda: level(instants, -signal, length)[0],
+        )
+    )
+    found.warnings = issued(merged(doubts), stacklevel=4)
     return found
 
 
-def signal_warnings(time: Array, acceleration_g: Array, window: _Window) -> Doubts:
-    """Return what is doubtful about a sampled acceleration, from its mean step, its peaks and its strongest window."""
-    least, most, area = _hrsafety.signal_push(time, acceleration_g, window.start, window.end)
-    values = (float(time[-1] - time[0]) / (len(time) - 1), least, most, STANDARD_GRAVITY * area)
+def signal_doubts(time: Array, shape: SignalShape) -> Doubts:
+    """Return what is doubtful about a sampled acceleration: its units, and how it was measured."""
+    measured = tuple(measurement_doubts("acceleration_g", "g", shape))
+    step = float(time[-1] - time[0]) / (len(time) - 1)
+    values = (step, shape.least, shape.most, STANDARD_GRAVITY * shape.area)
     if all(low <= value <= high for value, (low, high) in zip(values, _PLAUSIBLE_SIGNAL, strict=True)):
-        return ()  # nearly always, and far faster than building the sentences
-    step, _, _, gain = values
-    return implausible(
+        return measured  # nearly always, and far faster than building the sentences
+    return measured + implausible(
         {
             "time": step,
-            "acceleration_g": np.array([least, most]),
-            "velocity that the head gains by acceleration_g": gain,
+            "acceleration_g": np.array(values[1:3]),
+            "velocity that the head gains by acceleration_g": values[3],
         },
         {
             "time": "sampling_step",
@@ -396,6 +414,30 @@ def signal_warnings(time: Array, acceleration_g: Array, window: _Window) -> Doub
             "velocity that the head gains by acceleration_g": "head_velocity_gain",
         },
     )
+
+
+def hic_doubts(
+    time: Array, acceleration_g: Array, shape: SignalShape, value: float, window: float, interpolate: bool
+) -> Iterator[ResultWarning]:
+    """Give what is doubtful about a head injury criterion: a push of the other sign, windows between coarse samples."""
+    yield from mirrored_doubt(
+        "acceleration_g",
+        "the head injury criterion",
+        value,
+        max(-shape.least, 0.0) ** 2.5 * window,
+        lambda: _hrsafety.hic(time, -acceleration_g, window, interpolate)[0],
+    )
+    if not interpolate and shape.longest_step > window / _STEPS_OF_WINDOW:
+        message = (
+            f"time has steps of up to {shape.longest_step:g} s, and windows of at most {window:g} s begin and end at "
+            "samples: they are shorter than they may be, and the criterion is too low; sample faster, or interpolate"
+        )
+        yield ResultWarning("coarse_sampling", "time", message)
+
+
+def merged(doubts: Doubts) -> Doubts:
+    """Return the first doubt of each kind about each subject."""
+    return tuple({(each.code, each.subject): each for each in reversed(doubts)}.values())[::-1] if doubts else ()
 
 
 def hic_of_pulse(shape: PulseShape, peak_g: float, duration: float, window: float = 0.015) -> float:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from hrsafety._arguments import Array
+from hrsafety._arguments import Array, instance
 from hrsafety.navigation.crowd.agents import middle_of
 from hrsafety.navigation.crowd.episodes import episodes_in
 from hrsafety.navigation.crowd.simulation import simulate_crowds
@@ -68,6 +68,11 @@ def episodes_of(run: CrowdTrajectories, without: CrowdTrajectories | None = None
     list of Episode
         One for each robot. Other robots are no people.
 
+    Raises
+    ------
+    InvalidParameterError
+        If an argument is no run of a crowd.
+
     Examples
     --------
     >>> from hrsafety import navigation as nav, scenarios
@@ -76,6 +81,9 @@ def episodes_of(run: CrowdTrajectories, without: CrowdTrajectories | None = None
     >>> nav.metrics.evaluate(episode).arrived
     True
     """
+    instance("run", run, CrowdTrajectories)
+    if without is not None:
+        instance("without", without, CrowdTrajectories)
     beside = {} if without is None else _beside(run, without)
     return episodes_in(run.world, run.robot_position, run.position, run.radius, warnings=run.warnings, **beside)
 
@@ -143,6 +151,11 @@ def world_metrics(run: CrowdTrajectories) -> WorldMetrics:
     WorldMetrics
         A value for each of `WORLD_METRICS`.
 
+    Raises
+    ------
+    InvalidParameterError
+        If ``run`` is no run of a crowd.
+
     Examples
     --------
     >>> from hrsafety import navigation as nav, scenarios
@@ -150,7 +163,7 @@ def world_metrics(run: CrowdTrajectories) -> WorldMetrics:
     >>> nav.crowd.world_metrics(run).throughput > 0.3
     True
     """
-    world = run.world
+    world = instance("run", run, CrowdTrajectories).world
     found = evaluate_world(
         run.position,
         person_goals=_goals(run),

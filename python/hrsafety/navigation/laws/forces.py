@@ -11,7 +11,7 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, instance, number, numbers, pair, points
 from hrsafety._display import displayed
-from hrsafety.errors import ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
 from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.scenario import Scenario
@@ -101,6 +101,16 @@ def check_law(scenario: Scenario, law: Law, kind: type[Law] = VirtualForceField)
     instance("law", law, kind)
 
 
+def _check_told(found: npt.ArrayLike, position: npt.ArrayLike, velocity: npt.ArrayLike) -> None:
+    """Refuse the larger one of two finite arguments if what follows from them is not finite."""
+    if np.isfinite(found).all():
+        return
+    given = {"position": np.asarray(position), "velocity": np.asarray(velocity)}
+    name = max(given, key=lambda each: float(np.abs(given[each]).max(initial=0.0)))
+    largest = float(np.abs(given[name]).max(initial=0.0))
+    raise InvalidParameterError(name, "be so small that forces and their powers can be told", largest)
+
+
 def command(
     law: AnyLaw,
     scenario: Scenario,
@@ -144,7 +154,9 @@ def command(
     instance("scenario", scenario, Scenario)
     law = as_law(law)
     state = pair("position", position), pair("velocity", velocity)
-    return np.array(_hrsafety.law_command(law._native, scenario._native, *state, number("time", time)))
+    found = np.array(_hrsafety.law_command(law._native, scenario._native, *state, number("time", time)))
+    _check_told(found, *state)
+    return found
 
 
 def force_terms(
@@ -201,10 +213,10 @@ def force_terms(
     ([[12.0, 0.12]], [[-0.18, 18.0]])
     """
     check_law(scenario, law, Law)
-    fields = _hrsafety.force_terms(
-        law._native, scenario._native, pair("position", position), pair("velocity", velocity), number("time", time)
-    )
-    return ForceTerms(**fields)
+    state = pair("position", position), pair("velocity", velocity)
+    found = ForceTerms(**_hrsafety.force_terms(law._native, scenario._native, *state, number("time", time)))
+    _check_told(found.total, *state)
+    return found
 
 
 def force_field(
@@ -258,7 +270,9 @@ def force_field(
         raise ShapeError("velocity", f"(2,) or {places.shape}", speeds.shape)
     speeds = np.ascontiguousarray(np.broadcast_to(speeds, places.shape))
     fields = _hrsafety.force_field(law._native, scenario._native, places, speeds, number("time", time))
-    return ForceField(position=places, **fields)
+    found = ForceField(position=places, **fields)
+    _check_told(found.total, places, speeds)
+    return found
 
 
 def lyapunov(
@@ -309,8 +323,7 @@ def lyapunov(
     True
     """
     check_law(scenario, law)
-    return Lyapunov(
-        *_hrsafety.lyapunov(
-            law._native, scenario._native, pair("position", position), pair("velocity", velocity), number("time", time)
-        )
-    )
+    state = pair("position", position), pair("velocity", velocity)
+    found = Lyapunov(*_hrsafety.lyapunov(law._native, scenario._native, *state, number("time", time)))
+    _check_told(found, *state)
+    return found

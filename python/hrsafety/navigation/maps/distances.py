@@ -12,6 +12,9 @@ from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 
 __all__ = ["distance_transform", "occupied_cells"]
 
+AT_ONCE = 1 << 22
+"""Cells that are converted at once, in some hundredths of a second."""
+
 
 def occupied_cells(name: str, value: object) -> npt.NDArray[np.bool_]:
     """Return an array of truth values with rows and columns, or say what it should have been."""
@@ -26,11 +29,20 @@ def occupied_cells(name: str, value: object) -> npt.NDArray[np.bool_]:
         raise InvalidParameterError(name, f"have at most {MOST_CELLS} cells", cells.size)
     if cells.dtype.kind not in "biu":
         raise InvalidParameterError(name, rule, Shown(f"an array of {cells.dtype}"))
-    if cells.dtype.kind != "b" and not np.isin(cells, (0, 1)).all():
-        row, column = np.argwhere((cells != 0) & (cells != 1))[0]
-        shown = Shown(f"{cells[row, column]} in row {row}, column {column}")
-        raise InvalidParameterError(name, rule, shown, "compare occupancies with a threshold")
-    return np.ascontiguousarray(cells, dtype=np.bool_)
+    if cells.dtype.kind == "b" and cells.flags.c_contiguous:
+        return cells
+    # In parts, between which Ctrl-C is answered.
+    whole = np.empty(cells.shape, dtype=np.bool_)
+    rows = max(AT_ONCE // cells.shape[1], 1)
+    for first in range(0, len(cells), rows):
+        part = cells[first : first + rows]
+        whole[first : first + rows] = part
+        other = part != whole[first : first + rows]
+        if other.any():
+            row, column = np.argwhere(other)[0]
+            shown = Shown(f"{part[row, column]} in row {first + row}, column {column}")
+            raise InvalidParameterError(name, rule, shown, "compare occupancies with a threshold")
+    return whole
 
 
 def distance_transform(occupied: npt.ArrayLike, *, resolution: float = 1.0) -> Array:
@@ -61,5 +73,4 @@ def distance_transform(occupied: npt.ArrayLike, *, resolution: float = 1.0) -> A
     >>> nav.maps.distance_transform([[1, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, 1]])[0] ** 2
     array([0., 1., 4., 4.])
     """
-    squares = _hrsafety.squared_cell_distances(occupied_cells("occupied", occupied))
-    return np.sqrt(squares, out=squares) * positive("resolution", resolution)
+    return _hrsafety.cell_distances(occupied_cells("occupied", occupied), positive("resolution", resolution))

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, flag, number, numbers, word
-from hrsafety.errors import ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError
 
 __all__ = ["attraction_force", "collision_point", "collision_vector", "printed_foot", "rotate_to_world"]
 
@@ -37,7 +37,7 @@ def collision_point(sensor: npt.ArrayLike, angle: npt.ArrayLike, reading: npt.Ar
     Raises
     ------
     InvalidParameterError
-        If an argument is not made of numbers.
+        If an argument is not made of finite numbers.
     ShapeError
         If the arrays do not broadcast.
 
@@ -49,7 +49,7 @@ def collision_point(sensor: npt.ArrayLike, angle: npt.ArrayLike, reading: npt.Ar
     """
     places, (axes, ranges) = _rows(("sensor", sensor), angle=angle, reading=reading)
     found: Array = _hrsafety.collision_points(places.reshape(-1, 2), axes, ranges)["point"]
-    return found.reshape(places.shape)
+    return _finite(found, sensor=places, angle=axes, reading=ranges).reshape(places.shape)
 
 
 def collision_vector(one: npt.ArrayLike, other: npt.ArrayLike, *, clamp: bool = True) -> Array:
@@ -73,7 +73,7 @@ def collision_vector(one: npt.ArrayLike, other: npt.ArrayLike, *, clamp: bool = 
     Raises
     ------
     InvalidParameterError
-        If a number is not a number.
+        If a number is not finite.
     ShapeError
         If the points are of another shape.
 
@@ -105,7 +105,7 @@ def printed_foot(one: npt.ArrayLike, other: npt.ArrayLike) -> Array:
     Raises
     ------
     InvalidParameterError
-        If a number is not a number.
+        If a number is not finite.
     ShapeError
         If the points are of another shape.
 
@@ -127,7 +127,20 @@ def _feet(one: npt.ArrayLike, other: npt.ArrayLike, form: str) -> Array:
         raise ShapeError("other", str(first.shape), second.shape)
     rows = [np.ascontiguousarray(points).reshape(-1, 2) for points in (first, second)]
     found: Array = _hrsafety.collision_feet(*rows, form=form)["foot"]
+    if form != "printed":  # that is NaN for lines along an axis
+        _finite(found, one=first, other=second)
     return found.reshape(first.shape)
+
+
+def _finite(found: Array, **given: Array) -> Array:
+    """Return what follows from some numbers, or name the one of which it cannot be told."""
+    if np.isfinite(found).all():
+        return found
+    for name, values in given.items():
+        if not np.isfinite(values).all():
+            raise InvalidParameterError(name, "be finite", float(values[~np.isfinite(values)][0]))
+    name, values = max(given.items(), key=lambda each: float(np.abs(each[1]).max()))
+    raise InvalidParameterError(name, "be so small that the result is finite", float(np.abs(values).max()))
 
 
 def rotate_to_world(
@@ -155,7 +168,7 @@ def rotate_to_world(
     Raises
     ------
     InvalidParameterError
-        If an argument is not made of numbers, or the word is unknown.
+        If an argument is not made of finite numbers, or the word is unknown.
     ShapeError
         If the arrays do not broadcast.
 
@@ -169,7 +182,7 @@ def rotate_to_world(
     chosen = word("rotation", rotation, ("heading", "printed"))
     vectors, (headings,) = _rows(("vector", vector), heading=heading)
     found: Array = _hrsafety.vectors_to_world(vectors.reshape(-1, 2), headings, chosen)["vector"]
-    return found.reshape(vectors.shape)
+    return _finite(found, vector=vectors, heading=headings).reshape(vectors.shape)
 
 
 def attraction_force(
@@ -194,7 +207,7 @@ def attraction_force(
     Raises
     ------
     InvalidParameterError
-        If a number is negative or an argument not made of numbers.
+        If a number is negative or an argument not made of finite numbers.
     ShapeError
         If the arrays are of different shapes.
 
@@ -214,7 +227,7 @@ def attraction_force(
         stiffness=number("stiffness", stiffness),
         damping=number("damping", damping),
     )["force"]
-    return found.reshape(away.shape)
+    return _finite(found, offset=away, velocity=speed).reshape(away.shape)
 
 
 def _rows(first: tuple[str, npt.ArrayLike], **columns: npt.ArrayLike) -> tuple[Array, list[Array]]:

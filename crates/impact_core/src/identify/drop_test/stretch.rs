@@ -8,6 +8,9 @@ use numeric::threads::Interrupted;
 /// Step of a search for an event, in radians of the foam's frequency.
 pub(super) const SEARCH_STEP: f64 = 0.4;
 
+/// Time constants after which a relaxing foam is undeformed to the last bit of its deformation, and far beyond.
+const RELAXED: f64 = 50.0;
+
 /// State at the start of a stretch.
 pub(super) struct State {
     pub(super) time: f64,
@@ -76,14 +79,17 @@ pub(super) fn flight(
             };
             let fall = (2.0 * state.position.abs() / acceleration.abs()).sqrt();
             let step = (0.25 / rate).min(0.25 * turn).min(0.25 * fall.max(1e-4));
-            first_root(above, step, turn.min(end - state.time), interrupted)?
+            let limit = turn.min(end - state.time);
+            // From then on it is undeformed, and landing on it has a closed form.
+            let relaxed = (time - state.time + RELAXED / (2.0 * rate)).max(0.0);
+            match first_root(above, step, limit.min(relaxed), interrupted)? {
+                None if relaxed < limit => falls_on_surface(state, acceleration)
+                    .filter(|landing| *landing >= relaxed && *landing <= limit),
+                found => found,
+            }
         }
         _ if rising => None,
-        _ => {
-            let speed =
-                (state.velocity * state.velocity - 2.0 * acceleration * state.position).sqrt();
-            Some((speed + state.velocity) / -acceleration)
-        }
+        _ => falls_on_surface(state, acceleration),
     };
     Ok(match landing {
         Some(landing) => (motion, landing, false),
@@ -139,6 +145,12 @@ pub(super) fn contact(
         (None, Some(at)) => (motion, at, false),
         (None, None) => (motion, f64::INFINITY, false),
     })
+}
+
+/// Time after which a slide above the foam passes the undeformed surface downwards, if it ever does.
+fn falls_on_surface(state: &State, acceleration: f64) -> Option<f64> {
+    let squared = state.velocity * state.velocity - 2.0 * acceleration * state.position;
+    (squared >= 0.0).then(|| (squared.sqrt() + state.velocity) / -acceleration)
 }
 
 impl DropModel {

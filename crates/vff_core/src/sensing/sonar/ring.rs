@@ -16,6 +16,9 @@ pub const PUBLISHED_WHEEL_GAP: f64 = PI / 8.0;
 /// Farthest that sensors stand outside the chassis, in radii: a sign or a unit is wrong beyond.
 const FARTHEST_OUTSIDE: f64 = 1.0;
 
+/// Largest ratio of the two radii of sensors of which a number is told.
+const MOST_RATIO: f64 = 1e6;
+
 /// Sensors on a circle, clockwise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ring {
@@ -274,11 +277,17 @@ impl Circumference {
 /// Least number of sensors by (6), N > 3 (1 + `r_1`/r), and the next multiple of three from it on.
 ///
 /// # Errors
-/// A radius is not finite and positive.
+/// A radius is not finite and positive, or they are of different orders of magnitude.
 pub fn least_sensors(wheel_sensor_radius: f64, sensor_radius: f64) -> Result<[f64; 2]> {
     let ratio = positive("wheel_sensor_radius", wheel_sensor_radius)?
         / positive("sensor_radius", sensor_radius)?;
     let least = (3.0 * (1.0 + ratio)).floor() + 1.0;
+    if ratio > MOST_RATIO {
+        let rule = format!("be at most {MOST_RATIO:e} times sensor_radius");
+        let given = Given::Number(wheel_sensor_radius);
+        return Err(Failure::invalid("wheel_sensor_radius", rule, given)
+            .mended_by("both radii are in m, from the same center"));
+    }
     Ok([least, 3.0 * (least / 3.0).ceil()])
 }
 

@@ -6,12 +6,32 @@ use crate::world::map::grid::MOST_CELLS;
 /// Larger than any squared distance of cells, and small enough to be added to one.
 const NOTHING: i64 = i64::MAX / 4;
 
-/// Squared distances from the centers of cells to the center of the nearest occupied one, in cells;
+/// Cells between two looks whether to stop: a few milliseconds, also where memory is touched first.
+const CHECK: usize = 1 << 20;
+
+/// Distances from the centers of cells of side `resolution` to the center of the nearest occupied one;
 /// infinite where there is none. Cells are given row after row.
 ///
 /// # Errors
 /// The cells are not whole rows of `columns`, there are too many, or the caller asked to stop.
-pub fn squared_distances(
+pub fn distances(
+    occupied: &[bool],
+    columns: usize,
+    resolution: f64,
+    interrupted: Interrupted<'_>,
+) -> Result<Vec<f64>> {
+    let mut squares = squared_distances(occupied, columns, interrupted)?;
+    for part in squares.chunks_mut(CHECK) {
+        proceed(interrupted)?;
+        for square in part {
+            *square = square.sqrt() * resolution;
+        }
+    }
+    Ok(squares)
+}
+
+/// Squares of the distances in cells, which are whole numbers.
+fn squared_distances(
     occupied: &[bool],
     columns: usize,
     interrupted: Interrupted<'_>,
@@ -23,40 +43,53 @@ pub fn squared_distances(
         return Err(Failure::invalid("cells", rule, given));
     }
     let rows = occupied.len() / columns;
-    let mut squares = vec![NOTHING; occupied.len()];
+    let mut squares = Vec::with_capacity(occupied.len());
+    while squares.len() < occupied.len() {
+        proceed(interrupted)?;
+        squares.resize(occupied.len().min(squares.len() + CHECK), f64::INFINITY);
+    }
     for column in 0..columns {
         proceed(interrupted)?;
         within_column(occupied, &mut squares, column, columns, rows);
     }
     let mut envelope = Envelope::with_room(columns);
+    let mut heights = vec![NOTHING; columns];
     for row in squares.chunks_exact_mut(columns) {
         proceed(interrupted)?;
-        envelope.lower(row);
-    }
-    let distance = |square: i64| {
-        if square >= NOTHING {
-            f64::INFINITY
-        } else {
-            square as f64
+        // Squares of whole numbers below 2^53 are exact in either type.
+        for (height, square) in heights.iter_mut().zip(&*row) {
+            *height = if square.is_finite() {
+                *square as i64
+            } else {
+                NOTHING
+            };
         }
-    };
-    Ok(squares.into_iter().map(distance).collect())
+        envelope.lower(&mut heights);
+        for (height, square) in heights.iter().zip(row) {
+            *square = if *height >= NOTHING {
+                f64::INFINITY
+            } else {
+                *height as f64
+            };
+        }
+    }
+    Ok(squares)
 }
 
 /// Squared distances along a column.
 fn within_column(
     occupied: &[bool],
-    squares: &mut [i64],
+    squares: &mut [f64],
     column: usize,
     columns: usize,
     rows: usize,
 ) {
-    let mut sweep = |row: usize, since: &mut Option<i64>| {
+    let mut sweep = |row: usize, since: &mut Option<f64>| {
         let at = row * columns + column;
         *since = if occupied[at] {
-            Some(0)
+            Some(0.0)
         } else {
-            since.map(|steps| steps + 1)
+            since.map(|steps| steps + 1.0)
         };
         if let Some(steps) = since {
             squares[at] = squares[at].min(*steps * *steps);

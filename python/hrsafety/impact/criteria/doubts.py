@@ -1,0 +1,166 @@
+"""What a sampled signal says against its own measurement: sign, rest, flat tops, sampling."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterator
+from typing import NamedTuple, Self
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Array
+from hrsafety.plausibility import HrsafetyWarning, ResultWarning, unsafe_doubts
+
+__all__ = ["SignalShape", "cut_off", "issued", "measurement_doubts", "mirrored_doubt"]
+
+REST = 0.01
+"""Time over which an acceleration is looked at for its rest, in s."""
+FORCE_REST = 0.02
+"""Time over which a force is, in s."""
+
+# A rest away from zero by this share of the peak: HIC goes with the power 2.5 of the acceleration.
+_OFFSET = 0.02
+# The same where less than five samples tell it.
+_OFFSET_OF_FEW = 0.05
+_FEW = 5
+# Samples in the width at half of the peak, at least: a half sine loses less than 5 % of its HIC then.
+_SAMPLES_OF_WIDTH = 6.0
+# A record begins or ends within the push above this share of its peak: damped foams alone begin with a third of it.
+_INSIDE = 0.5
+# Parts of the other sign that are larger than this share are no rebound.
+_MIRRORED = 1.0 + 1e-9
+
+
+class SignalShape(NamedTuple):
+    """Features of a signal.
+
+    Attributes
+    ----------
+    least, most : float
+        Extremes.
+    width, step : float
+        Time above half of the largest value, and the longest step in it, in s; NaN unless that is positive.
+    longest_step : float
+        Of the whole record, in s.
+    rest, noise : float
+        Median of the quietest samples before the push and the rms about it; NaN without any.
+    rest_samples : int
+        How many these are.
+    flat : int
+        Equal neighboring samples at the largest value; 0 if they are no flat top.
+    area : float
+        Of the push around the window, in the unit of the signal times s.
+    """
+
+    least: float
+    most: float
+    width: float
+    step: float
+    longest_step: float
+    rest: float
+    noise: float
+    rest_samples: int
+    flat: int
+    area: float
+
+    @classmethod
+    def of(cls, time: Array, values: Array, window: tuple[float, float], rest: float = REST) -> Self:
+        """Return the features of a signal; the rest is looked for over ``rest`` seconds."""
+        return cls._make(_hrsafety.signal_shape(time, values, rest, window))
+
+    @property
+    def peak(self) -> float:
+        """Largest absolute value."""
+        return max(self.most, -self.least)
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether nothing is doubtful: nearly always, and quickly told."""
+        return (
+            self.most > 0.0
+            and -self.least <= self.most
+            and self.flat == 0
+            and self.width >= _SAMPLES_OF_WIDTH * self.step
+            and not abs(self.rest) > _OFFSET * self.most
+        )
+
+
+def cut_off(name: str, unit: str, values: Array, shape: SignalShape) -> Iterator[ResultWarning]:
+    """Give the doubt that a record does not hold the whole push."""
+    for code, value, end in (("starts_inside", values[0], "begins"), ("ends_inside", values[-1], "ends")):
+        if value > _INSIDE * shape.most > 0.0:
+            message = (
+                f"{name} {end} at {value:g} {unit}, more than half of its largest value of {shape.most:g} {unit}: the "
+                f"record {end} within the push, and what is beyond is not in the loads; record longer"
+            )
+            yield ResultWarning(code, name, message)
+
+
+def measurement_doubts(name: str, unit: str, shape: SignalShape) -> Iterator[ResultWarning]:
+    """Give what is doubtful about how a signal was measured whose loads are its positive values."""
+    most = shape.most
+    if shape.is_sound:
+        return
+    if -shape.least > most:
+        yield negative_axis(name, f"{name} goes down to {shape.least:g} {unit} and up to {most:g} {unit} only")
+    elif most <= 0.0:
+        message = f"{name} is never positive: nothing was hit, or the channel is dead; nothing is judged"
+        yield ResultWarning("no_push", name, message)
+    yield from _offset(name, unit, shape)
+    if shape.flat:
+        message = (
+            f"{name} stays at its largest value of {most:g} {unit} for {shape.flat} samples: the channel is saturated, "
+            "and the true loads are larger; measure with a larger range"
+        )
+        yield ResultWarning("saturated", name, message)
+    if shape.width < _SAMPLES_OF_WIDTH * shape.step:
+        message = (
+            f"time has steps of {shape.step:g} s where {name} is above half of its peak for {shape.width:g} s: with "
+            f"less than {_SAMPLES_OF_WIDTH:g} steps the peak and the criteria are too low; sample faster, or filter "
+            "single peaks of noise"
+        )
+        yield ResultWarning("coarse_sampling", "time", message)
+
+
+def negative_axis(name: str, what: str) -> ResultWarning:
+    """Return the doubt about a signal whose larger part does not count because it is negative."""
+    message = f"{what}: only positive values are judged; turn the sign if the axis points the other way"
+    return ResultWarning("negative_axis", name, message)
+
+
+def mirrored_doubt(
+    name: str, criterion: str, value: float, bound: float, mirrored: Callable[[], float]
+) -> Iterator[ResultWarning]:
+    """Give the doubt that a criterion is larger for the signal with the other sign.
+
+    ``bound`` is what that could be at most; only where it is larger, ``mirrored`` is computed.
+    """
+    if bound > value * _MIRRORED and (other := mirrored()) > value * _MIRRORED:
+        yield negative_axis(name, f"{criterion} is {value:.4g} for {name} and {other:.4g} with the other sign")
+
+
+def _offset(name: str, unit: str, shape: SignalShape) -> Iterator[ResultWarning]:
+    peak = shape.peak
+    share = _OFFSET if shape.rest_samples >= _FEW else _OFFSET_OF_FEW
+    # A rise that begins at zero has a median of 1.7 times its rms about it.
+    if not abs(shape.rest) > max(share * peak, 2.0 * shape.noise):
+        return
+    # What is added to a positive pulse makes every load larger; a level that wanders may be the foot of the pulse.
+    safe = shape.rest > 0.0 and shape.most == peak
+    if safe and shape.noise > _OFFSET * peak:
+        return
+    message = (
+        f"{name} rests at {shape.rest:g} {unit} before its peak of {peak:g} {unit}: an offset of the channel, or "
+        "gravity, which every criterion contains; subtract the mean of a part at rest"
+    )
+    yield ResultWarning("offset", name, message, safe_side=safe)
+
+
+def issued(found: tuple[ResultWarning, ...], stacklevel: int = 3) -> tuple[ResultWarning, ...]:
+    """Return doubts after those on the unsafe side were issued through `warnings.warn` too.
+
+    ``stacklevel`` 3 points at who calls the function that calls this one.
+    """
+    for doubt in unsafe_doubts(found):
+        if doubt.code != "implausible":
+            warnings.warn(doubt.message, HrsafetyWarning, stacklevel=stacklevel)
+    return found
