@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -238,12 +239,16 @@ def _run(
     path = _file(place, suite, each, settings)
     # Another process that writes the same rows would write them twice.
     with only_writer(path.with_name(f".{path.name}.lock"), FolderInUseError):
-        try:
-            return _missing(suite, each, runs, settings, path, heard)
-        except OSError as error:
-            if isinstance(error, StorageError):
-                raise
-            raise StorageError(path, error, kept=NOTHING_LOST, remedy=WRITABLE) from None
+        return _missing(suite, each, runs, settings, path, heard)
+
+
+@contextmanager
+def _stored(path: Path) -> Iterator[None]:
+    """Name the file that cannot be written."""
+    try:
+        yield
+    except OSError as error:
+        raise StorageError(path, error, kept=NOTHING_LOST, remedy=WRITABLE) from None
 
 
 def _missing(
@@ -259,14 +264,15 @@ def _missing(
     known = {row.case for row in rows}
     if path is not None:
         # Without a line that was cut off, and in one step: what is kept is never lost.
-        write_file(path, row_text(rows, head=True))
+        with _stored(path):
+            write_file(path, row_text(rows, head=True))
     missing = [case for case in range(runs) if case not in known]
     heard(runs - len(missing))
     for begin in range(0, len(missing), CHUNK):
         chunk = missing[begin : begin + CHUNK]
         found = list(suite.run(case_of(settings, each, chunk)))
         if path is not None:
-            with path.open("a", encoding="utf-8") as file:
+            with _stored(path), path.open("a", encoding="utf-8") as file:
                 file.write(row_text(found, head=False))
         rows += found
         heard(runs - len(missing) + begin + len(chunk))
