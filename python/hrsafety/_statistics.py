@@ -213,7 +213,7 @@ class Mean:
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
         """That the mean is of less than ten runs: its interval holds for numbers of the normal distribution only."""
-        if not 0 < self.runs < _FEW_RUNS:
+        if self.runs not in range(1, _FEW_RUNS):
             return ()
         runs = "1 run" if self.runs == 1 else f"{self.runs} runs"
         interval = (
@@ -258,10 +258,10 @@ def mean_interval(values: npt.ArrayLike, *, resamples: int = 2000, seed: int = 0
     Examples
     --------
     >>> from hrsafety._statistics import mean_interval
-    >>> mean_interval([1.0, 1.0, 1.0])
-    Mean(runs=3, value=1.0, low=1.0, high=1.0)
     >>> print(mean_interval([1.0, 1.2, 1.1] * 4))
-    1.1 (1.046 to 1.154), 12 runs
+    1.1 (1.051 to 1.149), 12 runs
+    >>> print(mean_interval([1.0, 1.2, 1.1]))
+    1.1 (0.8311 to 1.369), 3 runs, too few for an interval to be relied on
     """
     whole("resamples", resamples, most=MOST_RESAMPLES)
     given = vector("values", values)

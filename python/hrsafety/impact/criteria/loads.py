@@ -260,7 +260,9 @@ def hic(
 
     The maximum over t_1 < t_2, t_2 - t_1 <= window, of (t_2 - t_1) [mean of a over (t_1, t_2)]^2.5;
     windows with a negative mean count as 0. Takes time proportional to the samples in a window
-    of constant sampling, and any sampling.
+    of constant sampling, and any sampling. A signal of which the larger part is negative, that is never positive,
+    rests away from zero, has a flat top or too few samples in its peak is doubtful: the doubts are in ``warnings``,
+    and those that may err on the unsafe side are issued as `HrsafetyWarning`, too.
 
     Parameters
     ----------
@@ -310,6 +312,8 @@ def hic(
 def average_3ms(time: npt.ArrayLike, acceleration_g: npt.ArrayLike, width: float = 0.003) -> MovingLevel:
     """Return the largest moving average of a signal over 3 ms.
 
+    Negative values count as such; what is doubtful about the signal is told as by `hic`.
+
     Parameters
     ----------
     time : array_like of shape (n,)
@@ -334,8 +338,10 @@ def average_3ms(time: npt.ArrayLike, acceleration_g: npt.ArrayLike, width: float
 
     Examples
     --------
+    >>> import numpy as np
     >>> from hrsafety import impact
-    >>> round(impact.criteria.average_3ms([0.0, 0.003, 0.006], [0.0, 10.0, 0.0]).value, 9)
+    >>> time = np.linspace(0.0, 0.006, 61)
+    >>> round(impact.criteria.average_3ms(time, 10.0 - np.abs(time - 0.003) / 0.0003).value, 9)
     7.5
     """
     return _moving_level(_hrsafety.moving_average, time, acceleration_g, width)
@@ -364,8 +370,10 @@ def clip_3ms(time: npt.ArrayLike, acceleration_g: npt.ArrayLike, width: float = 
 
     Examples
     --------
+    >>> import numpy as np
     >>> from hrsafety import impact
-    >>> round(impact.criteria.clip_3ms([0.0, 0.003, 0.006], [0.0, 10.0, 0.0]).value, 9)
+    >>> time = np.linspace(0.0, 0.006, 61)
+    >>> round(impact.criteria.clip_3ms(time, 10.0 - np.abs(time - 0.003) / 0.0003).value, 9)
     5.0
     """
     return _moving_level(_hrsafety.contiguous_level, time, acceleration_g, width)
