@@ -213,7 +213,7 @@ class Mean:
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
         """That the mean is of less than ten runs: its interval holds for numbers of the normal distribution only."""
-        if self.runs not in range(1, _FEW_RUNS):
+        if type(self.runs) is not int or not 0 < self.runs < _FEW_RUNS:
             return ()
         runs = "1 run" if self.runs == 1 else f"{self.runs} runs"
         interval = (
