@@ -140,7 +140,7 @@ def test_an_offset_below_zero_is_always_doubted(
     assert doubts(impact.recorded_metrics(time, values + share * peak)) & {"offset", "negative_axis"}
 
 
-@given(shape=shapes, peak=peaks, duration=durations, begin=begins, digits=st.integers(2, 3))
+@given(shape=shapes, peak=peaks, duration=durations, begin=begins, digits=st.integers(0, 3))
 def test_rounded_values_are_no_saturation(shape: str, peak: float, duration: float, begin: float, digits: int) -> None:
     time, values = record(shape, peak, duration, begin)
     assert "saturated" not in doubts(impact.recorded_metrics(time, values.round(digits)))

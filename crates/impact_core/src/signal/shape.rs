@@ -12,6 +12,8 @@ const SHORTEST_REST: usize = 5;
 const FLAT: usize = 3;
 /// Digits below a top within which its levels are counted.
 const FARTHEST: f64 = 200.0;
+/// Digits of the smallest difference between levels, at most.
+const MOST_DIGITS: u8 = 5;
 /// Samples on either side of a flat top from which the smallest step is found.
 const NEIGHBORS: usize = 2048;
 /// Share of the largest value by which equal samples may differ.
@@ -202,7 +204,11 @@ fn flat_top(value: &[f64], most: f64, interrupted: Interrupted<'_>) -> Result<us
         (longest.end + length - 1).min(value.len() - 1),
     ];
     let fall = most - value[left].max(value[right]);
-    let jumps = fall >= hidden * smallest || !multiples(&below[1..], smallest);
+    // Where no two levels are one digit apart the smallest difference is some digits.
+    let digit = (1..=MOST_DIGITS)
+        .map(|digits| smallest / f64::from(digits))
+        .find(|digit| multiples(&below[1..], *digit));
+    let jumps = digit.is_none_or(|digit| fall >= hidden * digit);
     Ok(if jumps && fall > hidden * ROUNDING * most {
         length
     } else {
@@ -210,7 +216,7 @@ fn flat_top(value: &[f64], most: f64, interrupted: Interrupted<'_>) -> Result<us
     })
 }
 
-/// Whether numbers that rise from the smallest one are its multiples, as far as that can be told.
+/// Whether rising numbers are multiples of a digit, as far as that can be told.
 fn multiples(numbers: &[f64], smallest: f64) -> bool {
     let (mut digit, mut whole, mut all) = (smallest, 0, 0);
     for &number in numbers
