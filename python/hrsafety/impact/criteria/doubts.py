@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Iterator
 from typing import NamedTuple, Self
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array
-from hrsafety.plausibility import HrsafetyWarning, ResultWarning, unsafe_doubts
+from hrsafety.plausibility import ResultWarning, issue, unsafe_doubts
 
 __all__ = ["SignalShape", "cut_off", "issued", "measurement_doubts", "mirrored_doubt"]
 
@@ -162,5 +161,5 @@ def issued(found: tuple[ResultWarning, ...], stacklevel: int = 3) -> tuple[Resul
     """
     for doubt in unsafe_doubts(found):
         if doubt.code != "implausible":
-            warnings.warn(doubt.message, HrsafetyWarning, stacklevel=stacklevel)
+            issue(doubt.message, stacklevel=stacklevel)
     return found

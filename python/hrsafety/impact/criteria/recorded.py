@@ -142,7 +142,7 @@ def recorded_metrics(
         *(() if channel_class is None else filtered_pulse(instants, signal, channel_class)),
         *_units(record, found),
     )
-    found.warnings = issued(merged(doubts))
+    found.warnings = issued(merged(doubts), stacklevel=4)
     return found
 
 
