@@ -49,6 +49,7 @@ pub struct Shape {
 ///
 /// # Errors
 /// Samples that are not finite; the caller asked to stop.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // bounded by the number of samples
 pub fn shape_until(
     time: &[f64],
     value: &[f64],

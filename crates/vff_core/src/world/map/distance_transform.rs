@@ -31,6 +31,7 @@ pub fn distances(
 }
 
 /// Squares of the distances in cells, which are whole numbers.
+#[allow(clippy::cast_possible_truncation)] // far below 2^53
 fn squared_distances(
     occupied: &[bool],
     columns: usize,
