@@ -1044,9 +1044,7 @@ def moving_average(time: _Array, acceleration_g: _Array, width: float) -> _Tripl
 def contiguous_level(time: _Array, acceleration_g: _Array, width: float) -> _Triple:
     """Return value, start and end of the level that a signal exceeds without a break."""
 
-def recorded_metrics(
-    time: _Array, acceleration_g: _Array, **given: object
-) -> tuple[_Row, tuple[float, ...]]:
+def recorded_metrics(time: _Array, acceleration_g: _Array, **given: object) -> tuple[_Row, tuple[float, ...]]:
     """Return numbers, status and whether the foam leaves its linear range, of a recorded impact, and of all of it."""
 
 def hic_of_pulse(shape: str, peak_g: float, duration: float, window: float) -> float:

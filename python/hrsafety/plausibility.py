@@ -151,10 +151,9 @@ def telling(find: Callable[..., Iterable[ResultWarning]] | None = None) -> Calla
         @functools.wraps(function)
         def call(*args: Any, **kwargs: Any) -> Any:
             result = asked(*args, **kwargs)
-            found = getattr(result, "warnings", ()) if find is None else find
-            if found and _is_user(sys._getframe(1).f_globals.get("__name__", "")):
-                if find is not None:
-                    found = find(*args, **kwargs)
+            carried: Iterable[ResultWarning] = getattr(result, "warnings", ()) if find is None else ()
+            if (carried or find) and _is_user(sys._getframe(1).f_globals.get("__name__", "")):
+                found = carried if find is None else find(*args, **kwargs)
                 for message in dict.fromkeys(each.message for each in found if each.code == "implausible"):
                     warnings.warn(message, UnitWarning, stacklevel=2)
             return result

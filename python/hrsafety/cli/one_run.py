@@ -118,8 +118,8 @@ def _summary(score: nav.Performance) -> Iterator[tuple[str, str]]:
 
 
 def _obstacle_table(run: nav.Trajectory) -> PageTable:
-    names = ("obstacle", "kind", "r_3", "r_2", "least distance", "least clearance", "first contact", "robot speed then")
-    names = (*names, "robot moved")
+    of_contact = ("first contact", "robot speed then", "robot moved")
+    names = ("obstacle", "kind", "r_3", "r_2", "least distance", "least clearance", *of_contact)
     units = ("", "", "m", "m", "m", "m", "s", "m/s", "")
     rows = [
         (
