@@ -57,16 +57,19 @@ def test_who_is_never_seen_is_no_success() -> None:
     assert found.path_length == pytest.approx(5.8)  # the way itself is known
 
 
-def test_who_is_lost_for_good_beside_the_robot_is_no_success() -> None:
+def test_who_is_lost_for_good_beside_the_robot_is_a_doubt() -> None:
     people = standing((3.0, 0.0))
     people[25:] = np.nan
-    assert not nav.metrics.evaluate(PATH, people, **RULES).success
+    (doubt,) = unsafe_doubts(nav.metrics.evaluate(PATH, people, **RULES).warnings)
+    assert doubt.code == "not_scored"
+    assert "people[0] may have been touched at" in doubt.message
+    assert not nav.metrics.evaluate(PATH, people, **RULES, simulated=True).warnings
     # Whoever is lost far away has left before the robot comes there.
     people = standing((5.9, 3.0))
     people[5:] = np.nan
     found = nav.metrics.evaluate(PATH, people, **RULES)
     assert found.success
-    assert "success" not in found.warnings[0].message
+    assert not found.warnings
 
 
 def test_a_short_gap_far_away_leaves_little_open() -> None:
@@ -86,7 +89,7 @@ def test_a_short_gap_far_away_leaves_little_open() -> None:
 
 
 @settings(max_examples=150, deadline=None)
-@given(seed=st.integers(0, 2**32 - 1), first=st.integers(1, 55), length=st.integers(1, 20))
+@given(seed=st.integers(0, 2**32 - 1), first=st.integers(1, 39), length=st.integers(1, 20))
 def test_no_way_within_the_speed_changes_a_metric_that_is_scored(seed: int, first: int, length: int) -> None:
     """Fill the gap with some way that the person may have gone: what is scored is the same, success is not claimed."""
     rng = np.random.default_rng(seed)

@@ -97,8 +97,8 @@ class Episode(Parameters):
     simulated : bool
         Whether the positions come from a simulation: who has no position is away, and nothing is measured.
     unseen : array_like of bool, shape (T + 1, n), or None
-        When people are not seen and may be there. ``None``: between two sights, for 2 s before the first and after
-        the last one, and always for who is never seen; never if ``simulated``.
+        When people are not seen and may be there. ``None``: between two sights, and always for who is never seen;
+        never if ``simulated``.
     person_speed : float
         Greatest speed of people while they are not seen, in m/s.
 
@@ -114,6 +114,9 @@ class Episode(Parameters):
     then. Every metric that could be different with somebody at ``g`` is NaN (``min_clearance`` where ``g`` is below it,
     ``personal_share`` where ``g + rho`` is below 1.2 m, times to collision by ``g/(v + |V|)`` ...), and a warning
     ``not_scored`` names person, times and metrics. Numbers of contacts count what is seen.
+
+    Before the first and after the last sight a person is away, as far as metrics go; where the robot may have touched
+    the person within 2 s of them, a warning ``not_scored`` says so.
 
     Raises
     ------
@@ -204,7 +207,7 @@ class Episode(Parameters):
         if type(self.simulated) is not bool:
             raise InvalidParameterError("simulated", "be True or False", self.simulated)
         if self.unseen is None:
-            found = None if self.simulated or not people.size else unseen_instants(people, step)
+            found = None if self.simulated or not people.size else unseen_instants(people)
         else:
             found = np.asarray(self.unseen)
             if found.dtype != np.bool_:

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from hrsafety._arguments import Array
 
-__all__ = ["LOST", "last_sight", "next_sight", "seen_instants", "unseen_instants"]
+__all__ = ["LOST", "last_sight", "next_sight", "seen_instants", "track_ends", "unseen_instants"]
 
 Flags = npt.NDArray[np.bool_]
 
@@ -15,8 +15,27 @@ LOST = 2.0
 """Before the first and after the last sight of somebody the person may still be there for this long, in s."""
 
 
-def unseen_instants(people: Array, step: float) -> Flags:
-    """Return when somebody is not seen and may be there: between two sights, 2 s around them, and who is never seen.
+def unseen_instants(people: Array) -> Flags:
+    """Return when somebody is not seen and is taken to be there: between two sights, and who is never seen.
+
+    Parameters
+    ----------
+    people : ndarray, shape (T + 1, n, 2)
+        Positions in m, NaN where nobody was seen.
+
+    Returns
+    -------
+    ndarray of bool, shape (T + 1, n)
+        Whether a person is not seen and is taken to be there.
+    """
+    seen = seen_instants(people)
+    before, after = last_sight(seen) < 0, next_sight(seen) >= len(people)
+    found: Flags = ~seen & (before == after)
+    return found
+
+
+def track_ends(people: Array, step: float) -> Flags:
+    """Return when somebody may be there unseen for 2 s before the first and after the last sight.
 
     Parameters
     ----------
@@ -35,8 +54,9 @@ def unseen_instants(people: Array, step: float) -> Flags:
     last, following = last_sight(seen), next_sight(seen)
     lost = int(LOST / step + 1e-9)
     before, after = last < 0, following >= len(people)
-    near = ~((before & (following - instants > lost)) | (after & (instants - last > lost)))
-    found: Flags = ~seen & (near | (before & after))
+    found: Flags = ~seen & (
+        (before & ~after & (following - instants <= lost)) | (after & ~before & (instants - last <= lost))
+    )
     return found
 
 

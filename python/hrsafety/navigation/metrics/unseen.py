@@ -11,7 +11,7 @@ import numpy.typing as npt
 from hrsafety._arguments import Array
 from hrsafety.navigation.metrics.between import until_arrival, wrapped
 from hrsafety.navigation.metrics.episode import Episode
-from hrsafety.navigation.metrics.sights import last_sight, next_sight, seen_instants
+from hrsafety.navigation.metrics.sights import last_sight, next_sight, seen_instants, track_ends
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["unscored"]
@@ -74,19 +74,40 @@ def unscored(episode: Episode, values: Mapping[str, Any]) -> tuple[dict[str, Any
     dict of str to float or bool
         What is to be put in their place.
     tuple of ResultWarning
-        One, or none.
+        One for these, and one for who may have been touched before the first or after the last sight.
     """
     if episode.unseen is None:
         return {}, ()
     own, people = until_arrival(episode, values["arrival_time"])
+    ends = _ends_doubt(episode, own)
     unseen = np.asarray(episode.unseen)[: len(own)]
     if not unseen.any():
-        return {}, ()
+        return {}, ends
     gaps, speeds = _least_gaps(episode, own, unseen)
     changed = _open(episode, values, (own, people), (unseen, gaps, speeds))
     if not changed:
-        return {}, ()
-    return changed, (_warning(episode, changed, unseen, gaps),)
+        return {}, ends
+    return changed, (_warning(episode, changed, unseen, gaps), *ends)
+
+
+def _ends_doubt(episode: Episode, own: Array) -> tuple[ResultWarning, ...]:
+    """Return a doubt about people who may have been touched before they were seen first, or after the last time."""
+    ends = track_ends(np.asarray(episode.people, dtype=np.float64), episode.step)[: len(own)]
+    ends &= ~np.asarray(episode.unseen)[: len(own)]
+    if not ends.any():
+        return ()
+    gaps, _ = _least_gaps(episode, own, ends)
+    row, worst = (int(each) for each in np.unravel_index(np.argmin(gaps), gaps.shape))
+    if gaps[row, worst] >= 0.0:
+        return ()
+    others = int((gaps < 0.0).any(axis=0).sum()) - 1
+    more = f" ({others} more people likewise)" if others else ""
+    message = (
+        f"people[{worst}] may have been touched at {row * episode.step:g} s{more}, out of sight before the first or after "
+        f"the last place that is known, with people up to {episode.person_speed:g} m/s; metrics take the person to be "
+        "away then; simulated=True says that this is so"
+    )
+    return (ResultWarning("not_scored", "people", message),)
 
 
 def _open(
