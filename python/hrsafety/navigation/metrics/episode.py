@@ -197,12 +197,12 @@ class Episode(Parameters):
         }
         flat |= dict.fromkeys(missing)
         native = _hrsafety.CrowdEpisode(**({**rules, **arrays} | flat | wall_rows(walls)))
-        arrays["unseen"] = self._unseen(people, rules["step"])
+        arrays["unseen"] = self._unseen(people)
         self._set(person_speed=not_negative("person_speed", self.person_speed))
         kept = {name: None if array is None else _frozen(array) for name, array in arrays.items()}
         self._set(**rules, **kept, walls=tuple(walls), warnings=tuple(doubts), _native=native)
 
-    def _unseen(self, people: Array, step: float) -> npt.NDArray[np.bool_] | None:
+    def _unseen(self, people: Array) -> npt.NDArray[np.bool_] | None:
         """Return when people are not seen and may be there, ``None`` without people and in a simulation."""
         if type(self.simulated) is not bool:
             raise InvalidParameterError("simulated", "be True or False", self.simulated)

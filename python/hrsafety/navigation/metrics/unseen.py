@@ -103,9 +103,9 @@ def _ends_doubt(episode: Episode, own: Array) -> tuple[ResultWarning, ...]:
     others = int((gaps < 0.0).any(axis=0).sum()) - 1
     more = f" ({others} more people likewise)" if others else ""
     message = (
-        f"people[{worst}] may have been touched at {row * episode.step:g} s{more}, out of sight before the first or after "
-        f"the last place that is known, with people up to {episode.person_speed:g} m/s; metrics take the person to be "
-        "away then; simulated=True says that this is so"
+        f"people[{worst}] may have been touched at {row * episode.step:g} s{more}, out of sight before the first or "
+        f"after the last place that is known, with people up to {episode.person_speed:g} m/s; metrics take the person "
+        "to be away then; simulated=True says that this is so"
     )
     return (ResultWarning("not_scored", "people", message),)
 
