@@ -161,7 +161,7 @@ def test_bad_input_is_named() -> None:
 
 def test_without_pettingzoo_it_says_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None if name == "pettingzoo" else sys)
-    with pytest.raises(MissingExtraError, match=r"hrsafety\[pettingzoo\]"):
+    with pytest.raises(MissingExtraError, match=r"pip install pettingzoo"):
         gym.parallel_env(world(robot(0)))
 
 

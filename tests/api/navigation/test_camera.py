@@ -167,5 +167,5 @@ def test_what_cannot_be_calibrated_is_refused() -> None:
 def test_calibration_says_how_to_get_scipy(monkeypatch: pytest.MonkeyPatch) -> None:
     points = nav.sensing.calibration_points()
     monkeypatch.setitem(sys.modules, "scipy.optimize", None)
-    with pytest.raises(MissingExtraError, match=r"pip install hrsafety\[signal\]"):
+    with pytest.raises(MissingExtraError, match=r"pip install scipy"):
         nav.sensing.calibrate_camera(points, nav.sensing.Camera().project(points))

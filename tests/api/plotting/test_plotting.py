@@ -115,7 +115,7 @@ def test_pictures_need_neither_pyplot_nor_matplotlib_before_a_call():
 
 def test_missing_matplotlib_is_named_with_the_extra_only_when_a_picture_is_asked_for(monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(plotting.MissingExtraError, match=r"pip install hrsafety\[plot\]") as caught:
+    with pytest.raises(plotting.MissingExtraError, match=r"pip install matplotlib") as caught:
         plotting.layout(scene())
     assert isinstance(caught.value, HrsafetyError)
     assert isinstance(caught.value, ImportError)

@@ -61,7 +61,7 @@ def by_place(all_cells: list[Cell]) -> dict[tuple[str, str, str], Cell]:
 def test_missing_scipy_is_told_before_the_work_begins(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "scipy.optimize", None)
     said: list[str] = []
-    with pytest.raises(MissingExtraError, match=r"pip install hrsafety\[signal\]"):
+    with pytest.raises(MissingExtraError, match=r"pip install scipy"):
         reproduce.run(tmp_path / "out", progress=said.append)
     assert said == []
     assert not (tmp_path / "out").exists()

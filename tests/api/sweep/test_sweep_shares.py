@@ -278,7 +278,7 @@ def test_folder_keeps_its_files(tmp_path: Path) -> None:
 
 def test_parquet_without_pyarrow_names_the_extra(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pyarrow", None)
-    with pytest.raises(MissingExtraError, match=r"pip install hrsafety\[sweep\]"):
+    with pytest.raises(MissingExtraError, match=r"pip install pyarrow"):
         run(tmp_path, store="parquet")
     assert not (tmp_path / "sweep.json").exists()
     assert run(tmp_path).complete
@@ -321,7 +321,7 @@ def test_lazy_dataset_of_a_sample_and_of_cases() -> None:
 def test_lazy_dataset_without_dask_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     result = sweep.run(GRID, STUDY)
     monkeypatch.setitem(sys.modules, "dask.array", None)
-    with pytest.raises(MissingExtraError, match=r"pip install hrsafety\[sweep,distributed\]"):
+    with pytest.raises(MissingExtraError, match=r"pip install .dask\[distributed\]"):
         result.to_xarray(lazy=True)
     with pytest.raises(InvalidParameterError, match="lazy must be True or False"):
         result.to_xarray(lazy=1)  # type: ignore[arg-type]  # on purpose
