@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import Any, NoReturn
 
@@ -17,6 +16,7 @@ from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation
 from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.maps.static_map import StaticMap
+from hrsafety.navigation.measured_people import MeasuredPeople
 from hrsafety.navigation.obstacles.base import Obstacle
 from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.robot_command import Command, Sighting
@@ -89,7 +89,7 @@ class Controller:
     'lost'
     """
 
-    __slots__ = ("_capacity", "_last", "_law", "_lidar", "_names", "_native", "_person_speed", "_rules")
+    __slots__ = ("_capacity", "_last", "_law", "_lidar", "_measured", "_names", "_native", "_person_speed", "_rules")
 
     def __init__(
         self,
@@ -126,6 +126,9 @@ class Controller:
             "seed": seed,
         }
         self._names: dict[Hashable, int] = {}
+        shield = _shield(self._law)
+        most = speed if shield is None or shield.person_speed is None else shield.person_speed
+        self._measured = None if shield is None else MeasuredPeople(shield, most)
         self._last: Command | None = None
         self._native: _hrsafety.Controller | None = None
         if start is not None:
@@ -146,15 +149,19 @@ class Controller:
         lidar = None if self._lidar is None else self._lidar._lidar
         return _hrsafety.Controller(scenario._native, self._law._native, lidar, _latency(self._law))
 
-    def _faster(self, seen: list[tuple[int, Pair, Pair, float | None]]) -> tuple[Hashable, ...]:
-        """Return who was measured to be faster than the shield reckons with."""
-        shield = _shield(self._law)
-        if shield is None:
-            return ()
-        most = self._person_speed if shield.person_speed is None else shield.person_speed
-        most += shield.velocity_error or 0.0
-        fast = {index for index, _, velocity, _ in seen if math.hypot(*velocity) > most}
-        return tuple(name for name, index in self._names.items() if index in fast)
+    def _refuted(
+        self, now: float, seen: list[tuple[int, Pair, Pair, float | None]], gone: Iterable[Hashable]
+    ) -> dict[str, tuple[Hashable, ...]]:
+        """Return for whom measurements refute what the shield assumes, by the fields of the command."""
+        found: dict[str, tuple[Hashable, ...]] = {"faster": (), "accelerated": ()}
+        if self._measured is None:
+            return found
+        self._measured.forget(gone)
+        names = {index: name for name, index in self._names.items()}
+        for index, position, velocity, time in seen:
+            for field in self._measured.refuted(names[index], now, position, velocity, time):
+                found[field] = (*found[field], names[index])
+        return found
 
     @property
     def people(self) -> tuple[Hashable, ...]:
@@ -220,26 +227,28 @@ class Controller:
         angle = 0.0 if heading is None else number("heading", heading)
         if self._native is None:
             if robot is None:
-                return self._told(_NOTHING, (0.0, 0.0), ())
+                return self._told(_NOTHING, (0.0, 0.0), {"faster": (), "accelerated": ()})
             self._native = self._made(robot[0])
         seen = [] if people is None else self._seen(people)
         ranges = None if scan is None else _ranges(scan)
+        gone = sequence("gone", "be names in a list, a tuple or a set", gone)
         left = self._left(gone, people)
         fields = self._native.update(now, robot, angle, seen=seen, gone=left, scan=ranges)
         if fields["timing"] == "out_of_order" and self._last is not None:
-            return self._told(fields, self._last.before, self._last.faster)
+            last = self._last
+            return self._told(fields, last.before, {"faster": last.faster, "accelerated": last.accelerated})
         before = self._last.velocity if robot is None and self._last is not None else (0.0, 0.0)
-        self._last = self._told(fields, before if robot is None else robot[1], self._faster(seen))
+        self._last = self._told(fields, before if robot is None else robot[1], self._refuted(now, seen, gone))
         return self._last
 
-    def _told(self, fields: Mapping[str, Any], before: Pair, faster: tuple[Hashable, ...]) -> Command:
+    def _told(self, fields: Mapping[str, Any], before: Pair, refuted: Mapping[str, Any]) -> Command:
         rules, robot = self._rules, self._rules["robot"]
         limits = {"period": rules["control_period"], "max_acceleration": robot.max_acceleration}
         told = dict(fields)
         if isinstance(robot, DifferentialDriveRobot) and told["speed"] is None:
             # Two wheels that were never told where they are stand.
             told |= {"speed": 0.0, "turn_rate": 0.0}
-        return Command(before=before, faster=faster, **limits, **told)
+        return Command(before=before, **refuted, **limits, **told)
 
     def _seen(
         self, people: Mapping[Hashable, Sequence[float | None]] | npt.ArrayLike

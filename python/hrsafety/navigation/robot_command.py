@@ -62,8 +62,11 @@ class Command:
     oldest : float
         Age of the oldest measurement of somebody that counts, in s.
     faster : tuple of hashable
-        Names of those who were measured to be faster than the shield reckons with; what it guarantees does not
-        hold for them.
+        Names of those who were measured to be faster than the shield reckons with, by their velocity or by two
+        places too far apart for the time between them; what it guarantees does not hold for them.
+    accelerated : tuple of hashable
+        Names of those whose measured velocity changed faster than the ``person_acceleration`` of the shield; what
+        it guarantees does not hold for them.
     before : (float, float)
         Velocity at the update, in m/s.
     period, max_acceleration : float
@@ -80,9 +83,15 @@ class Command:
     arrived: bool
     oldest: float
     faster: tuple[Hashable, ...]
+    accelerated: tuple[Hashable, ...]
     before: Pair
     period: float
     max_acceleration: float
+
+    @property
+    def refuted(self) -> tuple[str, ...]:
+        """Names of the assumptions of the shield that the measurements of this update refute."""
+        return tuple(name for name in ("faster", "accelerated") if getattr(self, name))
 
     def velocity_after(self, seconds: float) -> Pair:
         """Return the velocity to have some time after the update if no other update comes.

@@ -325,6 +325,43 @@ def test_who_is_faster_than_the_shield_reckons_with_is_named() -> None:
     assert still(of_scene, 0.0, people=people).faster == ("walks", "runs")
 
 
+@pytest.mark.parametrize(("speed", "named"), [(2.4, True), (1.5, False)])
+@pytest.mark.parametrize(("latency", "error"), [(0.0, 0.0), (0.1, 0.0354)])
+def test_a_tracker_that_tells_no_velocity_hides_nobody_who_is_faster(
+    speed: float, named: bool, latency: float, error: float
+) -> None:
+    controller = shielded(latency=latency, position_error=error)
+    told = [still(controller, 0.06 * k, people={"a": (8.0 - 0.06 * k * speed, 0.0, 0.0, 0.0)}) for k in range(30)]
+    assert (told[-1].faster == ("a",)) == named
+    assert (told[-1].refuted == ("faster",)) == named
+
+
+def test_a_jump_of_somebody_is_named_until_it_is_past() -> None:
+    controller = shielded()
+    still(controller, 0.0, people={"a": (6.0, 0.0, 0.0, 0.0), "b": (6.0, 3.0, 0.0, 0.0)})
+    jumped = still(controller, 0.06, people={"a": (5.2, 0.0, 0.0, 0.0), "b": (6.0, 3.05, 0.0, 0.0)})
+    assert jumped.faster == ("a",)
+    assert still(controller, 3.0, people={"a": (5.2, 0.0, 0.0, 0.0)}).faster == ()
+    still(controller, 3.06, gone=["a"])
+    assert still(controller, 3.12, people={"a": (9.0, 0.0, 0.0, 0.0)}).faster == ()
+
+
+def test_who_accelerates_more_than_is_assumed_is_named() -> None:
+    controller = shielded(velocity_error=0.05, person_acceleration=1.0)
+    still(controller, 0.0, people={"a": (6.0, 0.0, 0.0, 0.0), "b": (6.0, 3.0, 0.0, 0.0)})
+    told = {"a": (6.0, 0.0, 0.0, 0.2), "b": (6.0, 3.0, 0.0, 0.1)}
+    assert still(controller, 0.06, people=told).accelerated == ("a",)
+
+
+def test_a_decision_names_who_is_faster_than_assumed() -> None:
+    people = {"people": [(3.0, 0.0), (4.0, 0.0)], "person_velocity": [(1.7, 0.0), (1.5, 0.0)]}
+    assert Shield().decide((0.1, 0.0), velocity=(0.0, 0.0), **people).faster == (0,)
+    assert (
+        Shield(velocity_error=0.2, person_acceleration=1.0).decide((0.1, 0.0), velocity=(0.0, 0.0), **people).faster
+        == ()
+    )
+
+
 @pytest.mark.parametrize(
     ("told", "message"),
     [

@@ -36,12 +36,16 @@ class ShieldDecision:
         Least distance in m between the half disc ahead of the robot and everywhere that people can be,
         over the plans behind the wanted velocity, as far as it is reached, and behind the commanded one;
         infinite without people.
+    faster : tuple of int
+        Which people were measured to be faster than the shield assumes: what it guarantees does not hold for
+        them.
     """
 
     velocity: Array
     status: str
     wanted_gap: float
     gap: float
+    faster: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -194,7 +198,9 @@ class Shield(Parameters):
             _vector("wanted", wanted),
             [(_pair(center), size, _pair(speed)) for center, speed in zip(centers, speeds, strict=True)],
         )
-        return ShieldDecision(velocity=np.array(found), status=status, wanted_gap=gaps[0], gap=gaps[1])
+        most = self.person_speed + (self.velocity_error or 0.0)
+        faster = tuple(index for index, speed in enumerate(speeds.tolist()) if math.hypot(*speed) > most)
+        return ShieldDecision(velocity=np.array(found), status=status, wanted_gap=gaps[0], gap=gaps[1], faster=faster)
 
 
 def speed_bound(gap: float, angle: float, *, deceleration: float, person_speed: float) -> float:
