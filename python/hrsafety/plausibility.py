@@ -258,6 +258,15 @@ RANGES: dict[str, Range] = {
     "robot_max_angular_acceleration": Range(
         0.01, 2000.0, "rad/s^2", "heavy trucks to light two-wheel robots", "degrees given for radians"
     ),
+    "robot_max_deceleration": Range(
+        0.01, 50.0, "m/s^2", "heavy trucks to what rubber tires hold several times over", "g or mm/s^2 given for m/s^2"
+    ),
+    "robot_max_turn_rate": Range(
+        0.01, 20.0, "rad/s", "heavy trucks to small robots that spin", "degrees given for radians"
+    ),
+    "robot_max_turn_acceleration": Range(
+        0.01, 2000.0, "rad/s^2", "heavy trucks to light two-wheel robots", "degrees given for radians"
+    ),
     "control_period": Range(1e-4, 1.0, "s", "fastest servo loops to slow planners", "ms given for s"),
     "time_limit": Range(0.1, 86400.0, "s", "one evasion to one day", "ms given for s"),
     "arrival_tolerance": Range(1e-4, 5.0, "m", "accurate docking to large vehicles", "mm or cm given for m"),

@@ -35,6 +35,7 @@ impl HolonomicRobot {
             radius: given.take("radius")?,
             max_speed: given.take("max_speed")?,
             max_acceleration: given.take("max_acceleration")?,
+            max_deceleration: given.take("max_deceleration")?,
             wheels,
         };
         given.done()?;
@@ -65,7 +66,10 @@ impl DifferentialDriveRobot {
             radius: given.take("radius")?,
             max_speed: given.take("max_speed")?,
             max_acceleration: given.take("max_acceleration")?,
+            max_deceleration: given.take("max_deceleration")?,
             max_angular_acceleration: given.take("max_angular_acceleration")?,
+            max_turn_rate: given.take("max_turn_rate")?,
+            max_turn_acceleration: given.take("max_turn_acceleration")?,
             reference_speed_share: given.take("reference_speed_share")?,
             wheels,
         };
@@ -326,7 +330,7 @@ impl Scenario {
     }
 
     /// Mass, radius, largest speed and acceleration of the point mass that a law drives.
-    fn point_mass(&self) -> (f64, f64, f64, f64) {
+    fn point_mass(&self) -> crate::python_law::PointMass {
         crate::python_law::point_mass(&self.0)
     }
 

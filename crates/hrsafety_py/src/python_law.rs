@@ -72,14 +72,18 @@ impl LawFamily for PythonLaw {
     }
 }
 
-/// Mass, radius, largest speed and acceleration of the point mass that a law drives.
-pub fn point_mass(scenario: &Scenario) -> (f64, f64, f64, f64) {
+/// Mass, radius, largest speed, acceleration and deceleration of a point mass.
+pub type PointMass = (f64, f64, f64, f64, f64);
+
+/// The point mass that a law drives.
+pub fn point_mass(scenario: &Scenario) -> PointMass {
     let robot = scenario.point_mass();
     (
         robot.mass,
         robot.radius,
         robot.max_speed,
         robot.max_acceleration,
+        robot.deceleration(),
     )
 }
 
@@ -89,7 +93,7 @@ pub struct AtWork {
     /// What is asked in every lane, from its first command on.
     asked: Vec<Option<Py<PyAny>>>,
     velocity: bool,
-    robot: (f64, f64, f64, f64),
+    robot: PointMass,
     ends: ([f64; 2], [f64; 2]),
     /// Local goal on the way, in m, where a guide gives one.
     aim: Option<[f64; 2]>,

@@ -15,6 +15,7 @@ from hrsafety.errors import InvalidParameterError, ShapeError, SimulationError
 from hrsafety.gym.worlds import Task
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.metrics.declared import METRICS
+from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 
 __all__ = ["Environments", "Frame"]
 
@@ -30,6 +31,18 @@ _MOST_SEEN = 10_000
 _MOST_ENVIRONMENTS = 2**20
 
 ActionKind = Literal["velocity", "acceleration", "unicycle"]
+
+
+def turn_rate_of(robot: HolonomicRobot | DifferentialDriveRobot, given: float | None) -> float:
+    """Return the greatest turn rate of actions in rad/s: at most what the robot has."""
+    own = getattr(robot, "max_turn_rate", None)
+    if given is None:
+        return math.pi if own is None else min(math.pi, own)
+    rate = positive("max_turn_rate", given)
+    if own is not None and rate > own:
+        remedy = "give the robot a larger max_turn_rate, or none here"
+        raise InvalidParameterError("max_turn_rate", f"be at most that of the robot, {own:g} rad/s", given, remedy)
+    return rate
 
 
 class Environments:
@@ -50,7 +63,7 @@ class Environments:
         progress: float = 0.0,
         step_reward: float = 0.0,
         max_acceleration: float | None = None,
-        max_turn_rate: float = math.pi,
+        max_turn_rate: float | None = None,
         metrics: bool = True,
         copy: bool = True,
     ) -> None:
@@ -81,7 +94,7 @@ class Environments:
             progress=number("progress", progress),
             step_reward=number("step_reward", step_reward),
             max_acceleration=positive("max_acceleration", fastest),
-            max_turn_rate=positive("max_turn_rate", max_turn_rate),
+            max_turn_rate=turn_rate_of(world.robots[0].robot, max_turn_rate),
             autoreset_mode=autoreset_mode,
             metrics=self.metrics,
         )

@@ -16,7 +16,7 @@ from pettingzoo import ParallelEnv
 from hrsafety._arguments import Array, checked_seed, numbers, positive, word
 from hrsafety._bounds import MOST_SIGHTINGS
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.gym.environments import ActionKind, Frame
+from hrsafety.gym.environments import ActionKind, Frame, turn_rate_of
 from hrsafety.gym.single import RENDER_MODES, CrowdEnv
 from hrsafety.gym.worlds import Task
 from hrsafety.navigation.crowd.agents import CrowdRobot
@@ -183,7 +183,7 @@ class CrowdParallelEnv(ParallelEnv[str, Any, Action]):  # type: ignore[misc]  # 
         return _Told(
             robot,
             word("action", options.get("action", "velocity"), get_args(ActionKind)),
-            positive("max_turn_rate", options.get("max_turn_rate", math.pi)) * (robot.control_period or world.step),
+            turn_rate_of(robot.robot, options.get("max_turn_rate")) * (robot.control_period or world.step),
             robot.robot.max_acceleration if acceleration is None else positive("max_acceleration", acceleration),
         )
 

@@ -48,8 +48,9 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
         Reward for each meter that the goal comes nearer, and for each step.
     max_acceleration : float or None
         In m/s^2; that of the robot when ``None``.
-    max_turn_rate : float
-        In rad/s.
+    max_turn_rate : float or None
+        Of the action "unicycle", in rad/s. ``None``: that of the robot, at most pi; a larger one than the robot has is
+        refused.
     metrics : bool
         Whether ``info["metrics"]`` has the social metrics of an episode at its end.
     copy : bool

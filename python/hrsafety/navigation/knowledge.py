@@ -185,10 +185,10 @@ def _unseen_at_start(scenario: Scenario, vision: Vision | None) -> Iterator[Resu
     robot = scenario.robot
     reaction = blind + scenario.control_period
     speed = min(robot.max_speed, robot.max_acceleration * reaction)
-    way = speed * reaction + speed**2 / (2.0 * robot.max_acceleration)
+    way = speed * reaction + speed**2 / (2.0 * robot.deceleration)
     for index, obstacle in enumerate(scenario.obstacles):
         gap = math.inf if stands(obstacle) else _gap_at_start(scenario, obstacle)
-        toward = own_speed(obstacle, scenario.time_limit) * (reaction + speed / robot.max_acceleration)
+        toward = own_speed(obstacle, scenario.time_limit) * (reaction + speed / robot.deceleration)
         if gap < way + toward:
             yield ResultWarning(
                 UNSEEN_AT_START,

@@ -12,7 +12,7 @@ from hrsafety._arguments import checked_seed, finite_pair, flag, instance, numbe
 from hrsafety.errors import InvalidParameterError, SimulationError
 from hrsafety.navigation.laws.python_law import AnyLaw, PythonLaw, as_law
 from hrsafety.navigation.laws.safe_navigation import SafetyTrace
-from hrsafety.navigation.laws.situation import PointMass, Situation, fixed, situation_of
+from hrsafety.navigation.laws.situation import Situation, fixed, point_mass_of, situation_of
 from hrsafety.navigation.outcomes import Outcome
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.robots.bodies import HolonomicRobot
@@ -91,8 +91,7 @@ class Run:
         how = AsBuilt() if built is None else instance("built", built, AsBuilt)
         self._how = how
         native = self._scenario._native
-        mass, radius, max_speed, max_acceleration = native.point_mass()
-        self._robot = PointMass(mass=mass, radius=radius, max_speed=max_speed, max_acceleration=max_acceleration)
+        self._robot = point_mass_of(native.point_mass())
         self._goal = fixed(scene.goal)
         self._step = number("step", step)
         self._commanded = 0

@@ -231,7 +231,7 @@ def _examined(seen: Situation, command: Pair, shield: Shield, scene: Scenario) -
         velocity = (math.nan, math.nan) if stands(obstacle) else _pair(seen.obstacle_velocity[index])
         others.append((_pair(seen.obstacle_position[index]), outline, velocity, _bounds(obstacle, shield)))
     margin, (instants, places) = native.examine(
-        (robot.radius, robot.max_speed, robot.max_acceleration, seen.control_period),
+        (robot.radius, robot.max_speed, min(robot.max_acceleration, robot.max_deceleration), seen.control_period),
         (_pair(seen.position), _pair(seen.velocity)),
         command,
         others,

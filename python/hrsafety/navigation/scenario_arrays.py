@@ -344,7 +344,8 @@ def _may_warn(
     """Return where `Scenario.warnings` may find something: rows that are left out have none."""
     position, velocity, radius = bodies
     driven = {f"robot_{each.name}": getattr(robot, each.name) for each in fields(robot)}
-    common = {name: value for name, value in {**driven, **rules}.items() if name in RANGES}
+    given = {**driven, **rules}.items()
+    common = {name: value for name, value in given if name in RANGES and value is not None}
     if any(_outside(name, np.asarray(value)).any() for name, value in common.items()):
         return np.ones(len(ends[0]), dtype=bool)
     speed = np.hypot(velocity[..., 0], velocity[..., 1])

@@ -62,6 +62,7 @@ _ROBOT: dict[str, kind.Kind] = {
     "radius": kind.number,
     "max_speed": kind.number,
     "max_acceleration": kind.number,
+    "max_deceleration": kind.number,
     "wheel_radius": kind.number,
     "winding_resistance": kind.number,
 }
@@ -75,6 +76,8 @@ _ROBOTS: Mapping[str, tuple[type[nav.HolonomicRobot] | type[nav.DifferentialDriv
                 **_ROBOT,
                 **dict.fromkeys(_WHEELS, kind.pair),
                 "max_angular_acceleration": kind.number,
+                "max_turn_rate": kind.number,
+                "max_turn_acceleration": kind.number,
                 "reference_speed_share": kind.number,
                 "wheel_span": kind.number,
             },

@@ -48,6 +48,9 @@ SCENE_UNITS: Mapping[str, str] = MappingProxyType(
         "robot_radius": "m",
         "robot_max_speed": "m/s",
         "robot_max_acceleration": "m/s^2",
+        "robot_max_deceleration": "m/s^2",
+        "robot_max_turn_rate": "rad/s",
+        "robot_max_turn_acceleration": "rad/s^2",
         "obstacle_speed": "m/s",
     }
 )
@@ -87,7 +90,8 @@ class NavigationStudy(Study):
     - ``control_period``, ``time_limit``, ``arrival_tolerance``, ``heading``, ``rest_time``,
       ``seed`` of the scenarios; ``measurement_scale`` (the noise is that of `Measurement`
       where a scenario has none); ``robot_mass``, ``robot_radius``, ``robot_max_speed``,
-      ``robot_max_acceleration``; ``obstacle_speed``, which every obstacle that walks straight
+      ``robot_max_acceleration``, ``robot_max_deceleration``, and of two wheels ``robot_max_turn_rate``
+      and ``robot_max_turn_acceleration``; ``obstacle_speed``, which every obstacle that walks straight
       takes on in its direction. The regions around obstacles stay as they are;
     - with ``scenario``, any others: the function builds the scene from them.
 

@@ -54,11 +54,13 @@ TWO_WHEELS = (*(wrong for wrong in WHEELS if wrong != (1.0, 2.0)), (0.1, 0.1, 0.
 RULES: dict[str, dict[str, tuple[Any, ...]]] = {
     "HolonomicRobot": {
         **dict.fromkeys(("mass", "radius", "max_speed", "max_acceleration", "wheel_radius"), POSITIVE),
+        "max_deceleration": OPTIONAL_POSITIVE,
         "winding_resistance": NOT_NEGATIVE,
         **dict.fromkeys(("wheel_inertia", "wheel_viscous_friction", "wheel_static_friction"), WHEELS),
     },
     "DifferentialDriveRobot": {
         **dict.fromkeys(("mass", "radius", "max_speed", "max_acceleration", "max_angular_acceleration"), POSITIVE),
+        **dict.fromkeys(("max_deceleration", "max_turn_rate", "max_turn_acceleration"), OPTIONAL_POSITIVE),
         **dict.fromkeys(("wheel_radius", "wheel_span"), POSITIVE),
         "reference_speed_share": (*POSITIVE, 1.01),
         "winding_resistance": NOT_NEGATIVE,

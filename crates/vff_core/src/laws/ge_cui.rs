@@ -22,8 +22,8 @@ pub struct GeCui<R = f64> {
     pub repulsive: R,
     /// `b = K_2/K_1` in s.
     pub ratio: R,
-    /// `a_max` of the robot in m/s^2.
-    pub max_acceleration: f64,
+    /// `a_max`, with which the robot brakes, in m/s^2.
+    pub max_deceleration: f64,
 }
 
 impl<R: Real> PairwiseField<R> for GeCui<R> {
@@ -43,7 +43,7 @@ impl<R: Real> PairwiseField<R> for GeCui<R> {
         let everywhere = R::Mask::splat(true);
         let goal = Vector2::zeros();
         let approach = Approach::new(neighbor.body, neighbor.offset, everywhere, robot, goal);
-        let (rate, limit) = (approach.range_rate, R::splat(self.max_acceleration));
+        let (rate, limit) = (approach.range_rate, R::splat(self.max_deceleration));
         let stopping = rate * rate / (limit + limit);
         let margin = neighbor.distance - stopping;
         let square = (margin * margin).max(R::splat(LEAST_SQUARE));
@@ -69,7 +69,7 @@ impl Named for GeCui {
             repulsive: given.number("repulsive_gain")?,
             ratio: given.number("gain_ratio")?,
             // Every scenario brings the one of its robot.
-            max_acceleration: f64::NAN,
+            max_deceleration: f64::NAN,
         })
     }
 }
@@ -90,7 +90,7 @@ impl PairwiseFamily for GeCui {
             attractive: gains[0],
             repulsive: gains[1],
             ratio: gains[2],
-            max_acceleration: scenario.robot.max_acceleration,
+            max_deceleration: scenario.robot.deceleration(),
         }
     }
 }

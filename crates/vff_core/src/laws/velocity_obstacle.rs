@@ -119,6 +119,7 @@ pub struct VelocityObstaclePlanner {
     goal: Vector,
     robot_radius: f64,
     max_speed: f64,
+    /// Acceleration in m/s^2 that the robot has in every direction.
     max_acceleration: f64,
     cones: Vec<Cone>,
     legs: Vec<LegGroup>,
@@ -148,7 +149,7 @@ impl VelocityObstaclePlanner {
             goal: Vector::splat(scenario.goal),
             robot_radius: scenario.robot.radius,
             max_speed: scenario.robot.max_speed,
-            max_acceleration: scenario.robot.max_acceleration,
+            max_acceleration: scenario.robot.guaranteed_acceleration(),
             cones: Vec::with_capacity(count),
             legs: Vec::new(),
             edged: Vec::new(),

@@ -35,6 +35,8 @@ pub struct HolonomicRobot {
     pub max_speed: f64,
     /// Largest acceleration in m/s^2.
     pub max_acceleration: f64,
+    /// Largest deceleration in m/s^2; the largest acceleration where it is `None`.
+    pub max_deceleration: Option<f64>,
     /// Wheels and motors.
     pub wheels: Wheels,
 }
@@ -47,6 +49,7 @@ impl Default for HolonomicRobot {
             radius: 0.2,
             max_speed: 0.7,
             max_acceleration: 10.0,
+            max_deceleration: None,
             wheels: Wheels {
                 radius: 0.10,
                 resistance: 4.86,
@@ -68,6 +71,7 @@ impl HolonomicRobot {
         positive("radius", self.radius)?;
         positive("max_speed", self.max_speed)?;
         positive("max_acceleration", self.max_acceleration)?;
+        positive("max_deceleration", self.deceleration())?;
         positive("wheel_radius", self.wheels.radius)?;
         not_negative("winding_resistance", self.wheels.resistance)?;
         for wheel in 0..3 {
@@ -92,15 +96,52 @@ impl HolonomicRobot {
         RobotLimits {
             radius: self.radius,
             max_speed: self.max_speed,
-            max_acceleration: self.max_acceleration,
+            max_acceleration: self.guaranteed_acceleration(),
             turn_time: 0.0,
         }
     }
 
-    /// Acceleration from a commanded force: `F/m`, shortened to the largest acceleration.
+    /// Largest deceleration in m/s^2.
+    #[inline]
+    #[must_use]
+    pub fn deceleration(&self) -> f64 {
+        self.max_deceleration.unwrap_or(self.max_acceleration)
+    }
+
+    /// Acceleration in m/s^2 that it has in every direction, whatever its velocity is.
+    #[inline]
+    #[must_use]
+    pub fn guaranteed_acceleration(&self) -> f64 {
+        self.max_acceleration.min(self.deceleration())
+    }
+
+    /// Acceleration from a commanded force: `F/m`, shortened to the larger one of the largest
+    /// acceleration and the largest deceleration; which of them holds, the velocity tells.
     #[inline(always)]
     pub fn acceleration<R: Real>(&self, force: Vector2<R>) -> Vector2<R> {
-        limited(force * R::splat(1.0 / self.mass), self.max_acceleration).0
+        let most = self.max_acceleration.max(self.deceleration());
+        limited(force * R::splat(1.0 / self.mass), most).0
+    }
+
+    /// The change of velocity in m/s that a step in s makes of one that is asked for.
+    ///
+    /// Along the velocity and across it is at most `a T`. Where it points backwards it lies in the
+    /// half ellipse with the half axes `d T` against the velocity and `a T` across it, `d` the largest
+    /// deceleration; with `d > a` a change of more than `a T` ends where the robot brakes no longer.
+    #[inline(always)]
+    pub fn change<R: Real>(
+        &self,
+        velocity: Vector2<R>,
+        asked: Vector2<R>,
+        step: f64,
+    ) -> Vector2<R> {
+        match self.max_deceleration {
+            None => asked,
+            Some(deceleration) => {
+                let most = [self.max_acceleration * step, deceleration * step];
+                shortened(velocity, asked, most)
+            }
+        }
     }
 
     /// Velocity shortened to the largest speed, and the speed that is left.
@@ -113,11 +154,39 @@ impl HolonomicRobot {
     /// velocity; returns the speed in m/s.
     #[inline(always)]
     pub fn advance<R: Real>(&self, state: &mut RobotState<R>, push: Vector2<R>, step: f64) -> R {
+        let push = self.change(state.velocity, push, step);
         let (velocity, speed) = self.limited_velocity(state.velocity + push);
         state.velocity = velocity;
         state.position += velocity * R::splat(step);
         speed
     }
+}
+
+/// A change of velocity shortened to what a robot can add to its speed, and take from it, in m/s.
+#[inline(never)]
+fn shortened<R: Real>(
+    velocity: Vector2<R>,
+    asked: Vector2<R>,
+    [faster, slower]: [f64; 2],
+) -> Vector2<R> {
+    let magnitude = asked.dot(&asked).sqrt();
+    let against = -velocity.dot(&asked) / magnitude;
+    let share = against / velocity.dot(&velocity).sqrt();
+    let along = share * share;
+    let across = (R::splat(1.0) - along).max(R::zero());
+    // Products of limits may exceed every number, their ratio may not.
+    let ratio = slower / faster;
+    let most = if slower > faster {
+        let root = (along * R::splat(1.0 / (ratio * ratio)) + across).sqrt();
+        (R::splat(faster) / root).min(against).max(R::splat(faster))
+    } else {
+        let root = (along + across * R::splat(ratio * ratio)).sqrt();
+        (R::splat(slower) / root).min(R::splat(faster))
+    };
+    // Neither holds for the NaN of what stands or asks for nothing.
+    let most = R::select(against.gt(R::zero()), most, R::splat(faster));
+    let factor = R::select(magnitude.gt(most), most / magnitude, R::splat(1.0));
+    asked * factor
 }
 
 /// A vector shortened to a largest magnitude, and its magnitude then.
@@ -238,6 +307,66 @@ mod tests {
         robot.wheels.static_friction[1] = -0.1;
         let words = robot.checked().unwrap_err().to_string();
         assert!(words.contains("wheel_static_friction[1]"), "{words}");
+    }
+
+    #[test]
+    fn it_brakes_and_accelerates_within_limits_of_their_own() {
+        for deceleration in [2.0, 10.0, 30.0] {
+            let robot = HolonomicRobot {
+                max_speed: 100.0,
+                max_deceleration: Some(deceleration),
+                ..HolonomicRobot::default()
+            };
+            let change = |velocity: [f64; 2], asked: [f64; 2]| {
+                let found = robot.change::<f64>(velocity.into(), asked.into(), 0.1);
+                [found.x, found.y]
+            };
+            assert_eq!(change([5.0, 0.0], [9.0, 0.0]), [1.0, 0.0]);
+            assert_eq!(change([5.0, 0.0], [0.0, 9.0]), [0.0, 1.0]);
+            assert_eq!(change([0.0, 0.0], [0.0, -9.0]), [0.0, -1.0]);
+            assert_eq!(change([5.0, 0.0], [0.0, 0.0]), [0.0, 0.0]);
+            let [x, y] = change([5.0, 0.0], [-9.0, 0.0]);
+            assert!((x + 0.1 * deceleration).abs() < 1e-15 && y == 0.0);
+            // Backwards it comes with the acceleration again.
+            let [x, _] = change([0.2, 0.0], [-9.0, 0.0]);
+            let most = if deceleration < 10.0 { 0.2 } else { 1.0 };
+            assert!((x + most).abs() < 1e-15, "{x}");
+            let [x, y] = change([5.0, 0.0], [-9.0, 9.0]);
+            let ellipse = (x / deceleration).hypot(y / 10.0);
+            assert!((ellipse - 0.1).abs() < 1e-14 && (x + y).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn limits_of_any_size_give_numbers() {
+        for acceleration in [1e-300, 1.0, 1e300] {
+            for deceleration in [1e-300, 1.0, 1e300] {
+                let robot = HolonomicRobot {
+                    max_acceleration: acceleration,
+                    max_deceleration: Some(deceleration),
+                    ..HolonomicRobot::default()
+                };
+                for asked in [[-1.0, 0.0], [0.0, 1.0], [-1.0, 1.0], [1.0, 1.0], [0.0; 2]] {
+                    let found = robot.change::<f64>([0.5, 0.0].into(), asked.into(), 0.01);
+                    assert!(
+                        found.x.is_finite() && found.y.is_finite(),
+                        "{robot:?} {asked:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn without_a_deceleration_of_its_own_no_bit_changes() {
+        let robot = HolonomicRobot::default();
+        let asked = Vector2::new(-0.3, 0.1);
+        assert_eq!(
+            robot.change::<f64>(Vector2::new(0.7, 0.0), asked, 0.01),
+            asked
+        );
+        assert_eq!(robot.deceleration(), robot.max_acceleration);
+        assert_eq!(robot.limits().max_acceleration, 10.0);
     }
 
     #[test]

@@ -38,8 +38,14 @@ pub struct DifferentialDriveRobot {
     pub max_speed: f64,
     /// Largest acceleration in m/s^2.
     pub max_acceleration: f64,
+    /// Largest deceleration in m/s^2; the largest acceleration where it is `None`.
+    pub max_deceleration: Option<f64>,
     /// Largest angular acceleration in rad/s^2.
     pub max_angular_acceleration: f64,
+    /// Largest turn rate in rad/s beside that of the wheels at the largest speed, if there is one.
+    pub max_turn_rate: Option<f64>,
+    /// Largest change of the turn rate in rad/s^2 beside the largest angular acceleration, if there is one.
+    pub max_turn_acceleration: Option<f64>,
     /// Share of the largest speed that the robot which it follows may use, so that it can catch up.
     pub reference_speed_share: f64,
     /// Wheels and motors.
@@ -55,7 +61,10 @@ impl Default for DifferentialDriveRobot {
             radius: 0.2,
             max_speed: 0.7,
             max_acceleration: 10.0,
+            max_deceleration: None,
             max_angular_acceleration: 70.0,
+            max_turn_rate: None,
+            max_turn_acceleration: None,
             reference_speed_share: 0.9,
             wheels: DifferentialWheels {
                 radius: 0.025,
@@ -80,6 +89,13 @@ impl DifferentialDriveRobot {
         positive("max_speed", self.max_speed)?;
         positive("max_acceleration", self.max_acceleration)?;
         positive("max_angular_acceleration", self.max_angular_acceleration)?;
+        for (name, limit) in [
+            ("max_deceleration", self.max_deceleration),
+            ("max_turn_rate", self.max_turn_rate),
+            ("max_turn_acceleration", self.max_turn_acceleration),
+        ] {
+            limit.map_or(Ok(0.0), |limit| positive(name, limit))?;
+        }
         let share = positive("reference_speed_share", self.reference_speed_share)?;
         if share > 1.0 {
             let rule = "be positive and at most 1";
@@ -109,18 +125,84 @@ impl DifferentialDriveRobot {
             radius: self.radius,
             max_speed: self.max_speed * self.reference_speed_share,
             max_acceleration: self.max_acceleration,
+            max_deceleration: self.max_deceleration,
             ..HolonomicRobot::default()
         }
     }
 
-    /// Limits for the size of regions; `t_turn = sqrt(pi / alpha_max)`.
+    /// Largest turn rate in rad/s: at most `2 V/l`, at which the wheels run at the largest speed against
+    /// each other.
+    #[must_use]
+    pub fn turn_rate(&self) -> f64 {
+        let of_wheels = 2.0 * self.max_speed / self.wheels.span;
+        self.max_turn_rate
+            .map_or(of_wheels, |most| most.min(of_wheels))
+    }
+
+    /// Largest change of the turn rate in rad/s^2.
+    #[must_use]
+    pub fn turn_acceleration(&self) -> f64 {
+        let most = self.max_angular_acceleration;
+        self.max_turn_acceleration
+            .map_or(most, |given| given.min(most))
+    }
+
+    /// Time in s for a quarter of a turn: `sqrt(pi / alpha)`, and `pi/(2 omega) + omega/(2 alpha)` where a
+    /// largest turn rate is given and reached before.
+    fn turn_time(&self) -> f64 {
+        let turn = self.turn_acceleration();
+        let time = (std::f64::consts::PI / turn).sqrt();
+        match self.max_turn_rate {
+            Some(_) if turn * time > self.turn_rate() => {
+                let rate = self.turn_rate();
+                std::f64::consts::FRAC_PI_2 / rate + 0.5 * rate / turn
+            }
+            _ => time,
+        }
+    }
+
+    /// Limits for the size of regions.
     #[must_use]
     pub fn limits(&self) -> RobotLimits {
         RobotLimits {
             radius: self.radius,
             max_speed: self.max_speed,
-            max_acceleration: self.max_acceleration,
-            turn_time: (std::f64::consts::PI / self.max_angular_acceleration).sqrt(),
+            max_acceleration: self.reference().guaranteed_acceleration(),
+            turn_time: self.turn_time(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_turns_slower_needs_longer_for_a_quarter_of_a_turn() {
+        let robot = DifferentialDriveRobot::default();
+        let time = robot.limits().turn_time;
+        assert_eq!(time, (std::f64::consts::PI / 70.0).sqrt());
+        let limited = |rate, acceleration| DifferentialDriveRobot {
+            max_turn_rate: rate,
+            max_turn_acceleration: acceleration,
+            ..robot
+        };
+        let of_wheels = limited(None, None).turn_rate();
+        assert_eq!(limited(Some(100.0), Some(1e3)).turn_rate(), of_wheels);
+        assert_eq!(limited(None, Some(1e3)).limits().turn_time, time);
+        assert!((limited(None, Some(17.5)).limits().turn_time - 2.0 * time).abs() < 1e-15);
+        // At 1 rad/s: half a radian of it while the rate rises and falls by 1 rad/s^2.
+        let slow = limited(Some(1.0), Some(1.0)).limits().turn_time;
+        assert!((slow - (std::f64::consts::FRAC_PI_2 + 0.5)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn limits_that_are_given_are_positive() {
+        let robot = DifferentialDriveRobot {
+            max_turn_rate: Some(0.0),
+            ..DifferentialDriveRobot::default()
+        };
+        let words = robot.checked().unwrap_err().to_string();
+        assert!(words.contains("max_turn_rate"), "{words}");
     }
 }

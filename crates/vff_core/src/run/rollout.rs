@@ -360,7 +360,11 @@ pub(crate) fn semi_implicit_euler<W: World<R>, R: Real>(runs: &mut Runs<W, R>) {
 pub(crate) fn rk4_held<W: World<R>, R: Real>(runs: &mut Runs<W, R>) {
     let robot = &runs.scenario.common().robot;
     let Clock { step, .. } = runs.clock;
-    let at = |share: f64| runs.velocity + runs.acceleration * R::splat(share * step);
+    let change = robot.change(runs.velocity, runs.acceleration * R::splat(step), step);
+    let at = |share: f64| match robot.max_deceleration {
+        None => runs.velocity + runs.acceleration * R::splat(share * step),
+        Some(_) => runs.velocity + change * R::splat(share),
+    };
     let middle = robot.limited_velocity(at(0.5)).0;
     let (last, speed) = robot.limited_velocity(at(1.0));
     let weighted = runs.velocity + middle * R::splat(4.0) + last;
@@ -381,15 +385,21 @@ fn rk4<R: Real, L: Law<R>>(
     block: &Block<'_>,
     time: f64,
 ) {
-    let first = runs.acceleration;
     let robot = &runs.scenario.robot;
     let Clock { step, interval, .. } = runs.clock;
+    let begun = runs.velocity;
+    // Every stage keeps the limits of the velocity at the start of the step.
+    let kept = |acceleration: Vector2<R>| match robot.max_deceleration {
+        None => acceleration,
+        Some(_) => robot.change(begun, acceleration * R::splat(step), step) * R::splat(1.0 / step),
+    };
+    let first = kept(runs.acceleration);
     let (scene, stop) = (block.scene, block.stop);
     let heading = runs.scenario.rules.heading;
     let (start, velocity) = (runs.position, runs.velocity);
     let mut push = |time: f64, bodies: &[Body], position, velocity| {
         let state = RobotState { position, velocity };
-        robot.acceleration(stage_force(
+        kept(robot.acceleration(stage_force(
             law,
             &Situation {
                 time,
@@ -400,7 +410,7 @@ fn rk4<R: Real, L: Law<R>>(
                 interval,
                 stop,
             },
-        ))
+        )))
     };
     let middle = time + 0.5 * step;
     let limited = |velocity| robot.limited_velocity(velocity).0;
@@ -414,5 +424,6 @@ fn rk4<R: Real, L: Law<R>>(
     let (sixth, two) = (R::splat(step / 6.0), R::splat(2.0));
     runs.position = start + (velocity + (v2 + v3) * two + v4) * sixth;
     let gain = (first + (second + third) * two + fourth) * sixth;
+    let gain = robot.change(velocity, gain, step);
     (runs.velocity, runs.speed) = robot.limited_velocity(velocity + gain);
 }

@@ -11,7 +11,7 @@ pub struct RobotLimits {
     pub radius: f64,
     /// Largest speed `V` in m/s.
     pub max_speed: f64,
-    /// Largest acceleration `a` in m/s^2.
+    /// Acceleration `a` in m/s^2 that it has in every direction.
     pub max_acceleration: f64,
     /// Time it needs to turn before it can move sideways, in s; 0 for a holonomic robot.
     pub turn_time: f64,

@@ -11,6 +11,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair
 from hrsafety.navigation.crowd.agents import FASTEST_DRAWN, CrowdRobot, Person, Source, middle_of
 from hrsafety.navigation.laws.shield import Shield
+from hrsafety.navigation.robots.bodies import NUMBERS
 from hrsafety.navigation.warnings.shields import SEES_LESS, Motion, Mover, of_order, of_surroundings, shield_of
 from hrsafety.plausibility import RANGES, ResultWarning, gathered, implausible
 
@@ -41,7 +42,7 @@ def of_numbers(
     found += [(f"sources[{index}]", implausible(_body(each), _QUANTITIES)) for index, each in enumerate(sources)]
     for index, robot in enumerate(robots):
         values = {"start": robot.start, "goal": robot.goal}
-        values |= {f"robot_{name}": getattr(robot.robot, name) for name in _OF_ROBOTS}
+        values |= {f"robot_{name}": getattr(robot.robot, name, None) for name in NUMBERS}
         if robot.measurement is not None:
             values |= {"measurement_scale": robot.measurement.scale, "latency": robot.measurement.latency}
         found.append((f"robots[{index}]", implausible(values, _QUANTITIES)))
@@ -148,7 +149,6 @@ def _in_walls(
             yield owner, name, f"{name} ({x:.6g}, {y:.6g}) is {there} walls[{wall}]{needed}"
 
 
-_OF_ROBOTS = ("mass", "radius", "max_speed", "max_acceleration")
 _QUANTITIES = {
     "start": "floor_position",
     "goal": "floor_position",

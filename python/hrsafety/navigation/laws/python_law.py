@@ -17,7 +17,7 @@ from hrsafety._records import dataclass
 from hrsafety._words import nearest
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.laws.force_laws import Law
-from hrsafety.navigation.laws.situation import PointMass, Situation, fixed, situation_of
+from hrsafety.navigation.laws.situation import Situation, fixed, point_mass_of, situation_of
 
 __all__ = ["AnyLaw", "ForceLaw", "PythonLaw", "VelocityLaw", "as_law", "class_of", "law_with_gains"]
 
@@ -174,14 +174,13 @@ class _Episode:
         ask: Callable[[Situation], object],
         start: Callable[[Situation, int], object] | None,
         kind: str,
-        robot: tuple[float, float, float, float],
+        robot: tuple[float, float, float, float, float],
         origin: Pair,
         goal: Pair,
         seed: int,
     ) -> None:
-        mass, radius, max_speed, max_acceleration = robot
         self.name, self.ask, self.start, self.kind = name, ask, start, kind
-        self.robot = PointMass(mass=mass, radius=radius, max_speed=max_speed, max_acceleration=max_acceleration)
+        self.robot = point_mass_of(robot)
         self.origin, self.goal, self.seed = origin, fixed(goal), seed
 
     def __call__(self, fields: Mapping[str, Any], aim: Pair | None = None) -> Pair:

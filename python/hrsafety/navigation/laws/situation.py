@@ -12,7 +12,7 @@ from hrsafety._arguments import Array
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 
-__all__ = ["PointMass", "Situation", "situation_of"]
+__all__ = ["PointMass", "Situation", "point_mass_of", "situation_of"]
 
 
 @displayed
@@ -26,7 +26,7 @@ class PointMass:
         In kg.
     radius : float
         In m.
-    max_speed, max_acceleration : float
+    max_speed, max_acceleration, max_deceleration : float
         Limits that the robot keeps, whatever force is asked for, in m/s and m/s^2.
     """
 
@@ -34,6 +34,7 @@ class PointMass:
     radius: float
     max_speed: float
     max_acceleration: float
+    max_deceleration: float
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -83,6 +84,14 @@ class Situation:
     critical_radius: Array
     robot: PointMass
     control_period: float
+
+
+def point_mass_of(given: tuple[float, float, float, float, float]) -> PointMass:
+    """Return the point mass with native numbers."""
+    mass, radius, speed, acceleration, deceleration = given
+    return PointMass(
+        mass=mass, radius=radius, max_speed=speed, max_acceleration=acceleration, max_deceleration=deceleration
+    )
 
 
 def situation_of(fields: Mapping[str, Any], robot: PointMass, goal: Array) -> Situation:

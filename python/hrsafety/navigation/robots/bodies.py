@@ -24,6 +24,19 @@ def _of_wheels(name: str, value: object, wheels: int) -> tuple[float, ...]:
     return tuple(number(name, part) for part in parts)
 
 
+NUMBERS = (
+    *("mass", "radius", "max_speed", "max_acceleration", "max_deceleration"),
+    *("max_angular_acceleration", "max_turn_rate", "max_turn_acceleration"),
+)
+"""Numbers of robots that have plausible ranges; not every robot has all of them."""
+
+
+def _limits(robot: object, *names: str) -> dict[str, float | None]:
+    """Return limits that a robot may have, by name."""
+    given = {name: getattr(robot, name) for name in names}
+    return {name: None if value is None else number(name, value) for name, value in given.items()}
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class HolonomicRobot(Parameters):
     """Three-wheel robot that can accelerate in any direction.
@@ -41,7 +54,11 @@ class HolonomicRobot(Parameters):
     max_speed : float
         Largest speed, in m/s.
     max_acceleration : float
-        Largest acceleration and deceleration, in m/s^2.
+        Largest acceleration, in m/s^2.
+    max_deceleration : float or None
+        Largest deceleration, in m/s^2: a change of velocity against the motion lies in the half ellipse with this
+        half axis along the motion and `max_acceleration` across it. ``None``: as `max_acceleration`. Laws and shields
+        that look ahead count on the smaller one of the two for changes in any direction.
     wheel_radius : float
         Wheel radius r_w in m. The default is a calibration of the published energies, see
         `winding_resistance`.
@@ -72,6 +89,7 @@ class HolonomicRobot(Parameters):
     radius: float = 0.2
     max_speed: float = 0.7
     max_acceleration: float = 10.0
+    max_deceleration: float | None = None
     wheel_radius: float = 0.10
     winding_resistance: float = 4.86
     wheel_inertia: Triple = (0.0073, 0.0074, 0.0065)
@@ -84,6 +102,7 @@ class HolonomicRobot(Parameters):
         scalars = ("mass", "radius", "max_speed", "max_acceleration", "wheel_radius")
         self._set(**{name: number(name, getattr(self, name)) for name in scalars})
         self._set(winding_resistance=number("winding_resistance", self.winding_resistance))
+        self._set(**_limits(self, "max_deceleration"))
         wheels = ("wheel_inertia", "wheel_viscous_friction", "wheel_static_friction")
         self._set(**{name: _of_wheels(name, getattr(self, name), 3) for name in wheels})
         self._set(
@@ -92,6 +111,7 @@ class HolonomicRobot(Parameters):
                 radius=self.radius,
                 max_speed=self.max_speed,
                 max_acceleration=self.max_acceleration,
+                max_deceleration=self.max_deceleration,
                 wheel_radius=self.wheel_radius,
                 winding_resistance=self.winding_resistance,
                 wheel_inertia=self.wheel_inertia,
@@ -99,6 +119,16 @@ class HolonomicRobot(Parameters):
                 wheel_static_friction=self.wheel_static_friction,
             )
         )
+
+    @property
+    def deceleration(self) -> float:
+        """Deceleration in m/s^2 that it brakes with at most: `max_deceleration`, or `max_acceleration` without one."""
+        return self.max_acceleration if self.max_deceleration is None else self.max_deceleration
+
+    @property
+    def guaranteed_acceleration(self) -> float:
+        """Acceleration in m/s^2 that it has in every direction: the smaller one of acceleration and deceleration."""
+        return min(self.max_acceleration, self.deceleration)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -108,7 +138,9 @@ class DifferentialDriveRobot(Parameters):
     A law drives a point mass with the same mass, size and acceleration and a share of the speed;
     the robot follows it, Zeng (2011), section 7.2. The force is computed at the position and
     velocity of the robot itself. `region_radii` sizes the regions with the time that the robot
-    needs to turn. Defaults are the robot of chapter 7 and Table E.2 of that thesis.
+    needs to turn. Defaults are the robot of chapter 7 and Table E.2 of that thesis; limits that are ``None`` leave it
+    as it is there: it turns at up to 5 rad/s, more than most robots among people may. Limits hold for what
+    the wheels are told; wheels with controllers (`AsBuilt`) may overshoot.
 
     Parameters
     ----------
@@ -119,9 +151,18 @@ class DifferentialDriveRobot(Parameters):
     max_speed : float
         Largest speed, in m/s.
     max_acceleration : float
-        Largest acceleration and deceleration, in m/s^2.
+        Largest acceleration, in m/s^2.
+    max_deceleration : float or None
+        Largest deceleration, in m/s^2. ``None``: as `max_acceleration`. Laws and shields that look ahead count on the
+        smaller one of the two for changes in any direction.
     max_angular_acceleration : float
-        Largest angular acceleration alpha_max, in rad/s^2.
+        Largest angular acceleration alpha_max that the motors can give, in rad/s^2.
+    max_turn_rate : float or None
+        Largest turn rate, in rad/s. ``None``: only what the wheels can give, 2 V/l, at which they run at the largest
+        speed against each other; that limits it beside a number, too.
+    max_turn_acceleration : float or None
+        Largest change of the turn rate, in rad/s^2, beside `max_angular_acceleration`: the smaller one holds. ``None``:
+        that alone.
     reference_speed_share : float
         Share of the largest speed that the point mass may use, above 0 and at most 1. At 1 the
         robot has no speed left to catch up with it.
@@ -157,7 +198,10 @@ class DifferentialDriveRobot(Parameters):
     radius: float = 0.2
     max_speed: float = 0.7
     max_acceleration: float = 10.0
+    max_deceleration: float | None = None
     max_angular_acceleration: float = 70.0
+    max_turn_rate: float | None = None
+    max_turn_acceleration: float | None = None
     reference_speed_share: float = 0.9
     wheel_radius: float = 0.025
     wheel_span: float = 0.28
@@ -171,15 +215,29 @@ class DifferentialDriveRobot(Parameters):
         """Check the values."""
         wheels = ("wheel_inertia", "wheel_viscous_friction", "wheel_static_friction")
         self._set(**{name: _of_wheels(name, getattr(self, name), 2) for name in wheels})
-        scalars = self._as_numbers(*(item.name for item in fields(self) if item.init and item.name not in wheels))
+        limits = _limits(self, "max_deceleration", "max_turn_rate", "max_turn_acceleration")
+        self._set(**limits)
+        others = (item.name for item in fields(self) if item.init and item.name not in (*wheels, *limits))
+        scalars = self._as_numbers(*others)
         self._set(
             _native=_hrsafety.DifferentialDriveRobot(
                 **scalars,
+                **limits,
                 wheel_inertia=self.wheel_inertia,
                 wheel_viscous_friction=self.wheel_viscous_friction,
                 wheel_static_friction=self.wheel_static_friction,
             )
         )
+
+    @property
+    def deceleration(self) -> float:
+        """Deceleration in m/s^2 that it brakes with at most: `max_deceleration`, or `max_acceleration` without one."""
+        return self.max_acceleration if self.max_deceleration is None else self.max_deceleration
+
+    @property
+    def guaranteed_acceleration(self) -> float:
+        """Acceleration in m/s^2 that it has in every direction: the smaller one of acceleration and deceleration."""
+        return min(self.max_acceleration, self.deceleration)
 
 
 @cache

@@ -14,7 +14,7 @@ from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.obstacles.moving_rectangle import Box, Mobile
 from hrsafety.navigation.obstacles.standing import Rectangle
 from hrsafety.navigation.regions import region_radii
-from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
+from hrsafety.navigation.robots.bodies import NUMBERS, DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.plausibility import ResultWarning, implausible
 
@@ -210,7 +210,7 @@ def of_units(scenario: Described) -> tuple[ResultWarning, ...]:
         "arrival_tolerance": scenario.arrival_tolerance,
     }
     quantities = {"start": "floor_position", "goal": "floor_position"}
-    for name in ("mass", "radius", "max_speed", "max_acceleration", "max_angular_acceleration"):
+    for name in NUMBERS:
         values[f"robot.{name}"] = getattr(robot, name, None)
         quantities[f"robot.{name}"] = f"robot_{name}"
     if scenario.measurement is not None:

@@ -63,14 +63,14 @@ class Motion:
     @property
     def execution_error(self) -> float:
         """Largest deviation from an even change of velocity within a control period, in m: half a motion step."""
-        change = min(self.robot.max_acceleration * self.control_period, 2.0 * self.robot.max_speed)
+        change = min(self.robot.guaranteed_acceleration * self.control_period, 2.0 * self.robot.max_speed)
         return 0.5 * change * min(self.step, self.control_period)
 
     @property
     def plan_duration(self) -> float:
         """Longest time in s from a command to rest: a control period, and whole ones of braking."""
         period = self.control_period
-        return (1.0 + math.ceil(self.robot.max_speed / (self.robot.max_acceleration * period) - 1e-9)) * period
+        return (1.0 + math.ceil(self.robot.max_speed / (self.robot.guaranteed_acceleration * period) - 1e-9)) * period
 
 
 @dataclass(frozen=True, slots=True)
@@ -357,7 +357,9 @@ def _of_own_motion(
         own = bound + measured.latency * motion.robot.max_speed
         told = [*(told if least else ()), f"the robot knows its own place to {own:.4g} m only"]
         least += own
-        wrong = 2.0 * bound / motion.control_period + measured.latency * motion.robot.max_acceleration
+        wrong = 2.0 * bound / motion.control_period + measured.latency * max(
+            motion.robot.max_acceleration, motion.robot.deceleration
+        )
         if own:
             wrong = min(wrong, 2.0 * motion.robot.max_speed + 2.0 * bound / motion.control_period)
             unproved = (

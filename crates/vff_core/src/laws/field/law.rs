@@ -146,7 +146,7 @@ pub struct ForceFieldLaw<R: Real, const RECORD: bool> {
     rules: SideRules,
     goal: Vector2<R>,
     mass: f64,
-    max_acceleration: f64,
+    max_deceleration: f64,
     control_period: f64,
     /// Side of each obstacle at the sample before, 0 outside its active region.
     latched: Vec<R>,
@@ -165,7 +165,7 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
             rules: law.rules,
             goal: Vector2::splat(scenario.goal),
             mass: scenario.robot.mass,
-            max_acceleration: scenario.robot.max_acceleration,
+            max_deceleration: scenario.robot.deceleration(),
             control_period: scenario.rules.control_period,
             latched: vec![R::zero(); count],
             slots: Vec::new(),
@@ -324,11 +324,11 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
         }
     }
 
-    /// Braking along `-V` with `min(a_max, |V|/interval)`, which never reverses the robot.
+    /// Braking along `-V` with `min(d_max, |V|/interval)`, which never reverses the robot.
     #[inline(always)]
     fn braking(&self, velocity: Vector2<R>, interval: f64) -> Vector2<R> {
         let speed = velocity.dot(&velocity).sqrt();
-        let deceleration = (speed / R::splat(interval)).min(R::splat(self.max_acceleration));
+        let deceleration = (speed / R::splat(interval)).min(R::splat(self.max_deceleration));
         let force = velocity * (R::splat(-self.mass) * deceleration / speed);
         Vector2::select(speed.gt(R::zero()), force, Vector2::zeros())
     }

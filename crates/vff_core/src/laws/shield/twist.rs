@@ -134,7 +134,7 @@ impl TwistGuard {
                 + TURN_WEIGHT * (twist.turn_rate - wanted.turn_rate).abs() / drive.max_turn_rate
         };
         let reach = [
-            drive.max_acceleration * period,
+            drive.max_acceleration.max(drive.max_deceleration) * period,
             drive.max_angular_acceleration * period,
         ];
         let share = |step: i32| f64::from(step) / f64::from(STEPS);

@@ -184,7 +184,7 @@ impl TreePlanner {
             max_speed: scenario.robot.max_speed,
             stopping: Stopping {
                 radius: scenario.robot.radius,
-                max_acceleration: scenario.robot.max_acceleration,
+                max_acceleration: scenario.robot.guaranteed_acceleration(),
             },
             tree: Tree::new(growth, scenario.seed),
             footprints: Vec::with_capacity(scenario.obstacle_count()),

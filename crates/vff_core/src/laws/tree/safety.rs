@@ -14,7 +14,7 @@ const PIECES: u32 = 4;
 pub struct Stopping {
     /// Radius in m.
     pub radius: f64,
-    /// Largest acceleration in m/s^2.
+    /// Acceleration in m/s^2 that it has in every direction.
     pub max_acceleration: f64,
 }
 

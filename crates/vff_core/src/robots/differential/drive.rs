@@ -137,8 +137,10 @@ impl Twist {
 pub struct DifferentialLimits {
     /// Largest `|v|` in m/s.
     pub max_speed: f64,
-    /// Largest `|dv/dt|` in m/s^2.
+    /// Largest `d|v|/dt` in m/s^2.
     pub max_acceleration: f64,
+    /// Largest `-d|v|/dt` in m/s^2.
+    pub max_deceleration: f64,
     /// Largest `|omega|` in rad/s.
     pub max_turn_rate: f64,
     /// Largest `|d omega/dt|` in rad/s^2.
@@ -152,6 +154,7 @@ impl Default for DifferentialLimits {
         Self {
             max_speed: 0.7,
             max_acceleration: 10.0,
+            max_deceleration: 10.0,
             max_turn_rate: 5.0,
             max_angular_acceleration: 70.0,
         }
@@ -159,14 +162,13 @@ impl Default for DifferentialLimits {
 }
 
 impl From<&DifferentialDriveRobot> for DifferentialLimits {
-    /// `omega <= 2 V/l`: the turn rate at which the wheels run at the largest speed against each
-    /// other.
     fn from(robot: &DifferentialDriveRobot) -> Self {
         Self {
             max_speed: robot.max_speed,
             max_acceleration: robot.max_acceleration,
-            max_turn_rate: 2.0 * robot.max_speed / robot.wheels.span,
-            max_angular_acceleration: robot.max_angular_acceleration,
+            max_deceleration: robot.max_deceleration.unwrap_or(robot.max_acceleration),
+            max_turn_rate: robot.turn_rate(),
+            max_angular_acceleration: robot.turn_acceleration(),
         }
     }
 }
@@ -179,6 +181,7 @@ impl DifferentialLimits {
     pub fn checked(self) -> Result<Self> {
         positive("max_speed", self.max_speed)?;
         positive("max_acceleration", self.max_acceleration)?;
+        positive("max_deceleration", self.max_deceleration)?;
         positive("max_turn_rate", self.max_turn_rate)?;
         positive("max_angular_acceleration", self.max_angular_acceleration)?;
         Ok(self)
@@ -211,11 +214,28 @@ impl DifferentialLimits {
     #[must_use]
     pub fn toward(&self, now: Twist, wish: Twist, duration: f64) -> Twist {
         let wish = self.within(wish);
-        let speed = self.max_acceleration * duration;
+        let speed = self.speed_change(now.speed, wish.speed, duration);
         let turn = self.max_angular_acceleration * duration;
         Twist {
             speed: now.speed + (wish.speed - now.speed).clamp(-speed, speed),
             turn_rate: now.turn_rate + (wish.turn_rate - now.turn_rate).clamp(-turn, turn),
+        }
+    }
+
+    /// Most by which the speed changes within `duration` s on the way to a wish, in m/s; what brakes harder
+    /// than it accelerates stands before it drives the other way.
+    fn speed_change(&self, now: f64, wish: f64, duration: f64) -> f64 {
+        let (faster, slower) = (
+            self.max_acceleration * duration,
+            self.max_deceleration * duration,
+        );
+        let brakes = now * (wish - now) < 0.0;
+        if !brakes {
+            faster
+        } else if slower > faster {
+            slower.min(now.abs()).max(faster)
+        } else {
+            slower
         }
     }
 }

@@ -13,7 +13,7 @@ pub(crate) struct PointMass {
     pub state: RobotState<f64>,
     /// Speed in m/s.
     pub speed: f64,
-    /// Held acceleration in m/s^2.
+    /// Acceleration in m/s^2, held as far as the velocity lets it.
     pub acceleration: Vector2<f64>,
     push: Vector2<f64>,
     step: f64,
@@ -42,6 +42,10 @@ impl PointMass {
 
     /// Velocity first, then position with the new velocity.
     pub fn advance(&mut self) {
+        if self.robot.max_deceleration.is_some() {
+            let change = self.robot.change(self.state.velocity, self.push, self.step);
+            self.acceleration = change / self.step;
+        }
         self.speed = self.robot.advance(&mut self.state, self.push, self.step);
     }
 }

@@ -203,7 +203,7 @@ pub struct TwistLimits {
 
 impl TwistLimits {
     pub(super) fn braking_periods(&self, twist: Twist) -> f64 {
-        let slow = twist.speed.abs() / (self.drive.max_acceleration * self.period);
+        let slow = twist.speed.abs() / (self.drive.max_deceleration * self.period);
         let straight = twist.turn_rate.abs() / (self.drive.max_angular_acceleration * self.period);
         (slow.max(straight) - PERIOD_ROUNDING).ceil().max(0.0)
     }
