@@ -402,7 +402,7 @@ class Scenario:
     ) -> Self: ...
     def regions(self) -> list[tuple[float, float]]:
         """Return critical and active radius of every obstacle."""
-    def point_mass(self) -> tuple[float, float, float, float]:
+    def point_mass(self) -> tuple[float, float, float, float, float]:
         """Return mass, radius, largest speed and acceleration of the point mass that a law drives."""
     def reseeded(self, seed: int) -> Self:
         """Return the same scenario with another seed."""
@@ -1836,7 +1836,7 @@ class Guide:
     def plan(self, map: StaticMap, radius: float, start: _Pair, goal: _Pair) -> Plan:
         """Return the plan of a robot of a radius in m."""
 
-def check_takeover(progress: float, window: float) -> None:
+def check_takeover(progress: float | None, window: float | None) -> None:
     """Check when a takeover begins."""
 
 @final

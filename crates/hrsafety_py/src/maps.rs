@@ -205,8 +205,9 @@ parameter_class! {
 
 /// Checks when a takeover begins.
 #[pyfunction]
-pub fn check_takeover(progress: f64, window: f64) -> CoreResult<()> {
-    guide::TakeoverRule { progress, window }.checked()?;
+#[pyo3(signature = (progress, window))]
+pub fn check_takeover(progress: Option<f64>, window: Option<f64>) -> CoreResult<()> {
+    guide::TakeoverOptions { progress, window }.checked()?;
     Ok(())
 }
 

@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use vff_core::lanes::Vector2;
-use vff_core::laws::guide::TakeoverRule;
+use vff_core::laws::guide::TakeoverOptions;
 use vff_core::laws::safe::SafeNavigation;
 use vff_core::laws::shield::{
     self, Friendly, Guard, KnownVelocity, Limits, Person, Plan, View, Walls,
@@ -198,7 +198,7 @@ pub fn guarded_law(law: &Law, given: Option<Keywords<'_>>) -> PyResult<Law> {
     let family = SafeNavigation {
         map: map.map(|map| map.0.clone()),
         guide: guide.map(|guide| guide.0),
-        rule: TakeoverRule { progress, window },
+        rule: TakeoverOptions { progress, window },
         shield: shield.map(|shield| shield.0),
         yielding: yielding.map(|yielding| yielding.0),
         takeover: given.take("takeover")?,

@@ -243,7 +243,7 @@ class Controller:
 
     def _told(self, fields: Mapping[str, Any], before: Pair, refuted: Mapping[str, Any]) -> Command:
         rules, robot = self._rules, self._rules["robot"]
-        limits = {"period": rules["control_period"], "max_acceleration": robot.max_acceleration}
+        limits = {"period": rules["control_period"], "max_acceleration": robot.guaranteed_acceleration}
         told = dict(fields)
         if isinstance(robot, DifferentialDriveRobot) and told["speed"] is None:
             # Two wheels that were never told where they are stand.

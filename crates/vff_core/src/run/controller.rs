@@ -336,7 +336,8 @@ impl Controller {
             return Err(Failure::non_finite(0, time));
         }
         let point = &self.scenario.robot;
-        let reached = robot.velocity + point.acceleration(command.force) * period;
+        let asked = point.acceleration(command.force) * period;
+        let reached = robot.velocity + point.change(robot.velocity, asked, period);
         let (velocity, _) = point.limited_velocity::<f64>(reached);
         let wheels = self.scenario.differential.is_some();
         let trace = self.law.trace();
@@ -366,7 +367,7 @@ impl Controller {
         let limits = Limits {
             radius: robot.radius,
             max_speed: robot.max_speed,
-            max_acceleration: robot.max_acceleration,
+            max_acceleration: robot.guaranteed_acceleration(),
             period,
         };
         let slower = braking(velocity, &limits);

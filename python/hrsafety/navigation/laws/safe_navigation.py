@@ -63,7 +63,8 @@ class SafeNavigation(Law):
         What stands and is known before. Laws see its boundary points, planners of whole paths the map
         itself; what stands in the scene and lies in the map as a whole is known by the map alone.
     guide : Guide or None
-        Plan and local goal for the law; with it, the law is taken over from where it makes no progress.
+        Plan and local goal for the law. In a map the law is then taken over from where it makes no progress; without
+        one it leads around those who stand, where the robot makes no progress towards the goal.
     shield : Shield or None
         The shield.
     yielding : Yielding or None
@@ -72,8 +73,8 @@ class SafeNavigation(Law):
         Limit of the wanted velocity in m/s, for which regions are sized; the robot may be faster to give
         way. ``None``: the largest speed of the robot.
     takeover : bool or None
-        Whether the law is taken over from where it makes no progress. ``None``: with yielding or a
-        guide.
+        Whether the law is taken over from where it makes no progress. ``None``: with yielding, or with a
+        guide in a map; without a map it drives straight to the goal, and only yielding and shield keep it off people.
     critical_distance : float or None or "regions"
         Distance between the surfaces in m at which force laws brake, in place of the critical regions of
         the scene; active regions stay. ``None``: 0.02 m with a shield and yielding, else the regions of
@@ -119,7 +120,7 @@ class SafeNavigation(Law):
             self._set(preferred_speed=number("preferred_speed", self.preferred_speed))
         if not (self.takeover is None or isinstance(self.takeover, bool)):
             raise InvalidParameterError("takeover", "be True, False or None", self.takeover)
-        helped = self.yielding is not None or self.guide is not None
+        helped = self.yielding is not None or (self.guide is not None and self.map is not None)
         guide = Guide() if self.guide is None else self.guide
         native = _hrsafety.guarded_law(
             self.law._native,

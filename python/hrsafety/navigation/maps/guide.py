@@ -149,6 +149,8 @@ class Guide(Parameters):
     Dijkstra's algorithm on a grid of nodes with 16 neighbors gives the cost to the goal everywhere, once for a map
     and a goal. A link costs its length times ``1 + 2 max(0, 1 - (c - rho)/0.3)^2``, ``c`` the distance of its
     ends from the map. A path with room of the radius of the robot, the margin and 0.71 spacings is always found.
+    Without a map the law has the goal itself; where the robot gets no nearer to it and somebody stands on the straight
+    way, the guide leads around those who stand.
 
     Parameters
     ----------
@@ -161,10 +163,12 @@ class Guide(Parameters):
     box : ((float, float), (float, float)) or None
         Lower and upper corner of the nodes in m. ``None``: map, start and goal, and the radius of the robot and
         1 m around; in a map outside of whose images nothing is known the images, and no way leads out of them.
-    takeover_progress : float
-        Fall of the cost in m that counts as progress.
-    takeover_window : float
+    takeover_progress : float or None
+        Fall of the cost in m that counts as progress. ``None``: 0.3 m in a map, and without a map 0.6 s times the
+        largest speed of the law.
+    takeover_window : float or None
         Time without progress in s after which the robot goes to the local goal itself, until the next progress.
+        ``None``: 1 s in a map, 0.7 s without.
 
     Raises
     ------
@@ -184,8 +188,8 @@ class Guide(Parameters):
     margin: float = 0.005
     look_ahead: float = 3.0
     box: tuple[Pair, Pair] | None = None
-    takeover_progress: float = 0.3
-    takeover_window: float = 1.0
+    takeover_progress: float | None = None
+    takeover_window: float | None = None
     _native: _hrsafety.Guide = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -197,8 +201,9 @@ class Guide(Parameters):
                 raise InvalidParameterError("box", "be a pair of corners (x, y)", self.box)
             lower, upper = pair("lower corner of box", corners[0]), pair("upper corner of box", corners[1])
             self._set(box=(lower, upper))
-        takeover = self._as_numbers("takeover_progress", "takeover_window")
-        _hrsafety.check_takeover(*takeover.values())
+        told = [name for name in ("takeover_progress", "takeover_window") if getattr(self, name) is not None]
+        self._as_numbers(*told)
+        _hrsafety.check_takeover(self.takeover_progress, self.takeover_window)
         self._set(_native=_hrsafety.Guide(bounds=self.box, **given))
 
     def plan(self, map: StaticMap, *, radius: float, start: npt.ArrayLike, goal: npt.ArrayLike) -> Plan:

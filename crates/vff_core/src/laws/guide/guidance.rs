@@ -47,6 +47,12 @@ impl Guidance {
         self.around.as_ref().unwrap_or(&self.alone)
     }
 
+    /// Whether the plan in use leads around somebody who stands.
+    #[must_use]
+    pub fn leads_around(&self) -> bool {
+        self.around.is_some()
+    }
+
     /// Looks at people, given by their outlines, `None` for who is away. When others stand than before, a
     /// plan around them is made, by a bounded number of nodes in each look, and taken when it is
     /// complete; without a plan around them that without them is used. Returns whether there is

@@ -23,7 +23,7 @@ pub use guidance::Guidance;
 pub use nodes::MOST_NODES;
 pub use plan::{LocalGoal, Plan, View};
 pub use standing::Standing;
-pub use takeover::{Takeover, TakeoverRule};
+pub use takeover::{Takeover, TakeoverOptions, TakeoverRule};
 
 /// How far around map, start and goal the default box reaches beyond the radius of the robot, in m.
 const ROOM: f64 = 1.0;

@@ -47,6 +47,40 @@ impl TakeoverRule {
     }
 }
 
+/// When to take over, as far as it was told; the rest follows from whether there is a map.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TakeoverOptions {
+    /// Progress that counts, in m.
+    pub progress: Option<f64>,
+    /// Time without progress until the takeover, in s.
+    pub window: Option<f64>,
+}
+
+impl TakeoverOptions {
+    /// The rule with or without a map, for a largest speed of the law in m/s.
+    #[must_use]
+    pub fn rule(self, map: bool, max_speed: f64) -> TakeoverRule {
+        let usual = if map {
+            TakeoverRule::with_map()
+        } else {
+            TakeoverRule::without_map(max_speed)
+        };
+        TakeoverRule {
+            progress: self.progress.unwrap_or(usual.progress),
+            window: self.window.unwrap_or(usual.window),
+        }
+    }
+
+    /// Returns the options if those that were told are allowed.
+    ///
+    /// # Errors
+    /// A number is not positive or not finite.
+    pub fn checked(self) -> Result<Self> {
+        self.rule(true, 1.0).checked()?;
+        Ok(self)
+    }
+}
+
 /// Watches the progress of one robot.
 ///
 /// The mark is the cost at the last event; an event is a cost of at most the mark less the
@@ -155,6 +189,25 @@ mod tests {
         assert!(!takeover.observe(1.6, Some(4.7)));
         assert!(!takeover.observe(2.5, Some(4.5)));
         assert!(takeover.observe(2.6, Some(4.5)));
+    }
+
+    #[test]
+    fn what_was_not_told_follows_from_whether_there_is_a_map() {
+        let told = TakeoverOptions {
+            progress: None,
+            window: Some(0.4),
+        };
+        let numbers = |rule: TakeoverRule| (rule.progress, rule.window);
+        assert_eq!(
+            numbers(TakeoverOptions::default().rule(true, 1.5)),
+            (0.3, 1.0)
+        );
+        assert_eq!(numbers(told.rule(true, 1.5)), (0.3, 0.4));
+        assert_eq!(
+            numbers(TakeoverOptions::default().rule(false, 0.5)),
+            (0.3, 0.7)
+        );
+        assert_eq!(numbers(told.rule(false, 0.5)), (0.3, 0.4));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::lanes::Vector2;
-use crate::laws::guide::{Guidance, LocalGoal, Takeover, TakeoverRule};
+use crate::laws::guide::{Guidance, LocalGoal, Takeover};
 use crate::laws::safe::settings::SafeNavigation;
 use crate::laws::safe::surroundings::Surroundings;
 use crate::laws::shield::{
@@ -30,7 +30,12 @@ pub struct SafeLaw {
     turn_rate: f64,
     yielder: Option<Yielder>,
     guidance: Option<Guidance>,
+    /// What watches the progress of the robot.
     takeover: Option<Takeover>,
+    /// Whether the robot heads for its (local) goal by itself without progress.
+    takes_over: bool,
+    /// Whether the guide plans in a map.
+    mapped: bool,
     limits: Limits,
     /// Largest speed of the law in m/s.
     preferred: f64,
@@ -62,14 +67,12 @@ impl SafeLaw {
         let limits = Limits {
             radius: robot.radius,
             max_speed: wheels.map_or(robot.max_speed, |wheels| wheels.max_speed),
-            max_acceleration: robot.max_acceleration,
+            max_acceleration: robot.guaranteed_acceleration(),
             period: scenario.rules.control_period,
         };
         let guidance = family.guidance(scenario)?;
-        let rule = match guidance {
-            Some(_) => family.rule,
-            None => TakeoverRule::without_map(inner.robot.max_speed),
-        };
+        let mapped = guidance.is_some() && family.map.is_some();
+        let rule = family.rule.rule(mapped, inner.robot.max_speed);
         let zero = Vector2::zeros();
         let twist_guard = family.shield.zip(wheels).map(|(shield, wheels)| {
             TwistGuard::new(shield, DifferentialLimits::from(wheels), &limits)
@@ -85,8 +88,11 @@ impl SafeLaw {
                 .yielding
                 .map(|yielding| Yielder::new(yielding, limits))
                 .transpose()?,
-            takeover: family.takeover.then(|| Takeover::new(rule)),
+            takeover: (family.takeover || guidance.is_some() && !mapped)
+                .then(|| Takeover::new(rule)),
+            takes_over: family.takeover,
             guidance,
+            mapped,
             limits,
             preferred: inner.robot.max_speed,
             mass: robot.mass,
@@ -185,19 +191,14 @@ impl SafeLaw {
     /// The (local) goal, and whether the robot heads for it by itself.
     fn head(&mut self, situation: &Situation<'_, f64>) -> Heading {
         let (time, position) = (situation.time, situation.robot.position);
-        let Some(guidance) = &mut self.guidance else {
-            let cost = (self.goal - position).norm();
-            let taken_over = self
-                .takeover
-                .as_mut()
-                .is_some_and(|takeover| takeover.observe(time, Some(cost)));
-            return Heading {
-                local: Some(LocalGoal::goal(self.goal)),
-                taken_over,
-            };
+        let mut again = false;
+        if let Some(guidance) = &mut self.guidance {
+            let people = self.around.standing(situation.bodies);
+            again = guidance.observe(time, position, people);
+        }
+        let Some(guidance) = self.guidance.as_ref().filter(|_| self.mapped) else {
+            return self.head_without_map(time, position);
         };
-        let people = self.around.standing(situation.bodies);
-        let again = guidance.observe(time, position, people);
         let found = guidance.local_goal(position);
         let mut heading = Heading {
             local: found.map(|(_, local)| local),
@@ -216,6 +217,22 @@ impl SafeLaw {
             }
         }
         heading
+    }
+
+    /// The goal itself; without progress the way around who stands on the straight way to it.
+    fn head_without_map(&mut self, time: f64, position: Vector2<f64>) -> Heading {
+        let cost = (self.goal - position).norm();
+        let takeover = self.takeover.as_mut();
+        let stuck = takeover.is_some_and(|takeover| takeover.observe(time, Some(cost)));
+        let around = self.guidance.as_ref().and_then(|guidance| {
+            let blocked = guidance.leads_around() && !guidance.plan().sees(position, self.goal);
+            (stuck && blocked).then(|| guidance.local_goal(position))?
+        });
+        let local = around.map_or(LocalGoal::goal(self.goal), |(_, local)| local);
+        Heading {
+            local: Some(local),
+            taken_over: stuck && self.takes_over,
+        }
     }
 
     /// The velocity of yielding, if it is on and something is verified.

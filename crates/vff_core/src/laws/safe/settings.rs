@@ -1,7 +1,7 @@
 //! What safe navigation is made of, and what it makes of a scenario.
 
 use crate::error::{Failure, Given, Result, not_negative, positive};
-use crate::laws::guide::{Guidance, Guide, TakeoverRule};
+use crate::laws::guide::{Guidance, Guide, TakeoverOptions};
 use crate::laws::safe::boundary::boundary_obstacle;
 use crate::laws::safe::plans::Plans;
 use crate::laws::shield::Shield;
@@ -27,8 +27,8 @@ pub struct SafeNavigation {
     pub yielding: Option<Yielding>,
     /// Whether a robot that makes no progress heads for its (local) goal by itself.
     pub takeover: bool,
-    /// When that is, under a guide.
-    pub rule: TakeoverRule,
+    /// When that is, where it was told.
+    pub rule: TakeoverOptions,
     /// Limit of the wanted velocity, for which regions are sized, in m/s; that of the robot where
     /// `None`.
     pub preferred_speed: Option<f64>,
@@ -48,7 +48,7 @@ impl SafeNavigation {
             shield: None,
             yielding: None,
             takeover: false,
-            rule: TakeoverRule::with_map(),
+            rule: TakeoverOptions::default(),
             preferred_speed: None,
             critical_distance: None,
         }
