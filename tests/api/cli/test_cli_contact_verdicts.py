@@ -220,7 +220,10 @@ def test_no_drive_presses_harder_than_the_row_says(
         stop=(reaction, braking),
         horizon=reaction + speed / braking + 1.0,
     )
-    assert row["drive"]["peak_force"] is not None
+    if row["drive"]["peak_force"] is None:
+        # A collision that does not settle is not judged.
+        assert row["verdict"] != "within_limits"
+        return
     # Between the stiffnesses that are looked at a force may be a little larger.
     assert (hit.peak_force or 0.0) <= 1.01 * row["drive"]["peak_force"]
     if row["verdict"] == "within_limits":

@@ -256,7 +256,7 @@ class Episode(Parameters):
         >>> noisy = walk + np.random.default_rng(1).normal(0.0, 0.02, walk.shape)
         >>> seen = nav.metrics.Episode(position=noisy, step=0.02, goal=(9.0, 0.0), robot_radius=0.3)
         >>> [round(nav.metrics.evaluate(each).path_length, 1) for each in (seen, seen.smoothed())]
-        [7.0, 4.0]
+        [7.7, 4.0]
         """
         length = positive("window", window)
         if self.period != (0.0, 0.0):
