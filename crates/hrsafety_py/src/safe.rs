@@ -5,7 +5,7 @@ use vff_core::lanes::Vector2;
 use vff_core::laws::guide::TakeoverOptions;
 use vff_core::laws::safe::SafeNavigation;
 use vff_core::laws::shield::{
-    self, Friendly, Guard, KnownVelocity, Limits, Person, Plan, View, Walls,
+    self, Friendly, Guard, KnownVelocity, Limits, Person, Tracking, View, Walls,
 };
 use vff_core::laws::yielding;
 use vff_core::world::geometry::RobotState;
@@ -55,12 +55,15 @@ impl Shield {
             given.take("person_deceleration")?,
         );
         let friendly = friendly.0.zip(friendly.1);
+        let (absolute, relative) = given.take("velocity_tracking")?;
         let core = shield::Shield {
             person_speed: given.take("person_speed")?,
             latency: given.take("latency")?,
             position_error: given.take("position_error")?,
             velocity_bounds: bounds.0.zip(bounds.1).map(|(error, most)| [error, most]),
             margin: given.take("margin")?,
+            position_tracking: given.take("position_tracking")?,
+            velocity_tracking: Tracking { absolute, relative },
             wall_margin: given.take("wall_margin")?,
             friendly: friendly.map(|(reaction_time, deceleration)| Friendly {
                 reaction_time,
@@ -101,7 +104,7 @@ impl Shield {
         let guard = self.guard(limits)?;
         let others: Vec<Person> = others.into_iter().map(|each| self.other(each)).collect();
         let view = seen(state, &others);
-        let plan = Plan::new(&view.robot, command.into(), &guard.limits);
+        let plan = guard.plan(&view.robot, command.into());
         let share = |part: u32| f64::from(part) / f64::from(PARTS_OF_PLAN);
         let instants: Vec<f64> = (0..=PARTS_OF_PLAN)
             .map(|part| plan.end() * share(part))

@@ -227,28 +227,30 @@ class Controller:
         angle = 0.0 if heading is None else number("heading", heading)
         if self._native is None:
             if robot is None:
-                return self._told(_NOTHING, (0.0, 0.0), {"faster": (), "accelerated": ()})
+                return self._told(_NOTHING, {"faster": (), "accelerated": ()})
             self._native = self._made(robot[0])
         seen = [] if people is None else self._seen(people)
         ranges = None if scan is None else _ranges(scan)
         gone = sequence("gone", "be names in a list, a tuple or a set", gone)
         left = self._left(gone, people)
         fields = self._native.update(now, robot, angle, seen=seen, gone=left, scan=ranges)
-        if fields["timing"] == "out_of_order" and self._last is not None:
-            last = self._last
-            return self._told(fields, last.before, {"faster": last.faster, "accelerated": last.accelerated})
-        before = self._last.velocity if robot is None and self._last is not None else (0.0, 0.0)
-        self._last = self._told(fields, before if robot is None else robot[1], self._refuted(now, seen, gone))
+        last = self._last
+        if fields["timing"] == "out_of_order" and last is not None:
+            refuted = {"faster": last.faster, "accelerated": last.accelerated}
+        else:
+            refuted = dict(self._refuted(now, seen, gone))
+        self._last = self._told(fields, refuted)
         return self._last
 
-    def _told(self, fields: Mapping[str, Any], before: Pair, refuted: Mapping[str, Any]) -> Command:
+    def _told(self, fields: Mapping[str, Any], refuted: Mapping[str, Any]) -> Command:
         rules, robot = self._rules, self._rules["robot"]
         limits = {"period": rules["control_period"], "max_acceleration": robot.guaranteed_acceleration}
         told = dict(fields)
+        told["plan"] = tuple((time, (rates[0], rates[1])) for time, rates in told["plan"])
         if isinstance(robot, DifferentialDriveRobot) and told["speed"] is None:
             # Two wheels that were never told where they are stand.
             told |= {"speed": 0.0, "turn_rate": 0.0}
-        return Command(before=before, **refuted, **limits, **told)
+        return Command(**refuted, **limits, **told)
 
     def _seen(
         self, people: Mapping[Hashable, Sequence[float | None]] | npt.ArrayLike
@@ -331,6 +333,10 @@ class Controller:
 _NOTHING: Mapping[str, Any] = {
     "force": (0.0, 0.0),
     "velocity": (0.0, 0.0),
+    "before": (0.0, 0.0),
+    "heading": 0.0,
+    "plan": (),
+    "robot_off_plan": None,
     "speed": None,
     "turn_rate": None,
     "status": "braking",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Hashable
 from typing import Literal, NamedTuple
@@ -11,9 +12,6 @@ from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 
 __all__ = ["Command", "Sighting"]
-
-ROUNDING = 1e-9
-"""Of a number of periods."""
 
 
 class Sighting(NamedTuple):
@@ -55,12 +53,24 @@ class Command:
         Whether the robot heads for its (local) goal by itself.
     timing : {"regular", "late", "out_of_order", "lost"}
         What became of the update: in time; more than one and a half control periods after the last one; not
-        after the last one, so that it counted for nothing and the last command stands; or without the
-        place of the robot, which then brakes as its last plan ends.
+        after the last one, so that it counted for nothing and the robot brakes as its last plan ends (as much time
+        went by as the clock came on, a control period where it went back or stands); or without the place of the
+        robot, which then brakes alike.
     arrived : bool
         Whether the robot is within the arrival tolerance of the goal.
     oldest : float
         Age of the oldest measurement of somebody that counts, in s.
+    robot_off_plan : (float, float) or None
+        How far the robot was measured to be from the plan that it was to execute, in m and m/s beyond the
+        ``margin``, ``position_tracking`` and ``velocity_tracking`` of the shield; ``None`` where no measurement
+        refutes them. From that instant on nothing is guaranteed; the robot plans from what was measured, with
+        twice the tracking errors.
+    plan : tuple of (float, (float, float))
+        The plan that the robot executes from the update on: seconds since the update, and the velocity in m/s
+        (of two wheels speed and turn rate in m/s and rad/s) that it has then; between them it changes evenly, and
+        after the last one the robot rests.
+    heading : float
+        Of a robot with two wheels at the update, in rad.
     faster : tuple of hashable
         Names of those who were measured to be faster than the shield reckons with, by their velocity or by two
         places too far apart for the time between them; what it guarantees does not hold for them.
@@ -68,7 +78,7 @@ class Command:
         Names of those whose measured velocity changed faster than the ``person_acceleration`` of the shield; what
         it guarantees does not hold for them.
     before : (float, float)
-        Velocity at the update, in m/s.
+        Velocity at the update as the plan has it, in m/s.
     period, max_acceleration : float
         Control period in s, and the limit of the robot in m/s^2.
     """
@@ -82,6 +92,9 @@ class Command:
     timing: Literal["regular", "late", "out_of_order", "lost"]
     arrived: bool
     oldest: float
+    robot_off_plan: Pair | None
+    plan: tuple[tuple[float, Pair], ...]
+    heading: float
     faster: tuple[Hashable, ...]
     accelerated: tuple[Hashable, ...]
     before: Pair
@@ -96,8 +109,8 @@ class Command:
     def velocity_after(self, seconds: float) -> Pair:
         """Return the velocity to have some time after the update if no other update comes.
 
-        The plan that a shield verifies: the velocity is taken up evenly within a control period, and
-        then the robot brakes to rest. A robot that executes it keeps the guarantee of the shield when
+        The plan that a shield has verified, as it was: the velocity is taken up evenly within a control period, and
+        then the robot brakes to rest. After an update that did not count it is what is left of the plan before. A robot that executes it keeps the guarantee of the shield when
         updates are late or stop.
 
         Parameters
@@ -115,15 +128,55 @@ class Command:
         InvalidParameterError
             If the time is negative or not finite.
         """
-        since = number("seconds", seconds)
-        if not 0.0 <= since < math.inf:
-            raise InvalidParameterError("seconds", "be finite and not negative", seconds)
-        (x, y), (u, v) = self.before, self.velocity
-        if since <= self.period:
-            share = since / self.period
-            return x + (u - x) * share, y + (v - y) * share
-        periods = math.ceil(math.hypot(u, v) / (self.max_acceleration * self.period) - ROUNDING)
-        if periods <= 0:
-            return 0.0, 0.0
-        left = max(0.0, 1.0 - (since - self.period) / (periods * self.period))
-        return u * left, v * left
+        since = _seconds(seconds)
+        rates = self._rates(since)
+        if self.speed is None:
+            return rates
+        heading = self.heading
+        for (start, first), (end, last) in itertools.pairwise(self.plan):
+            part = min(max(since - start, 0.0), end - start)
+            if part == 0.0:
+                continue
+            change = (last[1] - first[1]) * (part / (end - start))
+            heading += part * (first[1] + 0.5 * change)
+        return rates[0] * math.cos(heading), rates[0] * math.sin(heading)
+
+    def twist_after(self, seconds: float) -> Pair:
+        """Return speed and turn rate of a robot with two wheels as `velocity_after` returns the velocity.
+
+        Parameters
+        ----------
+        seconds : float
+            Time since the update in s.
+
+        Returns
+        -------
+        (float, float)
+            In m/s and rad/s.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the time is negative or not finite, or the robot has no wheels.
+        """
+        since = _seconds(seconds)
+        if self.speed is None:
+            raise InvalidParameterError(
+                "twist_after", "be asked of a robot with two wheels", None, "take velocity_after"
+            )
+        return self._rates(since)
+
+    def _rates(self, since: float) -> Pair:
+        """Return what the plan has at a time since the update."""
+        for (start, first), (end, last) in itertools.pairwise(self.plan):
+            if since <= end and end > start:
+                share = (since - start) / (end - start)
+                return first[0] + (last[0] - first[0]) * share, first[1] + (last[1] - first[1]) * share
+        return 0.0, 0.0
+
+
+def _seconds(value: float) -> float:
+    since = number("seconds", value)
+    if not 0.0 <= since < math.inf:
+        raise InvalidParameterError("seconds", "be finite and not negative", value)
+    return since

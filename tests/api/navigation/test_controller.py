@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import pickle
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -204,14 +205,62 @@ def test_an_older_measurement_of_somebody_counts_for_nothing() -> None:
 
 def test_an_update_out_of_order_counts_for_nothing() -> None:
     one, two = shielded(), shielded()
-    first = still(one, 1.0)
+    still(one, 1.0)
     still(two, 1.0)
     for time in (1.0, 0.4):
         again = one.update(time, (3.0, 3.0), (0.5, 0.0), people={"a": (1.0, 0.0, 0.0, 0.0)})
-        assert again.timing == "out_of_order"
-        assert (again.force, again.before) == (first.force, first.before)
+        assert (again.timing, again.status) == ("out_of_order", "braking")
     assert one.people == ()
     assert still(one, 1.06) == still(two, 1.06)
+
+
+@pytest.mark.parametrize("clock", [lambda k: 1.0, lambda k: 0.06 * k - 7.0, lambda k: -k, lambda k: 1.0 - 1e-9 * k])
+def test_a_clock_that_stands_or_is_set_back_lets_the_plan_run_to_its_end(clock: Callable[[int], float]) -> None:
+    slow = nav.HolonomicRobot(max_acceleration=1.0)
+    controller = Controller(SafeNavigation(Ahead(), shield=Shield()), slow, (20.0, 0.0), start=(0.0, 0.0))
+    first = controller.update(1.0, (0.0, 0.0), (0.6, 0.0))
+    assert first.velocity[0] == pytest.approx(0.6)
+    for k in range(1, 14):
+        again = controller.update(clock(k), (0.0, 0.0), (0.6, 0.0))
+        assert again.timing == "out_of_order"
+        assert again.velocity == pytest.approx(first.velocity_after(0.06 * (k + 1)), abs=1e-12)
+        assert again.velocity_after(0.01) == pytest.approx(first.velocity_after(0.06 * k + 0.01), abs=1e-12)
+    assert again.velocity == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("wrong", [1e-4, -1e-4, 0.01, -0.01])
+def test_a_plan_is_kept_whatever_own_speed_is_told(wrong: float) -> None:
+    slow = nav.HolonomicRobot(max_acceleration=1.0)
+
+    def told(share: float) -> list[Command]:
+        controller = Controller(
+            SafeNavigation(Ahead(), shield=Shield()), slow, (20.0, 0.0), start=(0.0, 0.0), control_period=0.1
+        )
+        place, speed, found = 0.0, 0.0, list[Command]()
+        for step in range(20):
+            people = {} if step < 6 else {"a": (place + 0.61, 0.0, 0.0, 0.0)}
+            found.append(controller.update(0.1 * step, (place, 0.0), (speed * share, 0.0), people=people))
+            next_speed = found[-1].velocity_after(0.1)[0]
+            place, speed = place + 0.05 * (speed + next_speed), next_speed
+        return found
+
+    for exact, off in zip(told(1.0), told(1.0 + wrong), strict=True):
+        assert off.velocity == pytest.approx(exact.velocity, abs=1e-12)
+        assert off.before == pytest.approx(exact.before, abs=1e-12)
+        assert off.robot_off_plan is None
+
+
+def test_a_robot_that_is_off_its_plan_is_told_how_far() -> None:
+    controller = shielded()
+    first = controller.update(0.0, (0.0, 0.0), (0.3, 0.0))
+    assert first.robot_off_plan is None
+    jumped = controller.update(0.06, (0.8, 0.0), first.velocity)
+    assert jumped.robot_off_plan is not None
+    assert jumped.robot_off_plan[0] == pytest.approx(0.8 - 0.03 * (0.3 + first.velocity[0]) - 0.015, abs=1e-9)
+    slipped = controller.update(0.12, (0.8 + 0.06 * first.velocity[0], 0.0), (0.9 * jumped.velocity[0], 0.0))
+    assert slipped.robot_off_plan is not None
+    assert slipped.robot_off_plan[1] == pytest.approx(0.08 * jumped.velocity[0], abs=1e-9)
+    assert slipped.before == pytest.approx((0.9 * jumped.velocity[0], 0.0))
 
 
 def test_a_late_update_says_so() -> None:

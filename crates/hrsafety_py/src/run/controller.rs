@@ -83,12 +83,29 @@ impl Controller {
     }
 }
 
+/// Times since the update in s with the rates between which a plan changes evenly.
+fn plan_of(order: &Order) -> Vec<(f64, [f64; 2])> {
+    let rest = order.course.as_ref();
+    rest.map_or_else(Vec::new, |(course, since)| course.rest(*since).collect())
+}
+
 fn fields_of<'py>(py: Python<'py>, order: &Order) -> PyResult<Bound<'py, PyDict>> {
     let fields = Fields::new(py);
     fields.value("force", (order.force.x, order.force.y))?;
     fields.value("velocity", (order.velocity.x, order.velocity.y))?;
     fields.value("speed", order.twist.map(|twist| twist.speed))?;
     fields.value("turn_rate", order.twist.map(|twist| twist.turn_rate))?;
+    let (before, heading) = order.course.map_or(([0.0; 2], 0.0), |(course, since)| {
+        (course.velocity(since).into(), course.heading(since))
+    });
+    fields.value("before", (before[0], before[1]))?;
+    fields.value("heading", heading)?;
+    fields.value("plan", plan_of(order))?;
+    let off = order.off_plan;
+    fields.value(
+        "robot_off_plan",
+        off.map(|off| (off.position, off.velocity)),
+    )?;
     fields.value("status", order.status.map(Status::word))?;
     fields.value("taken_over", order.taken_over)?;
     fields.value("timing", order.timing.word())?;

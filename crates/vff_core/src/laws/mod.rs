@@ -60,7 +60,6 @@ use crate::error::Result;
 use crate::lanes::{Planar, Real, Vector2, Wide};
 use crate::laws::outlook::Attention;
 use crate::laws::trace::Trace;
-use crate::robots::differential::Twist;
 use crate::world::geometry::{Body, RobotState};
 use crate::world::map::StaticMap;
 use crate::world::scenario::{PlacedObstacle, Scenario};
@@ -198,10 +197,6 @@ pub trait Law<R: Real, B: Wide<R> = f64> {
     /// Heads for another goal from now on, in m: a local one on the way to that of the scenario.
     /// Laws that plan the whole way themselves keep theirs.
     fn aim(&mut self, _goal: [f64; 2]) {}
-
-    /// Tells a robot with two wheels what it was ordered last, and how long ago, in s, where that is not
-    /// what the law asked for a control period ago.
-    fn turning(&mut self, _ordered: Twist, _since: f64) {}
 
     /// What parts around the law did in the last control period, if there are any.
     fn trace(&self) -> Option<Trace> {

@@ -1,7 +1,7 @@
 //! What the parts around a law did.
 
 use crate::lanes::Vector2;
-use crate::laws::shield::Status;
+use crate::laws::shield::{Course, Deviation, Status};
 
 /// What the parts did in the last control period.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,4 +14,8 @@ pub struct Trace {
     pub taken_over: bool,
     /// What became of the wanted velocity.
     pub status: Status,
+    /// The plan that the robot executes, if there is a shield.
+    pub course: Option<Course>,
+    /// How far it was measured to be from the plan before, if that refutes what the shield assumes.
+    pub off_plan: Option<Deviation>,
 }

@@ -7,7 +7,6 @@ use crate::error::{Failure, Result};
 use crate::laws::outlook::Attention;
 use crate::laws::trace::Trace;
 use crate::laws::{Command, FieldTerms, Law, LawFamily, Situation};
-use crate::robots::differential::Twist;
 use crate::run::Interrupted;
 use crate::run::lanes::group::{Group, Keep, Known, SceneGroup};
 use crate::run::lanes::kernels::{Kernels, One};
@@ -100,8 +99,6 @@ pub(crate) trait Steering: Send {
     fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64>;
     /// Heads for another goal from now on, in m.
     fn aim(&mut self, goal: [f64; 2]);
-    /// Tells a robot with two wheels what it was ordered last, and how long ago, in s.
-    fn turning(&mut self, ordered: Twist, since: f64);
     /// What parts around the law did in the last control period, if there are any.
     fn trace(&self) -> Option<Trace>;
 }
@@ -129,10 +126,6 @@ impl<L: Law<f64> + Send> Steering for L {
 
     fn aim(&mut self, goal: [f64; 2]) {
         Law::aim(self, goal);
-    }
-
-    fn turning(&mut self, ordered: Twist, since: f64) {
-        Law::turning(self, ordered, since);
     }
 
     fn trace(&self) -> Option<Trace> {
@@ -167,10 +160,6 @@ impl Law<f64> for BoxedLaw {
 
     fn aim(&mut self, goal: [f64; 2]) {
         self.0.aim(goal);
-    }
-
-    fn turning(&mut self, ordered: Twist, since: f64) {
-        self.0.turning(ordered, since);
     }
 
     fn trace(&self) -> Option<Trace> {

@@ -6,10 +6,9 @@
 
 use crate::error::{Failure, Given, Result, finite, finite_pair, not_negative};
 use crate::lanes::Vector2;
-use crate::laws::shield::{Limits, Status, braking};
+use crate::laws::shield::{Course, Deviation, Limits, Status};
 use crate::laws::{Situation, Stop};
 use crate::robots::differential::Twist;
-use crate::robots::drives::twist_of;
 use crate::run::any_law::{AnyLaw, Steering};
 use crate::run::as_built::sight::hidden;
 use crate::sensing::lidar::{Lidar, Scans};
@@ -21,6 +20,9 @@ use crate::world::shape::PlacedShape;
 
 /// Whoever was not seen for so long is forgotten once his place is seen to be empty, in s.
 const FORGOTTEN: f64 = 2.0;
+
+/// A clock that comes on by less than this share of a period stands.
+const STANDS: f64 = 0.01;
 
 /// An update later than this share of a period after the last one is late.
 const LATE: f64 = 1.5;
@@ -62,7 +64,7 @@ pub enum Timing {
     Regular,
     /// It came later than a period after the last one: the robot has to have braked until then.
     Late,
-    /// It is not later than the last one, and counts for nothing.
+    /// It is not later than the last one, and counts for nothing: the plan runs on to its end.
     OutOfOrder,
     /// The place of the robot is not known: it brakes.
     Lost,
@@ -90,6 +92,10 @@ pub struct Order {
     pub velocity: Vector2<f64>,
     /// The same for two wheels.
     pub twist: Option<Twist>,
+    /// The plan that the robot executes, and its time at the update, in s.
+    pub course: Option<(Course, f64)>,
+    /// How far the robot was measured to be from the plan before, if that refutes what the shield assumes.
+    pub off_plan: Option<Deviation>,
     /// What the shield has done, if there is one.
     pub status: Option<Status>,
     /// Whether the law was taken over from.
@@ -119,7 +125,17 @@ pub struct Controller {
     latency: f64,
     /// How old what is known of each body can be, in s.
     ages: Vec<f64>,
-    last: Option<(f64, Order)>,
+    last: Option<Last>,
+}
+
+/// The last update.
+#[derive(Clone, Copy, Debug)]
+struct Last {
+    /// When the last one that counted came, in s.
+    time: f64,
+    /// What the clock showed at the last one of any kind, in s.
+    clock: f64,
+    order: Order,
 }
 
 impl Controller {
@@ -173,20 +189,21 @@ impl Controller {
     /// scan does not suit the lidar, or the law answers no finite force.
     pub fn update(&mut self, told: &Observation<'_>, stop: Stop<'_>) -> Result<Order> {
         self.check(told)?;
-        if let Some((before, order)) = self.last
-            && told.time <= before
+        if let Some(last) = self.last
+            && told.time <= last.time
         {
-            return Ok(Order {
-                timing: Timing::OutOfOrder,
-                ..order
-            });
+            return Ok(self.run_on(last, told.time));
         }
         self.learn(told);
         let order = match told.robot {
             Some(robot) => self.decide(told, robot, stop)?,
             None => self.brake(told.time),
         };
-        self.last = Some((told.time, order));
+        self.last = Some(Last {
+            time: told.time,
+            clock: told.time,
+            order,
+        });
         Ok(order)
     }
 
@@ -315,13 +332,7 @@ impl Controller {
         let period = self.scenario.rules.control_period;
         let late = self
             .last
-            .is_some_and(|(before, _)| told.time - before > LATE * period);
-        if let Some((before, order)) = self.last
-            && let Some(twist) = order.twist
-            && (late || order.timing == Timing::Lost)
-        {
-            self.law.turning(twist, told.time - before);
-        }
+            .is_some_and(|last| told.time - last.time > LATE * period);
         let command = self.law.command(&Situation {
             time: told.time,
             bodies: &self.bodies,
@@ -335,20 +346,18 @@ impl Controller {
             let time = told.time;
             return Err(Failure::non_finite(0, time));
         }
-        let point = &self.scenario.robot;
-        let asked = point.acceleration(command.force) * period;
-        let reached = robot.velocity + point.change(robot.velocity, asked, period);
-        let (velocity, _) = point.limited_velocity::<f64>(reached);
-        let wheels = self.scenario.differential.is_some();
         let trace = self.law.trace();
+        let planned = trace.and_then(|trace| trace.course);
+        let course = planned.unwrap_or_else(|| self.unverified(told.time, &robot, command.force));
         let to_goal = Vector2::from(self.scenario.goal) - robot.position;
+        let since = course.since(told.time);
+        let next = since + course.period();
         Ok(Order {
             force: command.force,
-            velocity,
-            twist: wheels.then(|| {
-                let asked = robot.velocity + command.force * (period / point.mass);
-                twist_of(asked, told.heading, period)
-            }),
+            velocity: course.velocity(next),
+            twist: course.twist(next),
+            course: Some((course, since)),
+            off_plan: trace.and_then(|trace| trace.off_plan),
             status: trace.map(|trace| trace.status),
             taken_over: trace.is_some_and(|trace| trace.taken_over),
             timing: if late { Timing::Late } else { Timing::Regular },
@@ -357,35 +366,73 @@ impl Controller {
         })
     }
 
-    /// The rest of the last plan, for a robot that does not know where it is.
-    fn brake(&self, now: f64) -> Order {
-        let zero = Vector2::zeros();
-        let (velocity, arrived) = self
-            .last
-            .map_or((zero, false), |(_, order)| (order.velocity, order.arrived));
-        let (robot, period) = (&self.scenario.robot, self.scenario.rules.control_period);
+    /// What a robot without a shield does: it takes up what the law asks for, and brakes if nothing follows.
+    fn unverified(&self, time: f64, robot: &RobotState<f64>, force: Vector2<f64>) -> Course {
+        let (point, period) = (&self.scenario.robot, self.scenario.rules.control_period);
+        let asked = point.acceleration(force) * period;
+        let reached = robot.velocity + point.change(robot.velocity, asked, period);
+        let (velocity, _) = point.limited_velocity::<f64>(reached);
         let limits = Limits {
-            radius: robot.radius,
-            max_speed: robot.max_speed,
-            max_acceleration: robot.guaranteed_acceleration(),
+            radius: point.radius,
+            max_speed: point.max_speed,
+            max_acceleration: point.guaranteed_acceleration(),
             period,
         };
-        let slower = braking(velocity, &limits);
-        let twist = self.last.and_then(|(_, order)| order.twist);
-        let share = slower.norm() / velocity.norm().max(f64::MIN_POSITIVE);
+        Course::of_velocity(time, robot, velocity, &limits)
+    }
+
+    /// The rest of the last plan, for a robot that does not know where it is.
+    fn brake(&self, now: f64) -> Order {
+        let course = self.last.and_then(|last| last.order.course);
+        let course = course.map(|(course, _)| (course, course.since(now).max(0.0)));
         Order {
-            force: (slower - velocity) * (robot.mass / period),
-            velocity: slower,
-            // The curvature is kept while both fall together.
-            twist: twist.map(|twist| Twist {
-                speed: twist.speed * share,
-                turn_rate: twist.turn_rate * share,
-            }),
+            timing: Timing::Lost,
+            oldest: self.oldest(now),
+            ..self.rest(course)
+        }
+    }
+
+    /// The rest of the last plan after an update that is not later than the last one. Nobody knows how much time went
+    /// by: as much as the clock came on since the update before, a control period where it went back or stands.
+    fn run_on(&mut self, last: Last, clock: f64) -> Order {
+        let period = self.scenario.rules.control_period;
+        let gone = clock - last.clock;
+        let gone = if gone < STANDS * period { period } else { gone };
+        let course = last.order.course;
+        let order = Order {
+            timing: Timing::OutOfOrder,
+            oldest: last.order.oldest + gone,
+            ..self.rest(course.map(|(course, since)| (course, since + gone)))
+        };
+        self.last = Some(Last {
+            clock,
+            order,
+            ..last
+        });
+        order
+    }
+
+    /// What is left of a plan, from a time of it in s on; the robot rests where there is none.
+    fn rest(&self, course: Option<(Course, f64)>) -> Order {
+        let zero = Vector2::zeros();
+        let velocities = course.map_or([zero; 2], |(course, since)| {
+            [since, since + course.period()].map(|time| course.velocity(time))
+        });
+        let (robot, period) = (&self.scenario.robot, self.scenario.rules.control_period);
+        let wheels = self.scenario.differential.is_some();
+        let twist = course.and_then(|(course, since)| course.twist(since + course.period()));
+        Order {
+            force: (velocities[1] - velocities[0]) * (robot.mass / period),
+            velocity: velocities[1],
+            // A robot with two wheels that knows of no plan stands.
+            twist: twist.or(wheels.then(Twist::default)),
+            course,
+            off_plan: None,
             status: Some(Status::Braking),
             taken_over: false,
             timing: Timing::Lost,
-            arrived,
-            oldest: self.oldest(now),
+            arrived: self.last.is_some_and(|last| last.order.arrived),
+            oldest: 0.0,
         }
     }
 

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Parameters, not_negative, number, numbers, positive
+from hrsafety._arguments import Array, Parameters, not_negative, number, numbers, pair, positive
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
@@ -76,6 +76,11 @@ class Shield(Parameters):
         acceleration for a control period, and what its localization adds.
     wall_margin : float
         Distance that is kept from walls, in m.
+    position_tracking : float or None
+        Largest distance of the robot from the plan that it executes, in m; that of ``margin`` when ``None``.
+    velocity_tracking : (float, float)
+        Largest difference between the velocity of the robot and that of its plan: so many m/s, and so large a
+        share of the planned speed. The default is a base whose zero is exact and that follows to 2 %.
     reaction_time, person_deceleration : float or None
         Passive friendly safety: people are left the way in which they stop, ``v t_r + v^2/(2 b)``.
         Both or neither, in s and m/s^2.
@@ -101,6 +106,8 @@ class Shield(Parameters):
     person_acceleration: float | None = None
     margin: float = 0.005
     wall_margin: float = 0.005
+    position_tracking: float | None = None
+    velocity_tracking: tuple[float, float] = (0.0, 0.02)
     reaction_time: float | None = None
     person_deceleration: float | None = None
     _native: _hrsafety.Shield = field(init=False, repr=False, compare=False)
@@ -121,8 +128,12 @@ class Shield(Parameters):
                 missing, given = (one, other) if getattr(self, one) is None else (other, one)
                 raise InvalidParameterError(missing, f"be given with {given}", None)
         values = {name: getattr(self, name) for name in (*optional, "latency", "position_error")}
-        native = _hrsafety.Shield(**values, margin=self.margin, wall_margin=self.wall_margin)
-        self._set(_native=native)
+        if self.position_tracking is not None:
+            self._set(position_tracking=number("position_tracking", self.position_tracking))
+        self._set(velocity_tracking=pair("velocity_tracking", self.velocity_tracking))
+        values |= {name: getattr(self, name) for name in ("margin", "wall_margin", "velocity_tracking")}
+        position = self.margin if self.position_tracking is None else self.position_tracking
+        self._set(_native=_hrsafety.Shield(**values, position_tracking=position))
 
     def decide(
         self,

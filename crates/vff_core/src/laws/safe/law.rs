@@ -6,7 +6,8 @@ use crate::laws::guide::{Guidance, LocalGoal, Takeover};
 use crate::laws::safe::settings::SafeNavigation;
 use crate::laws::safe::surroundings::Surroundings;
 use crate::laws::shield::{
-    Decision, Guard, Limits, Status, TwistGuard, TwistState, TwistView, Verifier, View,
+    Course, Decision, Deviation, Guard, Limits, Status, TwistGuard, TwistState, TwistView,
+    Verifier, View,
 };
 use crate::laws::trace::Trace;
 use crate::laws::yielding::{Outlook, Yielder};
@@ -26,8 +27,8 @@ pub struct SafeLaw {
     guard: Option<Guard>,
     /// The shield of a robot with two wheels.
     twist_guard: Option<TwistGuard>,
-    /// Turn rate that was commanded last, in rad/s.
-    turn_rate: f64,
+    /// The plan that the robot executes: it was verified, or nothing was and it brakes.
+    course: Option<Course>,
     yielder: Option<Yielder>,
     guidance: Option<Guidance>,
     /// What watches the progress of the robot.
@@ -43,6 +44,17 @@ pub struct SafeLaw {
     goal: Vector2<f64>,
     around: Surroundings,
     trace: Trace,
+}
+
+/// The robot as its plan has it at the time, from which every plan starts, or as it was measured where there is none
+/// or a measurement refutes it.
+#[derive(Clone, Copy, Debug)]
+struct Present {
+    robot: RobotState<f64>,
+    turn_rate: f64,
+    /// Time of the plan in s; `None` where it was measured.
+    since: Option<f64>,
+    off: Option<Deviation>,
 }
 
 /// Where the robot is to go now.
@@ -79,7 +91,7 @@ impl SafeLaw {
         });
         Ok(Self {
             twist_guard: twist_guard.transpose()?,
-            turn_rate: 0.0,
+            course: None,
             guard: family
                 .shield
                 .map(|shield| Guard::new(shield, limits))
@@ -104,6 +116,8 @@ impl SafeLaw {
                 command: zero,
                 taken_over: false,
                 status: Status::Kept,
+                course: None,
+                off_plan: None,
             },
         })
     }
@@ -122,21 +136,13 @@ impl SafeLaw {
         }
     }
 
-    /// Takes the robot to turn as the rest of what it was ordered some time ago, in s, has it.
-    pub(crate) fn turning(&mut self, ordered: Twist, since: f64) {
-        self.turn_rate = match &self.twist_guard {
-            Some(guard) => guard.limits.turn_rate_after(ordered, since),
-            None => ordered.turn_rate,
-        };
-    }
-
     /// Force for the time until the next sample.
     pub(crate) fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
         self.set_period(situation.interval);
         self.around
             .look(situation, self.guard.as_ref(), self.yielder.as_ref());
         let heading = self.head(situation);
-        let robot = situation.robot;
+        let (robot, now) = (situation.robot, self.now(situation));
         if let (Some(local), true) = (heading.local, self.guidance.is_some()) {
             self.law.aim(local.for_law(robot.position).into());
         }
@@ -157,14 +163,16 @@ impl SafeLaw {
         }
         let to_goal = heading.local.map_or(self.goal, |local| local.point) - robot.position;
         let decision = match self.twist_guard {
-            Some(guard) => self.turn(&guard, situation, wanted, to_goal),
-            None => self.decide(&robot, wanted, to_goal),
+            Some(guard) => self.turn(&guard, situation, &now, wanted, to_goal),
+            None => self.decide(situation.time, &now, wanted, to_goal),
         };
         self.trace = Trace {
             wanted,
             command: decision.velocity,
             taken_over: heading.taken_over,
             status: decision.status,
+            course: self.course,
+            off_plan: now.off,
         };
         let turned = self.twist_guard.is_some();
         if decision.status == Status::Kept && wanted == asked && !turned {
@@ -254,23 +262,68 @@ impl SafeLaw {
         self.yielder.as_ref()?.decide(&outlook, verified)
     }
 
+    /// The robot at the time: where it was measured, with the velocity of its plan.
+    fn now(&self, situation: &Situation<'_, f64>) -> Present {
+        let measured = Present {
+            robot: situation.robot,
+            turn_rate: 0.0,
+            since: None,
+            off: None,
+        };
+        let Some((guard, course)) = self.guard.as_ref().zip(self.course) else {
+            return measured;
+        };
+        let since = course.since(situation.time);
+        if since < 0.0 {
+            return measured;
+        }
+        let turn_rate = course.twist(since).map_or(0.0, |twist| twist.turn_rate);
+        let off = guard.shield.refuted(&course, since, &situation.robot);
+        if off.is_some() {
+            return Present {
+                turn_rate,
+                off,
+                ..measured
+            };
+        }
+        Present {
+            robot: RobotState {
+                velocity: course.velocity(since),
+                ..situation.robot
+            },
+            turn_rate,
+            since: Some(since),
+            off,
+        }
+    }
+
     /// Yielding, then the shield, for a robot with two wheels.
     fn turn(
         &mut self,
         guard: &TwistGuard,
         situation: &Situation<'_, f64>,
+        now: &Present,
         wanted: Vector2<f64>,
         to_goal: Vector2<f64>,
     ) -> Decision {
-        let (robot, heading) = (situation.robot, situation.heading);
+        let guard = if now.off.is_some() {
+            guard.doubled()
+        } else {
+            *guard
+        };
+        let (robot, heading) = (now.robot, situation.heading);
+        let planned = now.since.zip(self.course);
         let (sin, cos) = heading.sin_cos();
+        let measured = Twist {
+            speed: robot.velocity.dot(&Vector2::new(cos, sin)),
+            turn_rate: now.turn_rate,
+        };
         let state = TwistState {
             position: robot.position,
             heading,
-            twist: Twist {
-                speed: robot.velocity.dot(&Vector2::new(cos, sin)),
-                turn_rate: self.turn_rate,
-            },
+            twist: planned.map_or(measured, |(since, course)| {
+                course.twist(since).unwrap_or(measured)
+            }),
         };
         let view = TwistView {
             robot: state,
@@ -283,7 +336,7 @@ impl SafeLaw {
         // It drives backwards only to give way.
         let twist = |velocity: Vector2<f64>| guard.toward(&state, velocity, velocity != kept);
         let verified = |velocity| guard.verified(&view, twist(velocity));
-        let (twist, status) = match self.give_way(&robot, wanted, to_goal, verified) {
+        let (mut twist, status) = match self.give_way(&robot, wanted, to_goal, verified) {
             Some(velocity) if velocity == kept => (twist(velocity), Status::Kept),
             Some(velocity) => (twist(velocity), Status::Changed),
             None => guard.decide(
@@ -291,7 +344,16 @@ impl SafeLaw {
                 guard.toward(&state, self.limits.slowed(wanted), false),
             ),
         };
-        self.turn_rate = twist.turn_rate;
+        match planned {
+            Some((since, course)) if status == Status::Braking => {
+                // The plan runs on as it was verified.
+                twist = course.twist(since + course.period()).unwrap_or_default();
+            }
+            _ => {
+                let begun = situation.time;
+                self.course = Some(Course::of_twist(begun, &state, twist, &guard.limits));
+            }
+        }
         Decision {
             velocity: velocity_of(twist, heading, situation.interval),
             status,
@@ -300,7 +362,46 @@ impl SafeLaw {
 
     /// Yielding, then the shield.
     fn decide(
+        &mut self,
+        time: f64,
+        now: &Present,
+        wanted: Vector2<f64>,
+        to_goal: Vector2<f64>,
+    ) -> Decision {
+        let robot = &now.robot;
+        let guard = self.guard.map(|guard| {
+            if now.off.is_some() {
+                guard.doubled()
+            } else {
+                guard
+            }
+        });
+        let mut decision = self.judged(guard.as_ref(), robot, wanted, to_goal);
+        if guard.is_none() {
+            return decision;
+        }
+        let planned = now.since.zip(self.course);
+        match planned {
+            Some((since, course)) if decision.status == Status::Braking => {
+                // The plan runs on as it was verified.
+                decision.velocity = course.rates(since + course.period());
+            }
+            _ => {
+                if now.off.is_some() && decision.status == Status::Braking {
+                    let rest = Vector2::zeros();
+                    decision.velocity = self.limits.clipped(robot.velocity, rest);
+                }
+                let command = decision.velocity;
+                self.course = Some(Course::of_velocity(time, robot, command, &self.limits));
+            }
+        }
+        decision
+    }
+
+    /// What yielding and a shield make of a wanted velocity.
+    fn judged(
         &self,
+        guard: Option<&Guard>,
         robot: &RobotState<f64>,
         wanted: Vector2<f64>,
         to_goal: Vector2<f64>,
@@ -314,7 +415,7 @@ impl SafeLaw {
         let kept = self
             .limits
             .clipped(robot.velocity, self.limits.slowed(wanted));
-        let verifier = self.guard.as_ref().filter(|_| self.yielder.is_some());
+        let verifier = guard.filter(|_| self.yielder.is_some());
         let mut verifier = verifier.map(|guard| Verifier::new(guard, view));
         let verified = |velocity| {
             let verifier = verifier.as_mut();
@@ -328,7 +429,7 @@ impl SafeLaw {
             };
             return Decision { velocity, status };
         }
-        match &self.guard {
+        match guard {
             Some(guard) => guard.decide(&view, wanted),
             None => Decision {
                 velocity: kept,

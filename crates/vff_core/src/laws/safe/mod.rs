@@ -18,7 +18,6 @@ use crate::error::Result;
 use crate::lanes::{Real, Vector2};
 use crate::laws::trace::Trace;
 use crate::laws::{Command, FieldTerms, Law, LawFamily, Situation};
-use crate::robots::differential::Twist;
 use crate::world::map::StaticMap;
 use crate::world::scenario::Scenario;
 
@@ -54,12 +53,6 @@ impl<R: Real> Law<R> for SafeLanes {
     fn aim(&mut self, goal: [f64; 2]) {
         for law in &mut self.0 {
             law.aim(goal);
-        }
-    }
-
-    fn turning(&mut self, ordered: Twist, since: f64) {
-        for law in &mut self.0 {
-            law.turning(ordered, since);
         }
     }
 

@@ -8,18 +8,22 @@
 //! it, whatever people do within their bounds.
 
 mod bound;
+mod course;
 mod half_disc;
 mod person;
 mod plan;
 mod search;
+mod tracking;
 mod twist;
 mod verifier;
 mod walls;
 
 pub use bound::speed_bound;
+pub use course::Course;
 pub use half_disc::half_disc_distance;
 pub use person::{KnownVelocity, Person};
 pub use plan::{Plan, braking, braking_periods};
+pub use tracking::Tracking;
 pub use twist::{TwistGuard, TwistLimits, TwistState, TwistView};
 pub use verifier::Verifier;
 pub use walls::Walls;
@@ -30,6 +34,9 @@ use crate::world::geometry::RobotState;
 
 /// Rounding of speeds, relative.
 const SPEED_ROUNDING: f64 = 1e-9;
+
+/// Differences from a plan that rounding explains, in m and m/s.
+const OFF_PLAN: f64 = 1e-6;
 
 /// A wanted velocity below this share of the change to it tells no direction.
 const RESTING: f64 = 0.07;
@@ -73,6 +80,10 @@ pub struct Shield {
     pub velocity_bounds: Option<[f64; 2]>,
     /// Error `m` of the own pose and of executed motion in m.
     pub margin: f64,
+    /// Largest distance of the robot from its plan in m.
+    pub position_tracking: f64,
+    /// Largest difference of its velocity from that of its plan.
+    pub velocity_tracking: Tracking,
     /// Distance `m_s` that is kept from walls, in m.
     pub wall_margin: f64,
     /// Whether people are left a way to stop.
@@ -88,6 +99,8 @@ impl Default for Shield {
             position_error: 0.0,
             velocity_bounds: None,
             margin: 0.005,
+            position_tracking: 0.005,
+            velocity_tracking: Tracking::default(),
             wall_margin: 0.005,
             friendly: None,
         }
@@ -110,12 +123,54 @@ impl Shield {
             not_negative("person_acceleration", acceleration)?;
         }
         not_negative("margin", self.margin)?;
+        not_negative("position_tracking", self.position_tracking)?;
+        self.velocity_tracking.checked()?;
         not_negative("wall_margin", self.wall_margin)?;
         if let Some(friendly) = self.friendly {
             not_negative("reaction_time", friendly.reaction_time)?;
             positive("person_deceleration", friendly.deceleration)?;
         }
         Ok(self)
+    }
+
+    /// What the radius of the robot grows by, in m.
+    fn around(&self) -> f64 {
+        self.margin + self.position_tracking
+    }
+
+    /// The same with twice the tracking errors.
+    fn doubled(&self) -> Self {
+        Self {
+            position_tracking: 2.0 * self.position_tracking,
+            velocity_tracking: self.velocity_tracking.doubled(),
+            ..*self
+        }
+    }
+
+    /// How far a robot was measured to be from a plan at a time of it in s, if that refutes what is assumed:
+    /// the plan began where the robot was measured, too.
+    #[must_use]
+    pub fn refuted(
+        &self,
+        course: &Course,
+        since: f64,
+        robot: &RobotState<f64>,
+    ) -> Option<Deviation> {
+        let velocity = course.velocity(since);
+        let most = [
+            2.0 * self.margin + self.position_tracking,
+            self.velocity_tracking.velocity(velocity.norm()),
+        ];
+        let found = [
+            (robot.position - course.position(since)).norm() - most[0],
+            (robot.velocity - velocity).norm() - most[1],
+        ];
+        let beyond = found.map(|off| if off > OFF_PLAN { off } else { 0.0 });
+        let refutes = beyond.iter().any(|off| *off > 0.0);
+        refutes.then_some(Deviation {
+            position: beyond[0],
+            velocity: beyond[1],
+        })
     }
 
     fn grown(&self, person: &Person) -> f64 {
@@ -127,7 +182,7 @@ impl Shield {
 /// Limits of the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Radius in m, `rho + m`.
+    /// Radius in m, `rho + m` and the tracking of positions.
     pub radius: f64,
     /// Largest speed in m/s.
     pub max_speed: f64,
@@ -208,6 +263,15 @@ impl Status {
     }
 }
 
+/// How far a robot was measured to be from its plan, beyond all that is assumed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviation {
+    /// In m; 0 within what is assumed.
+    pub position: f64,
+    /// In m/s; 0 within what is assumed.
+    pub velocity: f64,
+}
+
 /// A command, and how it came about.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decision {
@@ -233,7 +297,7 @@ pub struct View<'a> {
 pub struct Guard {
     /// What it assumes.
     pub shield: Shield,
-    /// Limits of the robot, the radius with the margin of the shield.
+    /// Limits of the robot, the radius with the margin and the tracking of the shield.
     pub limits: Limits,
 }
 
@@ -246,11 +310,24 @@ impl Guard {
         positive("max_speed", limits.max_speed)?;
         positive("max_acceleration", limits.max_acceleration)?;
         positive("control_period", limits.period)?;
-        let radius = positive("radius", limits.radius)? + shield.checked()?.margin;
+        let radius = positive("radius", limits.radius)? + shield.checked()?.around();
         Ok(Self {
             shield,
             limits: Limits { radius, ..limits },
         })
+    }
+
+    /// The shield of a robot that was measured to be off its plan: it may be as far off again.
+    #[must_use]
+    pub fn doubled(&self) -> Self {
+        let tracking = self.shield.position_tracking;
+        Self {
+            shield: self.shield.doubled(),
+            limits: Limits {
+                radius: self.limits.radius + tracking,
+                ..self.limits
+            },
+        }
     }
 
     /// Whether a command is verified: reachable, behind all people and off all walls.
@@ -263,12 +340,18 @@ impl Guard {
     /// behind a command, in m.
     #[must_use]
     pub fn gap(&self, view: &View<'_>, command: Vector2<f64>) -> f64 {
-        let plan = Plan::new(&view.robot, command, &self.limits);
+        let plan = self.plan(&view.robot, command);
         let gaps = view
             .people
             .iter()
             .map(|person| plan.gap(person, &self.limits, 1e-5));
         gaps.fold(f64::INFINITY, f64::min)
+    }
+
+    /// The plan behind a command.
+    #[must_use]
+    pub fn plan(&self, robot: &RobotState<f64>, command: Vector2<f64>) -> Plan {
+        Plan::new(robot, command, &self.limits, self.shield.velocity_tracking)
     }
 
     /// The wanted velocity as far as the robot can take it up.

@@ -1,7 +1,7 @@
 //! What the shield assumes of somebody: where he is, and what bounds his motion.
 
 use crate::lanes::Vector2;
-use crate::laws::shield::half_disc::half_disc_distance;
+use crate::laws::shield::half_disc::{Look, half_disc_distance};
 use crate::world::shape::{PlacedShape, Shape, into_axes};
 
 /// Bounds on a velocity that is known.
@@ -77,42 +77,42 @@ impl Person {
         &self,
         place: Vector2<f64>,
         radius: f64,
-        ahead: Vector2<f64>,
+        look: &Look,
         time: f64,
     ) -> f64 {
-        let worst = self.distance(place, radius, ahead, Vector2::zeros()) - self.reach(time);
+        let worst = self.distance(place, radius, look, Vector2::zeros()) - self.reach(time);
         let Some(known) = &self.known else {
             return worst;
         };
         let age = self.latency + time;
         let way = known.velocity * age;
         let spread = self.position_error + (known.error + 0.5 * known.acceleration * age) * age;
-        worst.max(self.distance(place, radius, ahead, way) - spread)
+        worst.max(self.distance(place, radius, look, way) - spread)
     }
 
-    /// Distance of the outline, moved by a way, from a half disc; of rectangles a lower bound.
+    /// Distance of the outline, moved by a way, from the half discs of a look; of rectangles a lower bound.
     #[inline(always)]
-    fn distance(
-        &self,
-        place: Vector2<f64>,
-        radius: f64,
-        ahead: Vector2<f64>,
-        way: Vector2<f64>,
-    ) -> f64 {
+    fn distance(&self, place: Vector2<f64>, radius: f64, look: &Look, way: Vector2<f64>) -> f64 {
         let center = self.placed.center + way;
         match self.placed.shape {
-            Shape::Disc { .. } => half_disc_distance(center - place, radius, ahead),
+            Shape::Disc { .. } => {
+                let offset = center - place;
+                half_disc_distance(offset, radius, look.toward(offset))
+            }
             Shape::Rectangle {
                 half_length,
                 half_width,
                 axis,
             } => {
-                // Two sets that hold the half disc: the disc and the half plane.
+                // Two sets that hold a half disc: the disc and the half plane.
                 let offset = self.placed.shape.offset(place - center);
-                let local = into_axes(ahead, axis);
-                let extent = local.x.abs() * half_length + local.y.abs() * half_width;
-                let behind = -(center - place).dot(&ahead) - extent;
-                (offset.norm() - radius).max(behind).max(0.0)
+                let behind = |ahead: Vector2<f64>| {
+                    let local = into_axes(ahead, axis);
+                    let extent = local.x.abs() * half_length + local.y.abs() * half_width;
+                    -(center - place).dot(&ahead) - extent
+                };
+                let [one, other] = look.ends().map(behind);
+                (offset.norm() - radius).max(one.min(other)).max(0.0)
             }
         }
     }

@@ -1,8 +1,9 @@
 //! The plan behind a command: take up a velocity within a period, then brake to rest.
 
 use crate::lanes::Vector2;
-use crate::laws::shield::Limits;
+use crate::laws::shield::half_disc::Look;
 use crate::laws::shield::person::Person;
+use crate::laws::shield::{Limits, Tracking};
 use crate::world::geometry::RobotState;
 use crate::world::shape::Shape;
 
@@ -20,6 +21,10 @@ const SURELY: f64 = 1e-9;
 
 /// Accuracy of a least distance as a share of its largest change: it bounds the steps to find it.
 const FINEST: f64 = 1e-6;
+
+/// Parts of a braking in which the directions of a robot that slows down are bounded by those of its last
+/// speed; one is enough where they do not depend on the speed.
+const PARTS: u32 = 8;
 
 /// Rounding of a number of periods.
 const ROUNDING: f64 = 1e-9;
@@ -53,33 +58,51 @@ pub struct Plan {
     braking: f64,
     /// The larger of both speeds, in m/s.
     speed: f64,
-    /// Directions of the half disc: of `V` and of `u`, in the ramp the union.
-    ahead: [Vector2<f64>; 2],
+    /// Largest difference between the velocities of plan and robot, in m/s.
+    deviation: f64,
+    /// Where the half discs of `V` and of `u` look, in the ramp the union.
+    ramp: [Look; 2],
+    tracking: Tracking,
 }
 
 impl Plan {
-    /// The plan for a command `u` that is given to a robot.
+    /// The plan for a command `u` that is given to a robot, which follows it as its tracking tells.
     #[inline]
     #[must_use]
-    pub fn new(robot: &RobotState<f64>, command: Vector2<f64>, limits: &Limits) -> Self {
+    pub fn new(
+        robot: &RobotState<f64>,
+        command: Vector2<f64>,
+        limits: &Limits,
+        tracking: Tracking,
+    ) -> Self {
         let (first, second) = (robot.velocity.norm(), command.norm());
         let ahead = [
             robot.velocity * (1.0 / first.max(STILL)),
             command * (1.0 / second.max(STILL)),
         ];
+        let speed = first.max(second);
+        let slowest = if tracking.absolute == 0.0 {
+            speed
+        } else {
+            slowest(robot.velocity, command)
+        };
+        let sine = tracking.sine(slowest);
+        // A robot that starts from rest, or comes to rest, looks along its other velocity.
+        let ahead = match (first < STILL, second < STILL) {
+            (true, false) => [ahead[1]; 2],
+            (false, true) => [ahead[0]; 2],
+            (true, true) | (false, false) => ahead,
+        };
         Self {
             position: robot.position,
             before: robot.velocity,
             command,
             period: limits.period,
             braking: braking_periods(second, limits) * limits.period,
-            speed: first.max(second),
-            // A robot that starts from rest, or comes to rest, looks along its other velocity.
-            ahead: match (first < STILL, second < STILL) {
-                (true, false) => [ahead[1]; 2],
-                (false, true) => [ahead[0]; 2],
-                (true, true) | (false, false) => ahead,
-            },
+            speed,
+            deviation: tracking.velocity(speed),
+            ramp: ahead.map(|ahead| Look::within(ahead, sine)),
+            tracking,
         }
     }
 
@@ -110,22 +133,74 @@ impl Plan {
         turn + self.command * (braked - 0.5 * braked * braked / self.braking)
     }
 
-    /// `g`: distance between the half disc ahead at a time and everywhere that somebody can be
-    /// then, in m.
+    /// Velocity at a time within the plan, in m/s.
     #[inline]
-    fn clearance(&self, person: &Person, radius: f64, time: f64) -> f64 {
-        let place = self.position(time);
-        let [first, second] = self.ahead;
-        let ahead = person.clearance(place, radius, second, time);
-        if time > self.period || first == second {
-            return ahead;
+    #[must_use]
+    pub fn velocity(&self, time: f64) -> Vector2<f64> {
+        if time < self.period {
+            return self.before + (self.command - self.before) * (time / self.period);
         }
-        ahead.min(person.clearance(place, radius, first, time))
+        let braked = time - self.period;
+        if braked < self.braking {
+            self.command * (1.0 - braked / self.braking)
+        } else if braked == 0.0 {
+            self.command
+        } else {
+            Vector2::zeros()
+        }
+    }
+
+    /// Until when the present part of the plan lasts, in s, and where the robot looks in it.
+    fn part(&self, time: f64) -> (f64, Look) {
+        // A robot whose directions are bounded alike at all speeds has one part.
+        if self.tracking.absolute == 0.0 {
+            return (f64::INFINITY, self.ramp[1]);
+        }
+        let share = |part: u32| f64::from(part) / f64::from(PARTS);
+        let until = |part: u32| self.period + self.braking * share(part);
+        let part = (1..PARTS).find(|part| time < until(*part)).unwrap_or(PARTS);
+        let slowest = self.command.norm() * (1.0 - share(part));
+        let look = self.ramp[1].widened(self.tracking.sine(slowest));
+        (until(part), look)
+    }
+
+    /// `g`: distance between the half discs ahead at a time and everywhere that somebody can be
+    /// then, in m, and until when that is so without a jump, in s.
+    #[inline]
+    fn clearance(&self, person: &Person, radius: f64, time: f64) -> (f64, f64) {
+        let place = self.position(time);
+        let alike = self.tracking.absolute == 0.0;
+        let ramps = time < self.period || (alike && time == self.period);
+        let (until, look) = if ramps && !alike {
+            (self.period, self.ramp[1])
+        } else {
+            self.part(time)
+        };
+        let ahead = person.clearance(place, radius, &look, time);
+        let [first, second] = &self.ramp;
+        if !ramps || first == second {
+            return (ahead, until);
+        }
+        (
+            ahead.min(person.clearance(place, radius, first, time)),
+            until,
+        )
+    }
+
+    /// A time that is later, but not beyond the next one at which the half discs jump.
+    fn later(time: f64, by: f64, until: f64) -> f64 {
+        let next = time + by;
+        if time < until && until < next {
+            // Past it by more than rounding.
+            until + until * f64::EPSILON
+        } else {
+            next
+        }
     }
 
     /// Largest rate of [`Self::clearance`] in m/s.
     fn rate(&self, person: &Person) -> f64 {
-        self.speed + person.rate(self.end())
+        self.speed + self.deviation + person.rate(self.end())
     }
 
     /// Whether a disc cannot come near even to the circle that the robot can fill: a bound that spares
@@ -141,7 +216,7 @@ impl Plan {
     /// step of it passes an instant at which `g` is negative.
     pub(super) fn is_met_at_end(&self, person: &Person, limits: &Limits) -> bool {
         let radius = limits.radius + person.radius();
-        !self.rests() && self.clearance(person, radius, self.end()) < -SURELY
+        !self.rests() && self.clearance(person, radius, self.end()).0 < -SURELY
     }
 
     /// Whether nobody can be ahead at any time of the plan; `grown`: what is added to the radius
@@ -162,13 +237,13 @@ impl Plan {
         }
         let mut time = 0.0;
         loop {
-            let clearance = self.clearance(person, radius, time);
+            let (clearance, until) = self.clearance(person, radius, time);
             if clearance < LEAST {
                 return false;
             }
-            time += clearance / rate;
+            time = Self::later(time, clearance / rate, until);
             if time > end {
-                return grown == 0.0 || self.clearance(person, radius + grown, end) > 0.0;
+                return grown == 0.0 || self.clearance(person, radius + grown, end).0 > 0.0;
             }
         }
     }
@@ -187,14 +262,14 @@ impl Plan {
         }
         let accuracy = accuracy.max(FINEST * rate * end);
         // Right after the ramp only the direction of the command counts.
-        let mut least = self.clearance(person, radius, self.period);
+        let mut least = self.clearance(person, radius, self.period).0;
         let mut time = 0.0;
         while time <= end {
-            let clearance = self.clearance(person, radius, time);
+            let (clearance, until) = self.clearance(person, radius, time);
             least = least.min(clearance);
-            time += (clearance - least + accuracy) / rate;
+            time = Self::later(time, (clearance - least + accuracy) / rate, until);
         }
-        least.min(self.clearance(person, radius, end))
+        least.min(self.clearance(person, radius, end).0)
     }
 
     /// Chords of the way with what the way deviates from them, in m: ramp in four, braking in one.
@@ -205,7 +280,7 @@ impl Plan {
         let deviation = if straight {
             0.0
         } else {
-            change.norm() * self.period / 128.0
+            (change.norm() + self.deviation) * self.period / 128.0
         };
         let ramp = (0..4).map(move |quarter| {
             let at = |part: f64| self.position(0.25 * part * self.period);
@@ -215,4 +290,15 @@ impl Plan {
         let braking = [self.position(self.period), self.position(self.end())];
         ramp.chain((self.braking > 0.0).then_some((braking, 0.0)))
     }
+}
+
+/// Least speed on the straight line from one velocity to another, in m/s.
+fn slowest(from: Vector2<f64>, to: Vector2<f64>) -> f64 {
+    let change = to - from;
+    let square = change.norm_squared();
+    if square == 0.0 {
+        return from.norm();
+    }
+    let share = (-from.dot(&change) / square).clamp(0.0, 1.0);
+    (from + change * share).norm()
 }

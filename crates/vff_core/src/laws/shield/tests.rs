@@ -1,5 +1,18 @@
 use super::*;
 
+/// For a robot that does exactly what is planned.
+const EXACT: Shield = Shield {
+    person_speed: Some(1.6),
+    latency: 0.0,
+    position_error: 0.0,
+    velocity_bounds: None,
+    margin: 0.005,
+    position_tracking: 0.0,
+    velocity_tracking: Tracking::EXACT,
+    wall_margin: 0.005,
+    friendly: None,
+};
+
 /// A row of the check values of plans.
 struct Row {
     limits: [f64; 4],
@@ -42,7 +55,7 @@ impl Row {
             max_acceleration,
             period,
         };
-        Guard::new(Shield::default(), limits).unwrap()
+        Guard::new(EXACT, limits).unwrap()
     }
 
     fn person(&self) -> Person {
@@ -110,7 +123,7 @@ fn drawn(stream: &mut numeric::random::Stream) -> (Guard, RobotState<f64>, Vec<P
         max_acceleration: stream.uniform(2.0, 10.0),
         period: stream.uniform(0.05, 0.1),
     };
-    let guard = Guard::new(Shield::default(), limits).unwrap();
+    let guard = Guard::new(EXACT, limits).unwrap();
     let mut polar = |most: f64| {
         let (sin, cos) = stream.uniform(0.0, std::f64::consts::TAU).sin_cos();
         Vector2::new(cos, sin) * (most * stream.unit().sqrt())
@@ -229,12 +242,12 @@ fn braking_continues_a_verified_plan() {
             position: Vector2::zeros(),
             velocity: robot.velocity,
         };
-        let old = Plan::new(&still, robot.velocity, &limits);
+        let old = Plan::new(&still, robot.velocity, &limits, Tracking::EXACT);
         let turned = RobotState {
             position: old.position(limits.period),
             velocity: robot.velocity,
         };
-        let new = Plan::new(&turned, slower, &limits);
+        let new = Plan::new(&turned, slower, &limits, Tracking::EXACT);
         for part in 0..=10 {
             let time = 0.1 * f64::from(part) * new.end();
             let [one, other] = [old.position(limits.period + time), new.position(time)];
@@ -269,7 +282,7 @@ fn who_may_have_any_speed_is_ahead_unless_his_velocity_is_known() {
             }),
             ..anywhere
         };
-        let plan = Plan::new(&robot, robot.velocity, &limits);
+        let plan = Plan::new(&robot, robot.velocity, &limits, Tracking::EXACT);
         assert!(!plan.avoids(&anywhere, &limits, 0.0));
         assert_eq!(plan.gap(&anywhere, &limits, 1e-3), f64::NEG_INFINITY);
         assert!(plan.avoids(&known, &limits, 0.0));
@@ -294,8 +307,106 @@ fn a_gap_from_a_very_fast_one_takes_a_bounded_number_of_steps() {
         max_speed: 1e12,
         ..Person::disc([5.0, 0.0], 0.3)
     };
-    let plan = Plan::new(&robot, robot.velocity, &limits);
+    let plan = Plan::new(&robot, robot.velocity, &limits, Tracking::EXACT);
     let least = 4.4 - 1e12 * plan.end();
     let gap = plan.gap(&fast, &limits, 1e-5);
     assert!((gap / least - 1.0).abs() < 1e-5, "{gap} {least}");
+}
+
+#[test]
+fn what_a_robot_does_within_its_tracking_stays_off_everybody_a_verified_plan_avoids() {
+    let mut stream = numeric::random::Stream::new(12, 0);
+    let mut refused = 0;
+    for round in 0..300 {
+        let (exact, robot, people) = drawn(&mut stream);
+        let tracking = Tracking {
+            absolute: if round % 2 == 0 {
+                0.0
+            } else {
+                stream.uniform(0.0, 0.2)
+            },
+            relative: stream.uniform(0.0, 0.3),
+        };
+        let shield = Shield {
+            position_tracking: stream.uniform(0.0, 0.02),
+            velocity_tracking: tracking,
+            ..EXACT
+        };
+        let limits = Limits {
+            radius: exact.limits.radius - EXACT.around(),
+            ..exact.limits
+        };
+        let guard = Guard::new(shield, limits).unwrap();
+        let view = View {
+            robot,
+            people: &people,
+            walls: Walls::NONE,
+        };
+        let angle = stream.uniform(0.0, std::f64::consts::TAU);
+        let wanted = Vector2::new(angle.cos(), angle.sin()) * limits.max_speed;
+        let command = guard.decide(&view, wanted);
+        if command.status == Status::Braking {
+            refused += 1;
+            continue;
+        }
+        let plan = guard.plan(&robot, command.velocity);
+        for part in 0..=400 {
+            let time = plan.end() * f64::from(part) / 400.0;
+            let planned = plan.velocity(time);
+            if planned.norm() < 1e-9 && plan.velocity(0.0).norm() < 1e-9 {
+                continue;
+            }
+            for turn in 0..16 {
+                let (sin, cos) = stream.uniform(0.0, std::f64::consts::TAU).sin_cos();
+                let aside = Vector2::new(cos, sin);
+                let most = tracking.velocity(planned.norm())
+                    * if turn % 2 == 0 { 1.0 } else { stream.unit() };
+                let velocity = planned + aside * most;
+                let place = plan.position(time) + aside * shield.position_tracking;
+                if velocity.norm() < 1e-9 {
+                    continue;
+                }
+                for person in &people {
+                    let offset = person.placed.center - place;
+                    let radius = limits.radius + person.radius();
+                    let ahead = velocity / velocity.norm();
+                    let free = half_disc_distance(offset, radius, ahead) - person.reach(time);
+                    assert!(free > 0.0, "{round} at {time}: {free} {tracking:?}");
+                }
+            }
+        }
+    }
+    assert!(refused < 200, "{refused}");
+}
+
+#[test]
+fn a_measurement_beyond_all_that_is_assumed_refutes_the_plan() {
+    let limits = Limits {
+        radius: 0.2,
+        max_speed: 1.0,
+        max_acceleration: 1.0,
+        period: 0.1,
+    };
+    let shield = Shield {
+        velocity_tracking: Tracking {
+            absolute: 0.01,
+            relative: 0.02,
+        },
+        ..Shield::default()
+    };
+    let robot = RobotState {
+        position: Vector2::zeros(),
+        velocity: Vector2::new(0.5, 0.0),
+    };
+    let course = Course::of_velocity(0.0, &robot, robot.velocity, &limits);
+    let measured = |away: f64, speed: f64| RobotState {
+        position: course.position(0.1) + Vector2::new(0.0, away),
+        velocity: Vector2::new(speed, 0.0),
+    };
+    let refuted = |away, speed| shield.refuted(&course, 0.1, &measured(away, speed));
+    assert_eq!(refuted(0.0149, 0.519), None);
+    let found = refuted(0.1, 0.5).unwrap();
+    assert!((found.position - 0.085).abs() < 1e-12 && found.velocity == 0.0);
+    let found = refuted(0.0, 0.4).unwrap();
+    assert!((found.velocity - 0.08).abs() < 1e-12 && found.position == 0.0);
 }

@@ -2,7 +2,6 @@
 
 use crate::lanes::Vector2;
 use crate::laws::shield::person::Person;
-use crate::laws::shield::plan::Plan;
 use crate::laws::shield::{Guard, View, walls};
 
 /// Verifies the commands that are tried at one instant.
@@ -22,7 +21,7 @@ impl<'a> Verifier<'a> {
     #[must_use]
     pub fn new(guard: &'a Guard, view: View<'a>) -> Self {
         let kept = (!view.walls.is_empty()).then(|| {
-            let radius = guard.limits.radius - guard.shield.margin;
+            let radius = guard.limits.radius - guard.shield.around();
             let kept = radius + guard.shield.wall_margin;
             // The whole way keeps this distance from walls, or the present one if that is less.
             view.walls.clearance_up_to(view.robot.position, kept) - walls::ROUNDING
@@ -57,7 +56,7 @@ impl<'a> Verifier<'a> {
         if !limits.reaches(robot.velocity, command) {
             return false;
         }
-        let plan = Plan::new(robot, command, limits);
+        let plan = self.guard.plan(robot, command);
         let shield = &self.guard.shield;
         let avoids = |person: &Person| plan.avoids(person, limits, shield.grown(person));
         let people = self.view.people;

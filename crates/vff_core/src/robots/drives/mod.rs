@@ -13,7 +13,7 @@ pub(crate) use omni::OmniRobot;
 pub(crate) use point_mass::{IdealHolonomic, PointMass};
 pub(crate) use two_wheels::TwoWheels;
 pub use two_wheels::{PoseFusion, SteeringLaw};
-pub(crate) use velocity::{twist_of, velocity_of};
+pub(crate) use velocity::velocity_of;
 pub(crate) use virtual_velocity::VirtualVelocity;
 
 use crate::lanes::{Planar, Vector2};

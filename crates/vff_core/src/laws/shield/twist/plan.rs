@@ -1,6 +1,8 @@
 //! Plans of a robot with two wheels: a ramp within a period, then braking on the curve of the command.
 
 use crate::lanes::Vector2;
+use crate::laws::shield::Tracking;
+use crate::laws::shield::half_disc::Look;
 use crate::laws::shield::person::Person;
 use crate::laws::shield::walls::Walls;
 use crate::robots::differential::{DifferentialLimits, Twist};
@@ -34,7 +36,7 @@ pub(super) struct Node {
 }
 
 /// Which way the half disc looks over a part of the plan: the union of two, or all around.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum Ahead {
     Union([Vector2<f64>; 2]),
     Around,
@@ -48,7 +50,10 @@ pub(super) struct TwistPlan {
     braking: [Node; PARTS + 1],
     /// Largest speed of the center in m/s.
     pub(super) speed: f64,
-    ahead: [Ahead; 2],
+    /// Largest difference between the velocities of plan and robot, in m/s.
+    deviation: f64,
+    /// Of ramp and braking, for each part.
+    ahead: [[Ahead; PARTS]; 2],
 }
 
 pub(super) fn unit(angle: f64) -> Vector2<f64> {
@@ -95,13 +100,19 @@ fn swept(nodes: &[Node; PARTS + 1], from: Twist, to: Twist) -> [f64; 2] {
 }
 
 impl Ahead {
-    /// Between two headings, at speeds of one sign or none; a half turn or more looks all around.
-    fn over(headings: [f64; 2], speeds: [f64; 2]) -> Self {
-        let [from, to] = headings;
+    /// Between two headings, at speeds of one sign or none, and within an angle of a sine beyond them; a half
+    /// turn or more looks all around.
+    fn over(headings: [f64; 2], speeds: [f64; 2], sine: f64) -> Self {
+        if sine >= 1.0 {
+            return Self::Around;
+        }
+        let beyond = sine.asin();
+        let from = headings[0].min(headings[1]) - beyond;
+        let to = headings[0].max(headings[1]) + beyond;
         let [first, last] = speeds;
         let backwards = first < -STILL || last < -STILL;
         let forwards = first > STILL || last > STILL;
-        if (backwards && forwards) || (to - from).abs() >= std::f64::consts::PI {
+        if (backwards && forwards) || to - from >= std::f64::consts::PI {
             return Self::Around;
         }
         let sign = if backwards { -1.0 } else { 1.0 };
@@ -114,13 +125,21 @@ impl Ahead {
             // Two opposite half discs are the disc.
             Self::Around => [Vector2::x(), -Vector2::x()],
         };
-        let first = person.clearance(place, radius, one, time);
-        first.min(person.clearance(place, radius, other, time))
+        let toward = |ahead: Vector2<f64>| {
+            let look = Look::within(ahead, 0.0);
+            person.clearance(place, radius, &look, time)
+        };
+        toward(one).min(toward(other))
     }
 }
 
 impl TwistPlan {
-    pub(super) fn new(state: &TwistState, command: Twist, limits: &TwistLimits) -> Self {
+    pub(super) fn new(
+        state: &TwistState,
+        command: Twist,
+        limits: &TwistLimits,
+        tracking: Tracking,
+    ) -> Self {
         let first = Node {
             time: 0.0,
             position: state.position,
@@ -130,22 +149,36 @@ impl TwistPlan {
         let braking = limits.braking_periods(command) * limits.period;
         let braking = nodes(ramp[PARTS], braking, command, Twist::default());
         let speeds = [state.twist.speed, command.speed];
+        let slowest = if speeds[0] * speeds[1] > 0.0 {
+            speeds[0].abs().min(speeds[1].abs())
+        } else {
+            0.0
+        };
+        let ramped = swept(&ramp, state.twist, command);
+        let ramped = Ahead::over(ramped, speeds, tracking.sine(slowest));
+        let braked = swept(&braking, command, Twist::default());
+        let braked = |speed: f64| Ahead::over(braked, [command.speed; 2], tracking.sine(speed));
+        let parts = if tracking.absolute == 0.0 {
+            [braked(1.0); PARTS]
+        } else {
+            let left = |part: usize| 1.0 - (part + 1) as f64 / PARTS as f64;
+            std::array::from_fn(|part| braked(command.speed.abs() * left(part)))
+        };
+        let speed = speeds[0].abs().max(speeds[1].abs());
         Self {
-            ahead: [
-                Ahead::over(swept(&ramp, state.twist, command), speeds),
-                Ahead::over(
-                    swept(&braking, command, Twist::default()),
-                    [command.speed; 2],
-                ),
-            ],
+            ahead: [[ramped; PARTS], parts],
             ramp,
             braking,
-            speed: state.twist.speed.abs().max(command.speed.abs()),
+            speed,
+            deviation: tracking.velocity(speed),
         }
     }
 
-    fn parts(&self) -> [(&[Node; PARTS + 1], Ahead); 2] {
-        [(&self.ramp, self.ahead[0]), (&self.braking, self.ahead[1])]
+    fn parts(&self) -> [(&[Node; PARTS + 1], &[Ahead; PARTS]); 2] {
+        [
+            (&self.ramp, &self.ahead[0]),
+            (&self.braking, &self.ahead[1]),
+        ]
     }
 
     /// Whether nobody can be ahead at any time; `grown`: what is added to the radius at the end.
@@ -155,12 +188,17 @@ impl TwistPlan {
         }
         let radius = radius + person.radius();
         let end = self.braking[PARTS].time;
-        let rate = self.speed + person.rate(end);
-        for (nodes, ahead) in self.parts() {
-            let at = |node: &Node| ahead.clearance(person, node.position, radius, node.time);
-            let mut before = at(&nodes[0]);
-            for pair in nodes.windows(2) {
-                let after = at(&pair[1]);
+        let rate = self.speed + self.deviation + person.rate(end);
+        for (nodes, looks) in self.parts() {
+            let at = |ahead: &Ahead, node: &Node| {
+                ahead.clearance(person, node.position, radius, node.time)
+            };
+            let (mut look, mut before) = (&looks[0], at(&looks[0], &nodes[0]));
+            for (pair, ahead) in nodes.windows(2).zip(looks) {
+                if ahead != look {
+                    (look, before) = (ahead, at(ahead, &pair[0]));
+                }
+                let after = at(ahead, &pair[1]);
                 // The least that a function of this rate can be between two values.
                 if 0.5 * (before + after - rate * (pair[1].time - pair[0].time)) <= 0.0 {
                     return false;
@@ -169,7 +207,8 @@ impl TwistPlan {
             }
         }
         let last = &self.braking[PARTS];
-        grown == 0.0 || self.ahead[1].clearance(person, last.position, radius + grown, end) > 0.0
+        let ahead = &self.ahead[1][PARTS - 1];
+        grown == 0.0 || ahead.clearance(person, last.position, radius + grown, end) > 0.0
     }
 
     /// Whether the whole way keeps a distance from walls, with the sagitta of each part to spare.
@@ -193,7 +232,7 @@ impl TwistPlan {
 /// Limits of a robot with two wheels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwistLimits {
-    /// Radius in m, with the margin of the shield.
+    /// Radius in m, with the margin and the tracking of the shield.
     pub radius: f64,
     /// Limits of speed and turn rate.
     pub drive: DifferentialLimits,
@@ -202,28 +241,14 @@ pub struct TwistLimits {
 }
 
 impl TwistLimits {
-    pub(super) fn braking_periods(&self, twist: Twist) -> f64 {
+    pub(crate) fn braking_periods(&self, twist: Twist) -> f64 {
         let slow = twist.speed.abs() / (self.drive.max_deceleration * self.period);
         let straight = twist.turn_rate.abs() / (self.drive.max_angular_acceleration * self.period);
         (slow.max(straight) - PERIOD_ROUNDING).ceil().max(0.0)
     }
 
-    /// Turn rate in rad/s some time in s after a twist was ordered, if nothing else was: it is taken up
-    /// within a period, and then falls evenly to rest.
-    pub(crate) fn turn_rate_after(&self, ordered: Twist, since: f64) -> f64 {
-        let braking = self.braking_periods(ordered) * self.period;
-        let gone = (since - self.period).max(0.0);
-        if gone == 0.0 {
-            return ordered.turn_rate;
-        }
-        if gone >= braking {
-            return 0.0;
-        }
-        ordered.turn_rate * (1.0 - gone / braking)
-    }
-
     /// The twist after one period of braking.
-    pub(super) fn braking(&self, twist: Twist) -> Twist {
+    pub(crate) fn braking(&self, twist: Twist) -> Twist {
         let periods = self.braking_periods(twist);
         let share = if periods <= 1.0 {
             0.0
