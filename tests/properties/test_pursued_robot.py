@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from pursued_robot import PERIODS, episode
+from properties.pursued_robot import PERIODS, episode
 
 EPISODES = 60
 
