@@ -104,7 +104,7 @@ class Command:
     @property
     def refuted(self) -> tuple[str, ...]:
         """Names of the assumptions of the shield that the measurements of this update refute."""
-        return tuple(name for name in ("faster", "accelerated") if getattr(self, name))
+        return tuple(name for name in ("faster", "accelerated", "robot_off_plan") if getattr(self, name))
 
     def velocity_after(self, seconds: float) -> Pair:
         """Return the velocity to have some time after the update if no other update comes.
