@@ -117,8 +117,15 @@ class Pursuer:
         self.y += self.speed * math.sin(self.course) * step
 
 
-def episode(seed: int, *, wheels: bool = False, period: float | None = None, length: float = 3.0) -> Outcome:
-    """Return how one adversarial episode went."""
+def episode(
+    seed: int,
+    *,
+    wheels: bool = False,
+    period: float | None = None,
+    set_back: tuple[float, float] | None = None,
+    length: float = 3.0,
+) -> Outcome:
+    """Return how one adversarial episode went, in some of which the clock is set back by seconds between two bounds."""
     draw = random.Random(seed)
     period = draw.choice(PERIODS) if period is None else period
     fastest, most = draw.uniform(0.3, 1.5), draw.uniform(1.0, 10.0)
@@ -146,7 +153,7 @@ def episode(seed: int, *, wheels: bool = False, period: float | None = None, len
     scale = draw.choice((None, draw.uniform(-0.01, 0.01)))
     # Errors are the largest and lead the robot to the person.
     mean = draw.random() < 0.7
-    resets, follows_all = draw.random() < 0.4, draw.random() < 0.5
+    resets = draw.random() < 0.4
     seen_before = [(0.0, pursuer.x, pursuer.y)]
     time, clock, due, command, ordered = 0.0, 0.0, 0.0, None, 0.0
     while time < length:
@@ -154,9 +161,9 @@ def episode(seed: int, *, wheels: bool = False, period: float | None = None, len
             due = time + period * (1.0 + draw.uniform(0.0, 0.1))
             if draw.random() < 0.1:
                 due += draw.uniform(0.0, 2.0) * period
-            if resets and draw.random() < 0.08:
-                # Set back; in half of all cases it is set right again with the next update.
-                clock = -draw.uniform(0.0, 1.0)
+            if set_back and resets and draw.random() < 0.08:
+                # In half of all cases it is set right again with the next update.
+                clock = -draw.uniform(*set_back)
             elif clock and draw.random() < 0.5:
                 clock = 0.0
             if found.updates == 0 or draw.random() >= DROPPED:
@@ -183,7 +190,8 @@ def episode(seed: int, *, wheels: bool = False, period: float | None = None, len
                 )
                 found.updates += 1
                 found.off_plan += getattr(answer, "robot_off_plan", None) is not None
-                if follows_all or answer.timing != "out_of_order":
+                # What runs on is the plan, counted from the last update that was accepted.
+                if answer.timing != "out_of_order":
                     command, ordered = answer, time
         step = min(0.005, 0.25 * period, due - time if due > time else 0.005)
         body.drive(command, time - ordered, step, wheels)

@@ -110,8 +110,8 @@ class Command:
         """Return the velocity to have some time after the update if no other update comes.
 
         The plan that a shield has verified, as it was: the velocity is taken up evenly within a control period, and
-        then the robot brakes to rest. After an update that did not count it is what is left of the plan before. A robot that executes it keeps the guarantee of the shield when
-        updates are late or stop.
+        then the robot brakes to rest. After an update that did not count it is what is left of the plan before. A
+        robot that executes it keeps the guarantee of the shield when updates are late or stop.
 
         Parameters
         ----------

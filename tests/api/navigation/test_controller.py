@@ -214,7 +214,7 @@ def test_an_update_out_of_order_counts_for_nothing() -> None:
     assert still(one, 1.06) == still(two, 1.06)
 
 
-@pytest.mark.parametrize("clock", [lambda k: 1.0, lambda k: 0.06 * k - 7.0, lambda k: -k, lambda k: 1.0 - 1e-9 * k])
+@pytest.mark.parametrize("clock", [lambda _: 1.0, lambda k: 0.06 * k - 7.0, lambda k: -k, lambda k: 1.0 - 1e-9 * k])
 def test_a_clock_that_stands_or_is_set_back_lets_the_plan_run_to_its_end(clock: Callable[[int], float]) -> None:
     slow = nav.HolonomicRobot(max_acceleration=1.0)
     controller = Controller(SafeNavigation(Ahead(), shield=Shield()), slow, (20.0, 0.0), start=(0.0, 0.0))
@@ -256,7 +256,7 @@ def test_a_robot_that_is_off_its_plan_is_told_how_far() -> None:
     assert first.robot_off_plan is None
     jumped = controller.update(0.06, (0.8, 0.0), first.velocity)
     assert jumped.robot_off_plan is not None
-    assert jumped.robot_off_plan[0] == pytest.approx(0.8 - 0.03 * (0.3 + first.velocity[0]) - 0.015, abs=1e-9)
+    assert jumped.robot_off_plan[0] == pytest.approx(0.8 - 0.03 * (0.3 + first.velocity[0]) - 0.01, abs=1e-9)
     slipped = controller.update(0.12, (0.8 + 0.06 * first.velocity[0], 0.0), (0.9 * jumped.velocity[0], 0.0))
     assert slipped.robot_off_plan is not None
     assert slipped.robot_off_plan[1] == pytest.approx(0.08 * jumped.velocity[0], abs=1e-9)
@@ -382,7 +382,8 @@ def test_a_tracker_that_tells_no_velocity_hides_nobody_who_is_faster(
     controller = shielded(latency=latency, position_error=error)
     told = [still(controller, 0.06 * k, people={"a": (8.0 - 0.06 * k * speed, 0.0, 0.0, 0.0)}) for k in range(30)]
     assert (told[-1].faster == ("a",)) == named
-    assert (told[-1].refuted == ("faster",)) == named
+    # The robot that stands is off the plan of the controller, which is refuted, too.
+    assert ("faster" in told[-1].refuted) == named
 
 
 def test_a_jump_of_somebody_is_named_until_it_is_past() -> None:

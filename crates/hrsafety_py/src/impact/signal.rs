@@ -59,6 +59,9 @@ pub fn hic(
     Ok((found.value, found.start, found.end))
 }
 
+/// Features of a signal in the order of the stub.
+type Features = (f64, f64, f64, f64, f64, f64, f64, usize, usize, f64);
+
 /// Features of a signal, see `signal::Shape`, with the rest looked for over `rest` seconds, and the
 /// area of the push around a window.
 #[pyfunction]
@@ -68,7 +71,7 @@ pub fn signal_shape(
     values: Samples<'_>,
     rest: f64,
     window: (f64, f64),
-) -> PyResult<(f64, f64, f64, f64, f64, f64, f64, usize, usize, f64)> {
+) -> PyResult<Features> {
     let (time, signal) = (time.as_slice()?, values.as_slice()?);
     let (found, area) = stopped(py, time.len(), |interrupted| {
         let found = signal::shape_until(time, signal, rest, interrupted)?;

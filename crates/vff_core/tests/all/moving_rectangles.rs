@@ -4,7 +4,7 @@
 use nalgebra::Vector2;
 use proptest::prelude::*;
 use vff_core::laws::planning::footprint::Footprint;
-use vff_core::laws::shield::{Guard, Limits, Person, Plan, Shield, View, Walls};
+use vff_core::laws::shield::{Guard, Limits, Person, Plan, Shield, Tracking, View, Walls};
 use vff_core::world::geometry::{Approach, Body, RobotState};
 use vff_core::world::map::StaticMap;
 use vff_core::world::motion::BodyState;
@@ -141,7 +141,7 @@ proptest! {
         }];
         let view = View { robot, people: &people, walls: Walls::NONE };
         prop_assume!(guard.verified(&view, command));
-        let plan = Plan::new(&robot, command, &guard.limits);
+        let plan = Plan::new(&robot, command, &guard.limits, Tracking::EXACT);
         for step in 0..=60 {
             let time = plan.end() * f64::from(step) / 60.0;
             let at = plan.position(time);

@@ -77,7 +77,8 @@ class Shield(Parameters):
     wall_margin : float
         Distance that is kept from walls, in m.
     position_tracking : float or None
-        Largest distance of the robot from the plan that it executes, in m; that of ``margin`` when ``None``.
+        Largest distance of the robot from the plan that it executes, in m, beside ``margin``; ``None``: ``margin``
+        covers it, too.
     velocity_tracking : (float, float)
         Largest difference between the velocity of the robot and that of its plan: so many m/s, and so large a
         share of the planned speed. The default is a base whose zero is exact and that follows to 2 %.
@@ -132,8 +133,7 @@ class Shield(Parameters):
             self._set(position_tracking=number("position_tracking", self.position_tracking))
         self._set(velocity_tracking=pair("velocity_tracking", self.velocity_tracking))
         values |= {name: getattr(self, name) for name in ("margin", "wall_margin", "velocity_tracking")}
-        position = self.margin if self.position_tracking is None else self.position_tracking
-        self._set(_native=_hrsafety.Shield(**values, position_tracking=position))
+        self._set(_native=_hrsafety.Shield(**values, position_tracking=self.position_tracking or 0.0))
 
     def decide(
         self,

@@ -94,20 +94,19 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             let speed = self.speed.lane(lane);
             let moves = CONTACT_SPEED < velocity.dot(&velocity).sqrt();
             let at_fault = moves && (toward(first) || toward(last));
-            match &mut touch.first {
-                Some(contact) => contact.at_fault |= at_fault,
-                None => {
-                    let time = since
-                        .filter(|_| !touching)
-                        .map_or(time, |(_, from)| from + met.shares[0] * (time - from));
-                    touch.first = Some(Contact {
-                        time,
-                        speed,
-                        toward: speed > CONTACT_SPEED && toward(first),
-                        at_fault,
-                    });
-                    self.touched = true;
-                }
+            if let Some(contact) = &mut touch.first {
+                contact.at_fault |= at_fault;
+            } else {
+                let time = since
+                    .filter(|_| !touching)
+                    .map_or(time, |(_, from)| from + met.shares[0] * (time - from));
+                touch.first = Some(Contact {
+                    time,
+                    speed,
+                    toward: speed > CONTACT_SPEED && toward(first),
+                    at_fault,
+                });
+                self.touched = true;
             }
             if !touching {
                 let least = &mut self.min_distance_squared[index];

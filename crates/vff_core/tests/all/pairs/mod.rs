@@ -13,7 +13,7 @@ pub const GE_CUI: GeCui = GeCui {
     attractive: 1.0,
     repulsive: 14.2,
     ratio: 0.75,
-    max_acceleration: 10.0,
+    max_deceleration: 10.0,
 };
 
 pub const KHATIB: Khatib = Khatib {
