@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import pytest
 
 import measure_limits
 from hrsafety import navigation as nav
+from hrsafety.navigation.robot_command import Command
 from measure_laws import LAWS
 from page_tables import written
 
@@ -38,7 +40,8 @@ def test_what_reports_a_limit_exists() -> None:
     named = {word for cell in rows for word in re.findall(r"`(\w+)`", cell)}
     assert len(rows) >= 25
     assert len(named) >= 12
-    assert named <= known | COLUMNS
+    fields = {each.name for each in dataclasses.fields(Command)}
+    assert named <= known | COLUMNS | fields | {*nav.metrics.METRICS, *nav.metrics.WORLD_METRICS}
     assert set(nav.RunTable.__dataclass_fields__) >= COLUMNS
 
 

@@ -85,13 +85,19 @@ class SignalShape(NamedTuple):
 
 def cut_off(name: str, unit: str, values: Array, shape: SignalShape) -> Iterator[ResultWarning]:
     """Give the doubt that a record does not hold the whole push."""
-    for code, value, end in (("starts_inside", values[0], "begins"), ("ends_inside", values[-1], "ends")):
-        if value > _INSIDE * shape.most > 0.0:
-            message = (
-                f"{name} {end} at {value:g} {unit}, more than half of its largest value of {shape.most:g} {unit}: the "
-                f"record {end} within the push, and what is beyond is not in the loads; record longer"
-            )
-            yield ResultWarning(code, name, message)
+    least = _INSIDE * shape.most
+    if values[0] > least > 0.0:
+        yield ResultWarning("starts_inside", name, _cut(name, unit, "begins", values[0], shape))
+    if values[-1] > least > 0.0:
+        yield ResultWarning("ends_inside", name, _cut(name, unit, "ends", values[-1], shape))
+
+
+def _cut(name: str, unit: str, end: str, value: float, shape: SignalShape) -> str:
+    """Return that a record begins or ends within the push."""
+    return (
+        f"{name} {end} at {value:g} {unit}, more than half of its largest value of {shape.most:g} {unit}: the record "
+        f"{end} within the push, and what is beyond is not in the loads; record longer"
+    )
 
 
 def measurement_doubts(name: str, unit: str, shape: SignalShape) -> Iterator[ResultWarning]:
