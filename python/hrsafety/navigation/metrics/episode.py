@@ -106,7 +106,7 @@ class Episode(Parameters):
     -----
     Absence is not clearance. Somebody last seen at ``x_a`` and next at ``x_b`` is, within the speed ``v``, in both
     discs around them with radii ``v (t - t_a)`` and ``v (t_b - t)``; ``v`` is `person_speed`, or
-    ``|x_b - x_a|/(t_b - t_a)`` if that is larger. The surfaces of robot and person are then at least
+    ``|x_b - x_a|/(t_b - t_a)`` if that is larger. The surfaces of robot and person are then at least::
 
         g(t) = max(|p - x_a| - v (t - t_a), |p - x_b| - v (t_b - t)) - R - rho
 
