@@ -118,4 +118,7 @@ def test_rows_of_a_recording_are_what_is_computed(recording: str, shared: Path) 
         cells = [*map(str, found), f"{table.min_clearance.min():.2f}"]
         assert f"| {recording}, {name} | {' | '.join(cells)} |" in VALIDATION.splitlines()
         _, moving, standing, reached, _ = found
-        assert f"| {recording} | {sensing} | {reached} | {moving} | {standing} |" in README.splitlines()
+        toward = int((table.contacts_toward > 0).sum())
+        away = int(((table.contacts_away > 0) & ~(table.contacts_toward > 0)).sum())
+        assert toward + away == moving
+        assert f"| {recording} | {sensing} | {reached} | {toward} | {away} | {standing} |" in README.splitlines()
