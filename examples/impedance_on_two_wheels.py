@@ -12,6 +12,6 @@ from hrsafety import navigation as nav
 from hrsafety import scenarios
 
 scenario = replace(scenarios.configuration("c1"), robot=nav.DifferentialDriveRobot(), heading=pi)
-for law in (nav.VirtualImpedanceLaw(view=pi / 4), nav.VirtualForceField()):
+for law in (nav.laws.VirtualImpedanceLaw(view=pi / 4), nav.VirtualForceField()):
     run = nav.simulate(scenario, law, built=nav.robots.AsBuilt())
     print(f"{type(law).__name__:20} {run.outcome}, least clearance {run.min_clearance.min():.2f} m")

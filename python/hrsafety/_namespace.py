@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np  # noqa: F401  # with the package, not inside the native module: Ctrl-C while it is read is an interrupt
 
@@ -15,25 +16,24 @@ __all__ = ["names_of"]
 
 
 def names_of(
-    package: str, public: Sequence[str], places: Mapping[str, str], below: Sequence[str] = ()
-) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
-    """Return ``__getattr__`` and ``__dir__`` of a package.
+    package: str, below: Sequence[str] = ()
+) -> tuple[list[str], Callable[[str], object], Callable[[], list[str]]]:
+    """Return ``__all__``, ``__getattr__`` and ``__dir__`` of a package.
+
+    Its names are those that it imports for type checkers, under ``if TYPE_CHECKING:`` in its own file: the one list
+    of them. Type checkers take ``import name as name`` for a name of the package.
 
     Parameters
     ----------
     package : str
         Its name.
-    public : sequence of str
-        Its ``__all__``, which ``dir`` shows; names without a place are sub-modules.
-    places : mapping of str to str
-        By the name of a module the public names that stand there, separated by blanks.
     below : sequence of str
         Modules where names are looked for that the package does not have itself; each has an ``__all__``.
 
     Returns
     -------
-    tuple of two functions
-        What to assign to ``__getattr__`` and ``__dir__``.
+    tuple of a list and two functions
+        Values of ``__all__``, ``__getattr__`` and ``__dir__``.
 
     Examples
     --------
@@ -41,25 +41,38 @@ def names_of(
     >>> nav.Camera is nav.sensing.Camera, "Camera" in dir(nav)
     (True, False)
     """
-    where = {name: module for module, names in places.items() for name in names.split()}
+    where = _declared(package)
+    public = sorted(where)
 
     def find(name: str) -> object:
-        if name in where:
-            found = {name: getattr(importlib.import_module(where[name]), name)}
-            suggest(found, found)
-            value: object = found[name]
-        elif name in public:
-            value = importlib.import_module(f"{package}.{name}")
-        else:
+        if name not in where:
             return _found_below(package, public, below, name)
+        place = where[name]
+        module = importlib.import_module(f"{package}.{name}" if place == package else place)
+        found = {name: module if place == package else getattr(module, name)}
+        suggest(found, found)
         # Found once: the next time Python does not ask.
-        setattr(sys.modules[package], name, value)
-        return value
+        setattr(sys.modules[package], name, found[name])
+        return found[name]
 
     def shown() -> list[str]:
         return sorted(["__all__", *public])  # makers of documentation look for the list, too
 
-    return find, shown
+    return public, find, shown
+
+
+def _declared(package: str) -> dict[str, str]:
+    """Return the names that a package imports for type checkers, with the modules where they stand."""
+    spec = sys.modules[package].__spec__
+    read = getattr(spec and spec.loader, "get_source", None)
+    source = read and read(package)
+    if source is None:
+        raise ImportError(f"{package} lists its names in its source file, which is not there", name=package)
+    for block in ast.parse(source).body:
+        if isinstance(block, ast.If) and isinstance(block.test, ast.Name) and block.test.id == "TYPE_CHECKING":
+            imports = [each for each in block.body if isinstance(each, ast.ImportFrom)]
+            return {alias.name: str(each.module) for each in imports for alias in each.names}
+    raise ImportError(f"{package} imports no names for type checkers", name=package)
 
 
 def _found_below(package: str, public: Sequence[str], below: Sequence[str], name: str) -> object:

@@ -4,42 +4,13 @@ from typing import TYPE_CHECKING
 
 from hrsafety._namespace import names_of
 
-if TYPE_CHECKING:
-    from hrsafety.arms.arm import Arm
-    from hrsafety.arms.histories import MassHistory, along
-    from hrsafety.arms.inertias import NearestInertia, nearest_inertia
-    from hrsafety.arms.masses import EffectiveMass, Extremes, PointMasses
-    from hrsafety.arms.payload import Payload
-    from hrsafety.arms.workspaces import Workspace, workspace
-    from hrsafety.errors import InvalidParameterError, ShapeError
-
-__all__ = [
-    "Arm",
-    "EffectiveMass",
-    "Extremes",
-    "InvalidParameterError",
-    "MassHistory",
-    "NearestInertia",
-    "Payload",
-    "PointMasses",
-    "ShapeError",
-    "Workspace",
-    "along",
-    "nearest_inertia",
-    "workspace",
-]
-
-if not TYPE_CHECKING:  # loaded when they are asked for; a type checker asks for the place where a name stands
-    __getattr__, __dir__ = names_of(
-        __name__,
-        __all__,
-        {
-            "hrsafety.arms.arm": "Arm",
-            "hrsafety.arms.histories": "MassHistory along",
-            "hrsafety.arms.inertias": "NearestInertia nearest_inertia",
-            "hrsafety.arms.masses": "EffectiveMass Extremes PointMasses",
-            "hrsafety.arms.payload": "Payload",
-            "hrsafety.arms.workspaces": "Workspace workspace",
-            "hrsafety.errors": "InvalidParameterError ShapeError",
-        },
-    )
+if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
+    from hrsafety.arms.arm import Arm as Arm
+    from hrsafety.arms.histories import MassHistory as MassHistory, along as along
+    from hrsafety.arms.inertias import NearestInertia as NearestInertia, nearest_inertia as nearest_inertia
+    from hrsafety.arms.masses import EffectiveMass as EffectiveMass, Extremes as Extremes, PointMasses as PointMasses
+    from hrsafety.arms.payload import Payload as Payload
+    from hrsafety.arms.workspaces import Workspace as Workspace, workspace as workspace
+    from hrsafety.errors import InvalidParameterError as InvalidParameterError, ShapeError as ShapeError
+else:
+    __all__, __getattr__, __dir__ = names_of(__name__)

@@ -4,115 +4,71 @@ from typing import TYPE_CHECKING
 
 from hrsafety._namespace import names_of
 
-if TYPE_CHECKING:
-    from hrsafety.navigation import crowd, gains, laws, maps, metrics, robots, sensing, tracking
-    from hrsafety.navigation.batch import simulate_batch
-    from hrsafety.navigation.comparison import compare
-    from hrsafety.navigation.gains.changes import gain_sensitivity
-    from hrsafety.navigation.gains.results import GainSearch
-    from hrsafety.navigation.gains.search import optimize_gains
-    from hrsafety.navigation.laws.force_laws import BorensteinKoren, GeCui, Khatib, Masoud, VirtualForceField
-    from hrsafety.navigation.laws.force_laws import Law as Law  # listed in `laws`; a name of type hints
-    from hrsafety.navigation.laws.forces import ForceTerms, Lyapunov, force_terms, lyapunov
-    from hrsafety.navigation.laws.planners import (
-        FieldDStar,
-        OptimalReciprocalCollisionAvoidance,
-        RapidlyExploringRandomTree,
-        VelocityObstacle,
+if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
+    from hrsafety.navigation import (
+        crowd as crowd,
+        gains as gains,
+        laws as laws,
+        maps as maps,
+        metrics as metrics,
+        robots as robots,
+        sensing as sensing,
+        tracking as tracking,
     )
-    from hrsafety.navigation.many import simulate_many
-    from hrsafety.navigation.obstacles.base import Obstacle
-    from hrsafety.navigation.obstacles.moving import Human, MovingDisc
-    from hrsafety.navigation.obstacles.moving_rectangle import MovingRectangle
-    from hrsafety.navigation.obstacles.standing import Disc, Rectangle
-    from hrsafety.navigation.performance import Performance
-    from hrsafety.navigation.regions import Regions, region_radii
-    from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
-    from hrsafety.navigation.run import Run
-    from hrsafety.navigation.scenario import Scenario
-    from hrsafety.navigation.scenario_arrays import Scenarios
-    from hrsafety.navigation.sensing.measurement import Measurement
-    from hrsafety.navigation.simulation import evaluate, simulate
-    from hrsafety.navigation.trajectory import Trajectory
-
-__all__ = [
-    "BorensteinKoren",
-    "DifferentialDriveRobot",
-    "Disc",
-    "FieldDStar",
-    "ForceTerms",
-    "GainSearch",
-    "GeCui",
-    "HolonomicRobot",
-    "Human",
-    "Khatib",
-    "Lyapunov",
-    "Masoud",
-    "Measurement",
-    "MovingDisc",
-    "MovingRectangle",
-    "Obstacle",
-    "OptimalReciprocalCollisionAvoidance",
-    "Performance",
-    "RapidlyExploringRandomTree",
-    "Rectangle",
-    "Regions",
-    "Run",
-    "Scenario",
-    "Scenarios",
-    "Trajectory",
-    "VelocityObstacle",
-    "VirtualForceField",
-    "compare",
-    "crowd",
-    "evaluate",
-    "force_terms",
-    "gain_sensitivity",
-    "gains",
-    "laws",
-    "lyapunov",
-    "maps",
-    "metrics",
-    "optimize_gains",
-    "region_radii",
-    "robots",
-    "sensing",
-    "simulate",
-    "simulate_batch",
-    "simulate_many",
-    "tracking",
-]
-
-if not TYPE_CHECKING:  # loaded when they are asked for; a type checker asks for the place where a name stands
-    __getattr__, __dir__ = names_of(
+    from hrsafety.navigation.batch import simulate_batch as simulate_batch
+    from hrsafety.navigation.comparison import compare as compare
+    from hrsafety.navigation.controller import Controller as Controller
+    from hrsafety.navigation.gains.changes import gain_sensitivity as gain_sensitivity
+    from hrsafety.navigation.gains.results import GainSearch as GainSearch
+    from hrsafety.navigation.gains.search import optimize_gains as optimize_gains
+    from hrsafety.navigation.laws.force_laws import (
+        BorensteinKoren as BorensteinKoren,
+        GeCui as GeCui,
+        Khatib as Khatib,
+        Law as Law,
+        Masoud as Masoud,
+        VirtualForceField as VirtualForceField,
+    )
+    from hrsafety.navigation.laws.forces import (
+        ForceTerms as ForceTerms,
+        Lyapunov as Lyapunov,
+        force_terms as force_terms,
+        lyapunov as lyapunov,
+    )
+    from hrsafety.navigation.laws.planners import (
+        FieldDStar as FieldDStar,
+        OptimalReciprocalCollisionAvoidance as OptimalReciprocalCollisionAvoidance,
+        RapidlyExploringRandomTree as RapidlyExploringRandomTree,
+        VelocityObstacle as VelocityObstacle,
+    )
+    from hrsafety.navigation.laws.safe_navigation import SafeNavigation as SafeNavigation
+    from hrsafety.navigation.laws.shield import Shield as Shield
+    from hrsafety.navigation.laws.yielding import Yielding as Yielding
+    from hrsafety.navigation.many import simulate_many as simulate_many
+    from hrsafety.navigation.maps.guide import Guide as Guide
+    from hrsafety.navigation.maps.static_map import StaticMap as StaticMap
+    from hrsafety.navigation.obstacles.base import Obstacle as Obstacle
+    from hrsafety.navigation.obstacles.moving import Human as Human, MovingDisc as MovingDisc
+    from hrsafety.navigation.obstacles.moving_rectangle import MovingRectangle as MovingRectangle
+    from hrsafety.navigation.obstacles.standing import Disc as Disc, Rectangle as Rectangle
+    from hrsafety.navigation.performance import Performance as Performance
+    from hrsafety.navigation.pursuits import falsify as falsify
+    from hrsafety.navigation.regions import Regions as Regions, region_radii as region_radii
+    from hrsafety.navigation.robots.bodies import (
+        DifferentialDriveRobot as DifferentialDriveRobot,
+        HolonomicRobot as HolonomicRobot,
+    )
+    from hrsafety.navigation.run import Run as Run
+    from hrsafety.navigation.scenario import Scenario as Scenario
+    from hrsafety.navigation.scenario_arrays import Scenarios as Scenarios
+    from hrsafety.navigation.sensing.lidar import Lidar as Lidar
+    from hrsafety.navigation.sensing.measurement import Measurement as Measurement
+    from hrsafety.navigation.simulation import evaluate as evaluate, simulate as simulate
+    from hrsafety.navigation.tables.runs import RunTable as RunTable
+    from hrsafety.navigation.trajectory import Trajectory as Trajectory
+else:
+    __all__, __getattr__, __dir__ = names_of(
         __name__,
-        __all__,
-        {
-            "hrsafety.navigation.batch": "simulate_batch",
-            "hrsafety.navigation.comparison": "compare",
-            "hrsafety.navigation.gains.changes": "gain_sensitivity",
-            "hrsafety.navigation.gains.results": "GainSearch",
-            "hrsafety.navigation.gains.search": "optimize_gains",
-            "hrsafety.navigation.laws.force_laws": "BorensteinKoren GeCui Khatib Masoud VirtualForceField",
-            "hrsafety.navigation.laws.forces": "ForceTerms Lyapunov force_terms lyapunov",
-            "hrsafety.navigation.laws.planners": (
-                "FieldDStar OptimalReciprocalCollisionAvoidance RapidlyExploringRandomTree VelocityObstacle"
-            ),
-            "hrsafety.navigation.many": "simulate_many",
-            "hrsafety.navigation.obstacles.base": "Obstacle",
-            "hrsafety.navigation.obstacles.moving": "Human MovingDisc",
-            "hrsafety.navigation.obstacles.moving_rectangle": "MovingRectangle",
-            "hrsafety.navigation.obstacles.standing": "Disc Rectangle",
-            "hrsafety.navigation.performance": "Performance",
-            "hrsafety.navigation.regions": "Regions region_radii",
-            "hrsafety.navigation.robots.bodies": "DifferentialDriveRobot HolonomicRobot",
-            "hrsafety.navigation.run": "Run",
-            "hrsafety.navigation.scenario": "Scenario",
-            "hrsafety.navigation.scenario_arrays": "Scenarios",
-            "hrsafety.navigation.sensing.measurement": "Measurement",
-            "hrsafety.navigation.simulation": "evaluate simulate",
-            "hrsafety.navigation.trajectory": "Trajectory",
-        },
         below=[
             "hrsafety.navigation.crowd",
             "hrsafety.navigation.gains",

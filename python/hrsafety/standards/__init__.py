@@ -4,56 +4,24 @@ from typing import TYPE_CHECKING
 
 from hrsafety._namespace import names_of
 
-if TYPE_CHECKING:
-    from hrsafety.errors import InvalidParameterError, ShapeError
-    from hrsafety.standards.contact_limits import CONTACTS, ContactLimit, Quantity, Verdict
-    from hrsafety.standards.guards import GuardDistance, minimum_distance
-    from hrsafety.standards.limit_sets import LimitRow, LimitSet
+if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
+    from hrsafety.errors import InvalidParameterError as InvalidParameterError, ShapeError as ShapeError
+    from hrsafety.standards.contact_limits import (
+        CONTACTS as CONTACTS,
+        ContactLimit as ContactLimit,
+        Quantity as Quantity,
+        Verdict as Verdict,
+    )
+    from hrsafety.standards.guards import GuardDistance as GuardDistance, minimum_distance as minimum_distance
+    from hrsafety.standards.limit_sets import LimitRow as LimitRow, LimitSet as LimitSet
     from hrsafety.standards.separation import (
-        SpeedCurve,
-        StoppingData,
-        separation_distance,
-        separation_speed,
-        speed_over_distance,
+        SpeedCurve as SpeedCurve,
+        StoppingData as StoppingData,
+        separation_distance as separation_distance,
+        separation_speed as separation_speed,
+        speed_over_distance as speed_over_distance,
     )
-    from hrsafety.standards.sets import SETS, limits
-    from hrsafety.standards.user_sets import load_limits, template
-
-__all__ = [
-    "CONTACTS",
-    "SETS",
-    "ContactLimit",
-    "GuardDistance",
-    "InvalidParameterError",
-    "LimitRow",
-    "LimitSet",
-    "Quantity",
-    "ShapeError",
-    "SpeedCurve",
-    "StoppingData",
-    "Verdict",
-    "limits",
-    "load_limits",
-    "minimum_distance",
-    "separation_distance",
-    "separation_speed",
-    "speed_over_distance",
-    "template",
-]
-
-if not TYPE_CHECKING:  # loaded when they are asked for; a type checker asks for the place where a name stands
-    __getattr__, __dir__ = names_of(
-        __name__,
-        __all__,
-        {
-            "hrsafety.errors": "InvalidParameterError ShapeError",
-            "hrsafety.standards.contact_limits": "CONTACTS ContactLimit Quantity Verdict",
-            "hrsafety.standards.guards": "GuardDistance minimum_distance",
-            "hrsafety.standards.limit_sets": "LimitRow LimitSet",
-            "hrsafety.standards.separation": (
-                "SpeedCurve StoppingData separation_distance separation_speed speed_over_distance"
-            ),
-            "hrsafety.standards.sets": "SETS limits",
-            "hrsafety.standards.user_sets": "load_limits template",
-        },
-    )
+    from hrsafety.standards.sets import SETS as SETS, limits as limits
+    from hrsafety.standards.user_sets import load_limits as load_limits, template as template
+else:
+    __all__, __getattr__, __dir__ = names_of(__name__)

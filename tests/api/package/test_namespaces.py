@@ -6,6 +6,7 @@ import ast
 import importlib
 import pickle
 import pkgutil
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -33,11 +34,29 @@ FIRST_IMPACT = """
 """
 
 
+def used_by_readers(package: ModuleType) -> set[str]:
+    """Return the names of a package that guides and examples use."""
+    short = "nav" if package is nav else package.__name__.removeprefix("hrsafety.")
+    root = Path(__file__).resolve().parents[3]
+    pages = [root / "README.md", *(root / "docs").rglob("*.md"), *(root / "examples").rglob("*.py")]
+    blocks = [each.read_text(encoding="utf-8") for each in pages if each.suffix == ".py"]
+    for page in pages[: len(pages) - len(blocks)]:
+        blocks += re.findall(r"^```python$(.*?)^```$", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    used = {name for block in blocks for name in re.findall(rf"(?<![\w.]){short}\.([A-Za-z]\w*)\b(?!=)", block)}
+    return {name for name in used if hasattr(package, name)}  # others are fields and files: the blocks run
+
+
 @pytest.mark.parametrize("package", PACKAGES)
-def test_top_of_a_package_is_short(package: ModuleType) -> None:
-    assert len(package.__all__) <= 45
+def test_dir_of_a_package_shows_the_names_that_guides_and_examples_use(package: ModuleType) -> None:
     assert set(BELOW[package]) <= set(package.__all__)
     assert sorted({*dir(package)} - {"__all__"}) == sorted(package.__all__)
+    modules = {each.name for each in pkgutil.iter_modules(package.__path__)}
+    assert used_by_readers(package) - modules <= {*dir(package)}
+
+
+def test_examples_that_are_read_use_many_names() -> None:
+    shown = {"SafeNavigation", "StaticMap", "Guide", "Shield", "Yielding", "Lidar", "Controller", "falsify"}
+    assert shown <= used_by_readers(nav) & set(dir(nav))
 
 
 @pytest.mark.parametrize(("package", "name"), PLACES)
@@ -91,27 +110,33 @@ def test_moved_names_are_pickled_by_the_place_where_they_stand() -> None:
 # ---- names that are loaded when they are asked for ----------------------------------------------------
 
 COMPUTING = (nav, impact, reactive, contact, arms, standards)
-LOADED_LATER = [each for package in COMPUTING for each in places(package)]
+LOADED_LATER = [plotting, *(each for package in COMPUTING for each in places(package))]
 each_later = pytest.mark.parametrize("package", LOADED_LATER, ids=lambda each: each.__name__)
 
 
-def declared_imports(package: ModuleType) -> dict[str, str]:
-    """Return the names that a package imports for type checkers, with the modules where they stand."""
-    assert package.__file__
-    tree = ast.parse(Path(package.__file__).read_text(encoding="utf-8"))
-    (block,) = (each for each in tree.body if isinstance(each, ast.If) and ast.unparse(each.test) == "TYPE_CHECKING")
-    imports = [each for each in block.body if isinstance(each, ast.ImportFrom)]
-    return {alias.name: str(each.module) for each in imports for alias in each.names}
-
-
 @each_later
-def test_type_checkers_and_python_find_a_name_in_the_same_module(package: ModuleType) -> None:
-    found = declared_imports(package)
-    assert set(package.__all__) <= set(found)
-    for name in package.__all__:
-        there = f"{found[name]}.{name}" if found[name] == package.__name__ else found[name]
-        module = importlib.import_module(there)
-        assert getattr(package, name) is (module if found[name] == package.__name__ else getattr(module, name))
+def test_a_package_lists_its_names_once(package: ModuleType) -> None:
+    """The names that type checkers see are those of run time, in the modules that they name."""
+    assert package.__file__
+    source = Path(package.__file__).read_text(encoding="utf-8")
+    assert source.count("__all__") == 1
+    (block,) = (each for each in ast.parse(source).body if isinstance(each, ast.If))
+    listed = [(alias, node.module) for node in block.body if isinstance(node, ast.ImportFrom) for alias in node.names]
+    assert sorted(alias.name for alias, _ in listed) == package.__all__
+    for alias, module in listed:
+        # Without `as` a type checker takes the name for an import of the module's own.
+        assert alias.asname == alias.name
+        value = getattr(package, alias.name)
+        there = f"{module}.{alias.name}"
+        assert value is (
+            sys.modules[there] if module == package.__name__ else getattr(sys.modules[str(module)], alias.name)
+        )
+
+
+def test_a_package_without_its_source_says_why_it_has_no_names(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(type(nav.__spec__.loader), "get_source", lambda *_: None)
+    with pytest.raises(ImportError, match="lists its names in its source file"):
+        importlib.reload(impact.joints)
 
 
 @each_later

@@ -4,44 +4,23 @@ from typing import TYPE_CHECKING
 
 from hrsafety._namespace import names_of
 
-if TYPE_CHECKING:
-    from hrsafety.impact.identification.foam import FoamFit, StaticFit, drop_trajectory, fit_static, identify_foam
+if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
+    from hrsafety.impact.identification.foam import (
+        FoamFit as FoamFit,
+        StaticFit as StaticFit,
+        drop_trajectory as drop_trajectory,
+        fit_static as fit_static,
+        identify_foam as identify_foam,
+    )
     from hrsafety.impact.identification.joints import (
-        DirectDriveFit,
-        OpenLoopFit,
-        PdGains,
-        TubeInertia,
-        fit_open_loop,
-        identify_direct_drive,
-        pd_gains,
-        tube_inertia,
+        DirectDriveFit as DirectDriveFit,
+        OpenLoopFit as OpenLoopFit,
+        PdGains as PdGains,
+        TubeInertia as TubeInertia,
+        fit_open_loop as fit_open_loop,
+        identify_direct_drive as identify_direct_drive,
+        pd_gains as pd_gains,
+        tube_inertia as tube_inertia,
     )
-
-__all__ = [
-    "DirectDriveFit",
-    "FoamFit",
-    "OpenLoopFit",
-    "PdGains",
-    "StaticFit",
-    "TubeInertia",
-    "drop_trajectory",
-    "fit_open_loop",
-    "fit_static",
-    "identify_direct_drive",
-    "identify_foam",
-    "pd_gains",
-    "tube_inertia",
-]
-
-if not TYPE_CHECKING:  # loaded when they are asked for; a type checker asks for the place where a name stands
-    __getattr__, __dir__ = names_of(
-        __name__,
-        __all__,
-        {
-            "hrsafety.impact.identification.foam": "FoamFit StaticFit drop_trajectory fit_static identify_foam",
-            "hrsafety.impact.identification.joints": (
-                "DirectDriveFit OpenLoopFit PdGains TubeInertia fit_open_loop identify_direct_drive "
-                "pd_gains tube_inertia"
-            ),
-        },
-    )
+else:
+    __all__, __getattr__, __dir__ = names_of(__name__)

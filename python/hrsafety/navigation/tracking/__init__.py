@@ -4,52 +4,26 @@ from typing import TYPE_CHECKING
 
 from hrsafety._namespace import names_of
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.navigation.robots.tracking_laws import (
-        ExponentialTracking,
-        FullSpeedTracking,
-        NonlinearTracking,
-        Tracking,
-        Twist,
-        VirtualTorque,
+        ExponentialTracking as ExponentialTracking,
+        FullSpeedTracking as FullSpeedTracking,
+        NonlinearTracking as NonlinearTracking,
+        Tracking as Tracking,
+        Twist as Twist,
+        VirtualTorque as VirtualTorque,
     )
     from hrsafety.navigation.tracking.references import (
-        CircleReference,
-        LineReference,
-        PathReference,
-        Reference,
-        ReferenceMotion,
+        CircleReference as CircleReference,
+        LineReference as LineReference,
+        PathReference as PathReference,
+        Reference as Reference,
+        ReferenceMotion as ReferenceMotion,
     )
-    from hrsafety.navigation.tracking.runs import TrackingSummary, track, track_batch
-
-__all__ = [
-    "CircleReference",
-    "ExponentialTracking",
-    "FullSpeedTracking",
-    "LineReference",
-    "NonlinearTracking",
-    "PathReference",
-    "Reference",
-    "ReferenceMotion",
-    "Tracking",
-    "TrackingSummary",
-    "Twist",
-    "VirtualTorque",
-    "track",
-    "track_batch",
-]
-
-if not TYPE_CHECKING:  # loaded when they are asked for; a type checker asks for the place where a name stands
-    __getattr__, __dir__ = names_of(
-        __name__,
-        __all__,
-        {
-            "hrsafety.navigation.robots.tracking_laws": (
-                "ExponentialTracking FullSpeedTracking NonlinearTracking Tracking Twist VirtualTorque"
-            ),
-            "hrsafety.navigation.tracking.references": (
-                "CircleReference LineReference PathReference Reference ReferenceMotion"
-            ),
-            "hrsafety.navigation.tracking.runs": "TrackingSummary track track_batch",
-        },
+    from hrsafety.navigation.tracking.runs import (
+        TrackingSummary as TrackingSummary,
+        track as track,
+        track_batch as track_batch,
     )
+else:
+    __all__, __getattr__, __dir__ = names_of(__name__)
