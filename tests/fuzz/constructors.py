@@ -37,6 +37,7 @@ NO_CONSTRUCTORS: dict[type, str] = {
 }
 
 _FOAM = contact.Linear(modulus=1e5)
+_PLANNED = contact.PlannedContact(limit=standards.limits().contact("chest", "transient"), speed=0.2)
 _SAMPLES = np.linspace(0.0, 1.0, 5)
 _SQUARE = np.stack([_SAMPLES, np.zeros(5)], axis=1)
 _WORLD = nav.crowd.World(robots=[nav.crowd.CrowdRobot(start=(0.0, 0.0), goal=(3.0, 0.0))])
@@ -57,11 +58,13 @@ REQUIRED: dict[Callable[..., Any], Right] = {
     arms.Arm: {"urdf": arms.Arm.example().urdf},
     arms.Payload: {"link": "tool", "mass": 1.0},
     contact.Avalle: {"plateau": 4e4, "modulus": 1e5, "falloff": 0.1, "densification": 1e3, "exponent": 3.0},
+    contact.Cell: {"robot": contact.ContactRobot.of_mass(8.0), "contacts": [_PLANNED]},
     contact.Covering: {"material": _FOAM, "thickness": 0.02, "area": 1e-3},
     contact.DifferentialBase: {"mass": 20.0, "inertia": 0.5},
     contact.GibsonAshby: {"modulus": 1e5, "plateau": 1e4, "lock": 0.7},
     contact.HolonomicBase: {"mass": 20.0, "inertia": 0.5},
     contact.Linear: {"modulus": 1e5},
+    contact.PlannedContact: {"limit": _PLANNED.limit, "speed": 0.2},
     contact.Region: {"k": 25e3},
     contact.Rusch: {"a": 1e4, "p": 0.5, "b": 1e5, "q": 4.0},
     contact.StressTable: {"strain": [0.0, 0.5, 0.8], "stress": [0.0, 1e4, 1e5]},
@@ -132,6 +135,12 @@ REQUIRED: dict[Callable[..., Any], Right] = {
 
 # Other ways to make the same objects.
 OTHER_WAYS: dict[str, tuple[Callable[..., Any], Right]] = {
+    "ContactRobot.of_mass": (contact.ContactRobot.of_mass, {"mass": 8.0}),
+    "ContactRobot.of_base": (
+        contact.ContactRobot.of_base,
+        {"base": contact.HolonomicBase(mass=20.0, inertia=0.5), "point": (0.2, 0.0), "normal": (1.0, 0.0)},
+    ),
+    "ContactRobot.of_arm": (contact.ContactRobot.of_arm, {"arm": arms.Arm.example(), "samples": 20}),
     "Manipulator.from_joint": (
         impact.Manipulator.from_joint,
         {"inertia": 0.06, "damping": 1.0, "stiffness": 100.0, "lever_arm": 0.1},

@@ -6,11 +6,11 @@ from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
 
-from hrsafety import arms, scenarios
+from hrsafety import arms, contact, scenarios
 from hrsafety._arguments import meant
+from hrsafety._keys import parsed
 from hrsafety._records import dataclass
 from hrsafety.cli import output
-from hrsafety.cli.cell import file as cell_file
 from hrsafety.cli.foam import file as foam_file
 from hrsafety.cli.optimize import file as optimize_file
 from hrsafety.cli.parsers import STARTERS
@@ -18,7 +18,6 @@ from hrsafety.cli.sweep import file as sweep_file
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.plausibility import ResultWarning
-from hrsafety.scenarios import files
 
 __all__ = ["KINDS", "FileKind", "kind_of", "starter"]
 
@@ -70,7 +69,7 @@ def _sweep(path: str) -> Warnings:
 
 
 def _cell(path: str) -> Warnings:
-    return output.warnings_of(cell_file.load(path).robot)
+    return output.warnings_of(contact.load_cell(path).robot)
 
 
 def _arm(path: str) -> Warnings:
@@ -99,7 +98,7 @@ def kind_of(path: str) -> FileKind:
     """
     if Path(path).suffix.lower() == ".urdf":
         return ARM
-    keys = files.parsed(Path(path))
+    keys = parsed(Path(path))
     for kind in KINDS.values():
         if any(key in keys for key in kind.telling):
             return kind

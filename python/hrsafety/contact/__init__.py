@@ -1,4 +1,4 @@
-"""Contact with people within limits: coverings, collisions, allowed speeds, thicknesses, chances, mobile bases.
+"""Contact with people within limits: coverings, collisions, allowed speeds, thicknesses, chances, bases, cells.
 
 Every number here is a model: a measurement on the finished machine must confirm it.
 """
@@ -10,6 +10,10 @@ from hrsafety._namespace import names_of
 if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.contact.base import DifferentialBase as DifferentialBase, HolonomicBase as HolonomicBase
     from hrsafety.contact.catalogs import CatalogMaterial as CatalogMaterial, load_materials as load_materials
+    from hrsafety.contact.cell.cell import Cell as Cell, PlannedContact as PlannedContact
+    from hrsafety.contact.cell.file import load_cell as load_cell
+    from hrsafety.contact.cell.robot import ContactRobot as ContactRobot
+    from hrsafety.contact.cell.study import ContactStudy as ContactStudy, study as study
     from hrsafety.contact.chance import Exceedance as Exceedance, probability as probability
     from hrsafety.contact.covering import Column as Column, Covering as Covering, Region as Region
     from hrsafety.contact.least_thickness import LeastThickness as LeastThickness, thickness as thickness

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-import re
-import tomllib
 from collections.abc import Callable, Mapping
 from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from hrsafety import _keys as kind
 from hrsafety import navigation as nav
-from hrsafety._arguments import readable
 from hrsafety._display import displayed
+from hrsafety._keys import Keys, checked, located, parsed
 from hrsafety.datasets import load_track
-from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.obstacles.moving_rectangle import Mobile
-from hrsafety.scenarios import keys as kind
-from hrsafety.scenarios.keys import Keys, checked, located
 from hrsafety.scenarios.laws import law_of, safe_of
 
 __all__ = ["ScenarioFile", "load"]
@@ -170,58 +167,6 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
     obstacles = [_obstacle(f"obstacles[{index}]", table, place.parent) for index, table in enumerate(described)]
     with located(""):
         return ScenarioFile(nav.Scenario(obstacles=tuple(obstacles), **fields), law)
-
-
-def parsed(path: Path) -> dict[str, Any]:
-    """Return the tables of a TOML file as read."""
-    readable("path", path)
-    text = ""
-    try:
-        text = path.read_bytes().decode("utf-8-sig")
-        return tomllib.loads(text)
-    except OSError as error:
-        raise InvalidParameterError("path", "name a readable file", Shown(f"{path} ({error.strerror})")) from None
-    except UnicodeDecodeError as error:
-        raise InvalidParameterError(
-            path.name, "be UTF-8 text", Shown(f"byte {error.object[error.start]:#04x} at offset {error.start}")
-        ) from None
-    except RecursionError:
-        raise InvalidParameterError(path.name, "be a TOML file", Shown("brackets nested too deeply")) from None
-    except ValueError as error:
-        raise _not_toml(path, text, str(error)) from None
-
-
-_LINE = re.compile(r"\(at line (\d+), column \d+\)")
-# What stands where TOML wants something else, and what to write instead.
-_HABITS = (
-    (re.compile(r"=.*\d,\d+\s*($|#)"), "decimals need a point"),
-    (re.compile(r"^\s*[\w.\-]+\s*:"), "keys and values are joined by ="),
-    (re.compile(r"=\s*\("), "arrays stand in brackets [ ]"),
-    (re.compile(r"=\s*[-+.\d]+\s*[A-Za-z]+"), "numbers have no units; they are SI and radians"),
-    (re.compile(r"=\s*(True|False)\b"), "truth values are true and false"),
-    (re.compile(r"=\s*[A-Za-z_./]+\s*($|#)"), "texts stand in quotes"),
-)
-
-
-def _not_toml(path: Path, text: str, reason: str) -> InvalidParameterError:
-    """Return the error about a text that is not TOML, with the line and a habit that may be behind it."""
-    if path.suffix.lower() == ".csv":
-        reason, remedy = "a table (.csv)", "recorded people are given with --people"
-        return InvalidParameterError(path.name, "be a TOML file", Shown(reason), remedy)
-    if text.lstrip().startswith("<") or path.suffix.lower() in {".urdf", ".xacro"}:
-        found, remedy = "XML", ""
-        if path.suffix.lower() in {".urdf", ".xacro"} or "<robot" in text:
-            found = "a robot model in XML"
-            remedy = (
-                "hrsafety arm reads a model (.urdf) by itself; cells and studies name it in a TOML file of their own"
-            )
-        return InvalidParameterError(path.name, "be a TOML file", Shown(found), remedy or None)
-    place = _LINE.search(reason)
-    lines = text.splitlines()
-    line = lines[int(place[1]) - 1] if place and int(place[1]) <= len(lines) else ""
-    found = f"an error: {reason}" + (f", {line.strip()[:60]}" if line.strip() else "")
-    advised = next((advice for habit, advice in _HABITS if habit.search(line)), None)
-    return InvalidParameterError(path.name, "be a TOML file", Shown(found), advised)
 
 
 def _robot(table: dict[str, Any]) -> nav.HolonomicRobot | nav.DifferentialDriveRobot:

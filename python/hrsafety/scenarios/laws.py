@@ -7,12 +7,12 @@ from dataclasses import fields
 from types import MappingProxyType
 from typing import Any
 
+from hrsafety import _keys as kind
 from hrsafety import navigation as nav
 from hrsafety._arguments import meant
+from hrsafety._keys import Keys, Kind, checked, located
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.laws.known import LAWS
-from hrsafety.scenarios import keys as kind
-from hrsafety.scenarios.keys import Keys, Kind, checked, located
 
 __all__ = ["LAWS", "SHORT_NAMES", "keys_of", "law_named", "law_of", "name_of", "safe_of"]
 

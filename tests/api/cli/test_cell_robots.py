@@ -13,7 +13,7 @@ import pytest
 from api.arms.arm_models import EXAMPLE
 from hrsafety import arms
 from hrsafety.cli import main
-from hrsafety.cli.cell.robot import RobotFacts, robot_of
+from hrsafety.contact.cell.robot import ContactRobot, robot_of
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import unsafe_doubts
 
@@ -26,14 +26,14 @@ TOOL = {"urdf": "arm.urdf", "link": "tool", "direction": [1.0, 0.0, 0.0], "poses
 def read(tmp_path: Path) -> Any:
     """Return a function that reads the robot of a table beside the example arm, or another one."""
 
-    def robot(table: dict[str, Any], text: str = EXAMPLE) -> RobotFacts:
+    def robot(table: dict[str, Any], text: str = EXAMPLE) -> ContactRobot:
         (tmp_path / "arm.urdf").write_text(text, encoding="utf-8")
         return robot_of(table, tmp_path)
 
     return robot
 
 
-def codes(robot: RobotFacts) -> list[str]:
+def codes(robot: ContactRobot) -> list[str]:
     return [each.code for each in unsafe_doubts(robot.warnings)]
 
 

@@ -19,8 +19,8 @@ from hrsafety import arms, contact, standards
 from hrsafety.cli import main
 from hrsafety.cli.cell import report as cell_report
 from hrsafety.cli.cell.command import ENDS
-from hrsafety.cli.cell.file import load
 from hrsafety.cli.file_kinds import starter
+from hrsafety.contact import load_cell
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 ARM, BASE = EXAMPLES / "contact_arm.toml", EXAMPLES / "contact_base.toml"
@@ -418,5 +418,5 @@ def test_a_date_is_a_date(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
 
 def test_every_example_loads() -> None:
     for path in EXAMPLES.glob("contact_*.toml"):
-        cell = load(str(path))
+        cell = load_cell(str(path))
         assert all(isinstance(pad, contact.Covering) for pad in cell.coverings.values())

@@ -17,8 +17,8 @@ pytest.importorskip("jinja2")
 
 from hrsafety import contact, standards
 from hrsafety.cli import exit_codes, main
-from hrsafety.cli.cell.file import load
-from hrsafety.cli.cell.study import verdicts_of
+from hrsafety.contact import load_cell
+from hrsafety.contact.cell.study import verdicts_of
 from hrsafety.errors import InvalidParameterError
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
@@ -209,7 +209,7 @@ def test_no_drive_presses_harder_than_the_row_says(
     text = text if covering else text.replace('covering = "pad"', 'covering = "none"')
     text += STOP.replace("reaction_time = 0.1", f"reaction_time = {reaction}").replace("3.0", f"{braking}")
     path.write_text(text)
-    cell = load(str(path))
+    cell = load_cell(str(path))
     row = verdicts_of(cell)[0][0].verdict
     hit = contact.simulate(
         robot_mass=mass,
@@ -307,7 +307,7 @@ def test_the_area_of_a_contact_is_that_of_its_flat_covering(
     code, report, _ = judged(finger)
     (row,) = report["verdicts"]
     assert (code, row["contact_area"], row["verdict"]) == (0, 4e-4, "within_limits")
-    pad = load("cell.toml").coverings["pad"]
+    pad = load_cell("cell.toml").coverings["pad"]
     own = contact.Covering(material=pad.material, thickness=0.02, area=4e-4)
     limit = standards.limits().contact("hand_finger", "transient")
     assert row["allowed_speed"] == contact.allowed_speed(robot_mass=8.0, limits=limit, covering=own).speed
@@ -339,7 +339,7 @@ UNITS = GOOD.replace('contact = "transient"\n', "") + STOP
 
 def of_cell(text: str, path: Path) -> list[dict[str, Any]]:
     path.write_text(text)
-    return [each.verdict for each in verdicts_of(load(str(path)))[0]]
+    return [each.verdict for each in verdicts_of(load_cell(str(path)))[0]]
 
 
 @settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -12,7 +12,7 @@ import pytest
 from api.arms.arm_models import EXAMPLE
 from api.spoiled_files import spoiled
 from hrsafety import arms, contact, standards
-from hrsafety.cli.cell import file as cell_file
+from hrsafety.contact import load_cell
 from hrsafety.errors import HrsafetyError
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
@@ -80,7 +80,7 @@ def materials(path: str) -> None:
 
 def cell(path: str) -> None:
     """Read a cell: planned speeds and masses are positive."""
-    found = cell_file.load(path)
+    found = load_cell(path)
     assert found.robot.mass > 0.0
     assert all(0.0 < each.speed <= 20.0 for each in found.contacts)
 

@@ -12,12 +12,11 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from hrsafety import contact
 from hrsafety.cli import exit_codes, output, progress, terminal, verdict
 from hrsafety.cli.cell import page as cell_page
 from hrsafety.cli.cell import pictures as cell_pictures
 from hrsafety.cli.cell import report as cell_report
-from hrsafety.cli.cell import study as cell_study
-from hrsafety.cli.cell.file import load
 from hrsafety.errors import InvalidParameterError
 from hrsafety.pages import require_jinja
 from hrsafety.standards.verdicts import VERDICT_WORDS
@@ -55,8 +54,9 @@ def report_cell(options: argparse.Namespace) -> None:
     output.require_matplotlib("contact")
     require_jinja("contact")
     with output.located(options.cell), progress.live() as shown:
-        cell = load(options.cell)
-        study = cell_study.studied(cell, shown)
+        cell = contact.load_cell(options.cell)
+        told = None if shown is None else lambda done, total: shown("map of allowed speeds", done, total, None)
+        study = contact.study(cell, progress=told)
     command = f"hrsafety contact {Path(options.cell).name}"
     report = cell_report.report_of(cell, study, command=command, date=date)
     page = cell_page.html(report, cell_pictures.drawings(cell, study))

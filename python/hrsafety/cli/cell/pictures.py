@@ -11,9 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from hrsafety.cli.cell.file import Cell
-from hrsafety.cli.cell.study import Study
-from hrsafety.contact import ContactImpact
+from hrsafety.contact import Cell, ContactImpact, ContactStudy
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -51,14 +49,14 @@ class Drawing(NamedTuple):
     svg: str
 
 
-def drawings(cell: Cell, study: Study) -> list[Drawing]:
+def drawings(cell: Cell, study: ContactStudy) -> list[Drawing]:
     """Return the pictures of a report.
 
     Parameters
     ----------
     cell : Cell
         What was asked.
-    study : Study
+    study : ContactStudy
         What was found.
 
     Returns
@@ -69,7 +67,7 @@ def drawings(cell: Cell, study: Study) -> list[Drawing]:
     return list(_drawn(cell, study))
 
 
-def _drawn(cell: Cell, study: Study) -> Iterator[Drawing]:
+def _drawn(cell: Cell, study: ContactStudy) -> Iterator[Drawing]:
     from hrsafety import plotting
 
     pictures = plotting.contacts
@@ -94,7 +92,7 @@ def _drawn(cell: Cell, study: Study) -> Iterator[Drawing]:
         yield _drawing("speed-over-distance", "speed_over_distance", "speed_over_distance", caption, figure)
 
 
-def _of_governing(cell: Cell, study: Study) -> Iterator[Drawing]:
+def _of_governing(cell: Cell, study: ContactStudy) -> Iterator[Drawing]:
     from hrsafety import plotting
 
     found = study.fields["map"]

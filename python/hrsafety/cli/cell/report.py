@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from hrsafety import __version__
-from hrsafety.cli.cell.file import Cell, canonical
-from hrsafety.cli.cell.study import Study, numbers_of
+from hrsafety._keys import canonical
+from hrsafety.contact import Cell, ContactStudy
+from hrsafety.contact.cell.study import numbers_of
 from hrsafety.pages import versions
 
 __all__ = ["CONFIRM", "NOT_COVERED", "at_path", "json_text", "report_of"]
@@ -32,14 +33,14 @@ NOT_COVERED = (
 )
 
 
-def report_of(cell: Cell, study: Study, *, command: str, date: str | None) -> dict[str, Any]:
+def report_of(cell: Cell, study: ContactStudy, *, command: str, date: str | None) -> dict[str, Any]:
     """Return what report.json holds.
 
     Parameters
     ----------
     cell : Cell
         What was asked.
-    study : Study
+    study : ContactStudy
         What was found.
     command : str
         How the report was made.
@@ -102,14 +103,14 @@ def _sha256(value: Any) -> str:
     return hashlib.sha256(text.encode("utf-8")).hexdigest()
 
 
-def _equations(cell: Cell, study: Study) -> list[dict[str, str]]:
+def _equations(cell: Cell, study: ContactStudy) -> list[dict[str, str]]:
     """Return the equations that this report used: name, equation and use."""
     file = resources.files("hrsafety.cli") / "data" / "cell_equations.json"
     known = json.loads(file.read_text(encoding="utf-8"))
     return [row for part in _parts(cell, study) for row in known[part]]
 
 
-def _parts(cell: Cell, study: Study) -> Iterator[str]:
+def _parts(cell: Cell, study: ContactStudy) -> Iterator[str]:
     """Yield which equations those are."""
     if cell.robot.kind == "arm":
         yield "arm"

@@ -10,13 +10,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from hrsafety import _keys as kind
 from hrsafety import impact
+from hrsafety._keys import Keys, checked, located, parsed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.impact.design import DEFAULT_MARGIN, check_margin
-from hrsafety.scenarios import files
-from hrsafety.scenarios import keys as kind
-from hrsafety.scenarios.keys import Keys, checked, located
 
 __all__ = ["FoamDesignFile", "load", "manipulator_of"]
 
@@ -117,7 +116,7 @@ def load(path: str) -> FoamDesignFile:
         If the file cannot be read, is not TOML, or a value breaks a rule; the message names the
         key.
     """
-    fields = checked("", files.parsed(Path(path)), _TOP, required=("closing_speed", "manipulator"))
+    fields = checked("", parsed(Path(path)), _TOP, required=("closing_speed", "manipulator"))
     speed = fields["closing_speed"]
     if not (math.isfinite(speed) and speed > 0.0):
         raise InvalidParameterError("closing_speed", "be finite and positive", speed)

@@ -7,15 +7,15 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from hrsafety import _keys as kind
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety._arguments import meant
+from hrsafety._keys import Keys, checked, located, parsed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.gains.metrics import METRICS
 from hrsafety.scenarios import files, laws
-from hrsafety.scenarios import keys as kind
-from hrsafety.scenarios.keys import Keys, checked, located
 
 __all__ = ["GainStudy", "load", "scenarios_of"]
 
@@ -140,7 +140,7 @@ def load(path: str) -> GainStudy:
         key.
     """
     place = Path(path)
-    fields = checked("", files.parsed(place), _TOP, required=("scenarios",))
+    fields = checked("", parsed(place), _TOP, required=("scenarios",))
     names, scenes = scenarios_of(fields["scenarios"], place.parent)
     search = checked("search", fields.get("search", {}), _SEARCH)
     search |= checked("run", fields.get("run", {}), _RUN) | checked("noise", fields.get("noise", {}), _NOISE)

@@ -7,15 +7,15 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from hrsafety import _keys as kind
 from hrsafety import impact, sweep
 from hrsafety._arguments import meant
+from hrsafety._keys import Keys, checked, located, parsed
 from hrsafety._records import dataclass
 from hrsafety.cli.foam import file as foam_file
 from hrsafety.cli.optimize import file as optimize_file
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.scenarios import files, laws
-from hrsafety.scenarios import keys as kind
-from hrsafety.scenarios.keys import Keys, checked, located
+from hrsafety.scenarios import laws
 from hrsafety.sweep.impact_study import IMPACT_UNITS
 
 __all__ = ["SweepFile", "load"]
@@ -138,7 +138,7 @@ def load(path: str, outputs: tuple[str, ...] | None = None) -> SweepFile:
         key.
     """
     place = Path(path)
-    fields = checked("", files.parsed(place), _TOP, required=("axes",))
+    fields = checked("", parsed(place), _TOP, required=("axes",))
     if outputs is not None:
         fields["outputs"] = list(outputs)
         # The file may draw columns that are not kept this time.

@@ -6,10 +6,11 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
-from hrsafety import standards
+from hrsafety import _keys as kind
+from hrsafety._keys import Keys, checked, located
 from hrsafety.errors import InvalidParameterError
-from hrsafety.scenarios import keys as kind
-from hrsafety.scenarios.keys import Keys, checked, located
+from hrsafety.standards.separation import SpeedCurve, StoppingData
+from hrsafety.standards.separation import speed_over_distance as allowed_over_distance
 
 __all__ = ["separation_of", "speed_over_distance", "stopping_of"]
 
@@ -73,9 +74,7 @@ def separation_of(table: Mapping[str, Any] | None) -> dict[str, Any] | None:
     return given
 
 
-def speed_over_distance(
-    distance: object, separation: Mapping[str, Any], *, contact_speed: float | None
-) -> standards.SpeedCurve:
+def speed_over_distance(distance: object, separation: Mapping[str, Any], *, contact_speed: float | None) -> SpeedCurve:
     """Return the speed at each distance by the rules of a cell.
 
     Parameters
@@ -95,10 +94,10 @@ def speed_over_distance(
     rules = {name: value for name, value in separation.items() if name != "farthest"}
     if "stopping" in rules:
         rules["stopping"] = stopping_of(separation)
-    return standards.speed_over_distance(distance, contact_speed=contact_speed, **rules)
+    return allowed_over_distance(distance, contact_speed=contact_speed, **rules)
 
 
-def stopping_of(separation: Mapping[str, Any]) -> standards.StoppingData:
+def stopping_of(separation: Mapping[str, Any]) -> StoppingData:
     """Return the measured stops of a cell."""
     with located("stopping"):
-        return standards.StoppingData(**separation["stopping"])
+        return StoppingData(**separation["stopping"])

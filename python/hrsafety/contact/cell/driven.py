@@ -8,9 +8,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hrsafety import contact
-from hrsafety.cli.cell.file import Cell, Planned, pad_of
-from hrsafety.cli.cell.stops import stopping_of
+from hrsafety.contact.cell.cell import Cell, PlannedContact, pad_of
+from hrsafety.contact.cell.stops import stopping_of
+from hrsafety.contact.covering import Covering
+from hrsafety.contact.simulation import batch
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning, implausible
 
@@ -52,14 +53,14 @@ class Driven(NamedTuple):
     keeps: bool
 
 
-def driven_of(cell: Cell, planned: Planned, speed: float) -> Driven | None:
+def driven_of(cell: Cell, planned: PlannedContact, speed: float) -> Driven | None:
     """Return the loads of a clamped contact with a drive, by the reaction and the stop of the cell.
 
     Parameters
     ----------
     cell : Cell
         With its separation.
-    planned : Planned
+    planned : PlannedContact
         A clamped contact of which spring and limits are known.
     speed : float
         Closing speed in m/s.
@@ -79,7 +80,7 @@ def driven_of(cell: Cell, planned: Planned, speed: float) -> Driven | None:
     path = speed * (reaction + 0.5 * speed / braking)
     pad = pad_of(cell, planned, planned.covering)
     k = float(planned.limit.spring_constant or math.nan)
-    rows = contact.batch(
+    rows = batch(
         robot_mass=cell.robot.mass,
         closing_speed=speed,
         region=k,
@@ -104,7 +105,7 @@ def driven_of(cell: Cell, planned: Planned, speed: float) -> Driven | None:
         "strain": float(np.fmax(strain, np.fmax.reduce(strains))),
     }
     stiffness = math.inf if stiffest else float(k * STIFFNESSES[int(np.argmax(forces))])
-    own = None if planned.covering is None else cell.strains[planned.covering]
+    own = None if planned.covering is None else cell.strains.get(planned.covering)
     most = {
         "force": planned.limit.force,
         "pressure": planned.limit.pressure,
@@ -125,7 +126,7 @@ def _braking(separation: Mapping[str, Any], speed: float) -> float:
     return _FASTEST_BRAKE if way <= 0.0 else min(0.5 * speed**2 / way, _FASTEST_BRAKE)
 
 
-def _rigid(pad: contact.Covering | None, k: float, path: float, speed: float) -> tuple[float, float, float]:
+def _rigid(pad: Covering | None, k: float, path: float, speed: float) -> tuple[float, float, float]:
     """Return force, pressure and strain where the robot keeps to its way whatever the force.
 
     With a rate or a damper these are bounds: the largest compression at the largest speed of compression.
@@ -150,7 +151,7 @@ def _rigid(pad: contact.Covering | None, k: float, path: float, speed: float) ->
     )
 
 
-def _force(pad: contact.Covering, compression: float) -> float:
+def _force(pad: Covering, compression: float) -> float:
     """Return the force of a covering at rest in N, inf beyond its law."""
     try:
         return pad.column(compression).force
@@ -164,7 +165,7 @@ def _words(cell: Cell) -> str:
     return f"a drive that reacts after {rules['reaction_time']:g} s and {stop}"
 
 
-def drive_doubts(cell: Cell, planned: Planned, driven: Driven | None) -> tuple[ResultWarning, ...]:
+def drive_doubts(cell: Cell, planned: PlannedContact, driven: Driven | None) -> tuple[ResultWarning, ...]:
     """Return the doubts about a clamped contact: kept only without the drive, or a stop that is hardly meant."""
     if driven is None:
         return ()
@@ -182,7 +183,7 @@ def drive_doubts(cell: Cell, planned: Planned, driven: Driven | None) -> tuple[R
     return (*doubts, ResultWarning("drive_not_given", "separation", message))
 
 
-def drive_fields(cell: Cell, planned: Planned, closing: float, driven: Driven | None) -> dict[str, Any]:
+def drive_fields(cell: Cell, planned: PlannedContact, closing: float, driven: Driven | None) -> dict[str, Any]:
     """Return what the report says of the drive of a clamped contact."""
     found: dict[str, Any] = {
         "holds_for": WITHOUT,
@@ -203,7 +204,7 @@ def drive_fields(cell: Cell, planned: Planned, closing: float, driven: Driven | 
     return found
 
 
-def _allowed(cell: Cell, planned: Planned, closing: float) -> float | None:
+def _allowed(cell: Cell, planned: PlannedContact, closing: float) -> float | None:
     """Return the largest speed below the planned one that keeps all limits with any drive; loads rise with it."""
     least, most = 0.0, closing
     for _ in range(HALVINGS):

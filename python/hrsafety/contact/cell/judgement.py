@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
-from hrsafety import contact
-from hrsafety.cli.cell.file import Cell, Planned, pad_of
+from hrsafety.contact.cell.cell import Cell, PlannedContact, pad_of
+from hrsafety.contact.speed import AllowedSpeed, allowed_speed
 from hrsafety.plausibility import ResultWarning, unsafe_doubts
 from hrsafety.standards.verdicts import speed_verdict
 
@@ -23,14 +23,14 @@ REGION_UNKNOWN = ResultWarning(
 class Judged(NamedTuple):
     """A planned contact with its allowed speeds, bare and with every covering, its verdict and the doubts of that."""
 
-    planned: Planned
-    bare: contact.AllowedSpeed | None
-    covered: Mapping[str, contact.AllowedSpeed]
+    planned: PlannedContact
+    bare: AllowedSpeed | None
+    covered: Mapping[str, AllowedSpeed]
     verdict: dict[str, Any]
     doubts: tuple[ResultWarning, ...] = ()
 
     @property
-    def chosen(self) -> contact.AllowedSpeed | None:
+    def chosen(self) -> AllowedSpeed | None:
         """The allowed speed with the planned covering."""
         return self.bare if self.planned.covering is None else self.covered.get(self.planned.covering)
 
@@ -40,24 +40,24 @@ def reasons_of(found: Iterable[ResultWarning]) -> list[str]:
     return list(dict.fromkeys(each.message for each in unsafe_doubts(found)))
 
 
-def common(cell: Cell, planned: Planned) -> dict[str, Any]:
+def common(cell: Cell, planned: PlannedContact) -> dict[str, Any]:
     """Return what every computation about a contact is given."""
     return {"robot_mass": cell.robot.mass, "limits": planned.limit}
 
 
-def known(planned: Planned) -> bool:
+def known(planned: PlannedContact) -> bool:
     """Whether a contact can be computed at all."""
     return planned.limit.spring_constant is not None and planned.limit.body_mass is not None
 
 
 def strain(cell: Cell, covering: str | None) -> float | None:
     """Return the largest strain of a covering, ``None`` for its own."""
-    return None if covering is None else cell.strains[covering]
+    return None if covering is None else cell.strains.get(covering)
 
 
-def _allowed(cell: Cell, planned: Planned, covering: str | None) -> contact.AllowedSpeed:
+def _allowed(cell: Cell, planned: PlannedContact, covering: str | None) -> AllowedSpeed:
     pad = pad_of(cell, planned, covering)
-    return contact.allowed_speed(
+    return allowed_speed(
         **common(cell, planned),
         covering=pad,
         area=planned.area if pad is None else None,
@@ -66,11 +66,11 @@ def _allowed(cell: Cell, planned: Planned, covering: str | None) -> contact.Allo
     )
 
 
-def judged_of(cell: Cell, planned: Planned) -> Judged:
+def judged_of(cell: Cell, planned: PlannedContact) -> Judged:
     """Return what was found of a contact."""
     permitted = planned.limit.permitted
     bare = _allowed(cell, planned, None) if permitted and known(planned) else None
-    covered: dict[str, contact.AllowedSpeed] = {}
+    covered: dict[str, AllowedSpeed] = {}
     if bare is not None:
         covered = {name: _allowed(cell, planned, name) for name in cell.coverings}
     found = Judged(planned, bare, covered, {})
@@ -113,7 +113,7 @@ def decided(cell: Cell, judged: Judged, more: Iterable[ResultWarning]) -> Judged
     return judged._replace(verdict=row, doubts=tuple(found))
 
 
-def _fields(cell: Cell, planned: Planned, allowed: contact.AllowedSpeed | None) -> dict[str, Any]:
+def _fields(cell: Cell, planned: PlannedContact, allowed: AllowedSpeed | None) -> dict[str, Any]:
     limit, closing = planned.limit, planned.speed + cell.human_speed
     most = None
     if allowed is not None:

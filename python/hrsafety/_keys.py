@@ -1,22 +1,26 @@
-"""Checks of the keys of a scenario file: each value has one kind, each table known keys."""
+"""Files of keys: TOML as read, and checks of its keys: each value has one kind, each table known keys."""
 
 from __future__ import annotations
 
 import datetime
+import math
+import re
 import reprlib
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from hrsafety._arguments import meant
+from hrsafety._arguments import meant, readable
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 
 __all__ = [
     "Keys",
     "Kind",
     "boolean",
+    "canonical",
     "checked",
     "integer",
     "located",
@@ -26,6 +30,7 @@ __all__ = [
     "one_of",
     "pair",
     "pairs",
+    "parsed",
     "quoted",
     "segments",
     "shown",
@@ -285,3 +290,73 @@ def _numbers(path: str, value: Any, count: int) -> list[float]:
             remedy = next(filter(None, map(quoted, value)), None)
         raise InvalidParameterError(path, f"be an array of {count} numbers", shown(value), remedy)
     return numbers(path, value)
+
+
+def canonical(value: Any, path: str = "") -> Any:
+    """Return a value as JSON holds it: whole numbers are integers, however they were written."""
+    if isinstance(value, Mapping):
+        return {str(key): canonical(each, f"{path}.{key}" if path else str(key)) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [canonical(each, f"{path}[{index}]") for index, each in enumerate(value)]
+    if isinstance(value, float):
+        if not math.isfinite(value):
+            raise InvalidParameterError(path, "be finite", value)
+        return int(value) if value.is_integer() and abs(value) < 2**53 else value
+    if value is None or isinstance(value, (bool, int, str)):
+        return value
+    raise InvalidParameterError(path, "be a number, a text, a truth value, an array or a table", shown(value))
+
+
+# ---- files ---------------------------------------------------------------------------------------
+
+
+def parsed(path: Path) -> dict[str, Any]:
+    """Return the tables of a TOML file as read."""
+    readable("path", path)
+    text = ""
+    try:
+        text = path.read_bytes().decode("utf-8-sig")
+        return tomllib.loads(text)
+    except OSError as error:
+        raise InvalidParameterError("path", "name a readable file", Shown(f"{path} ({error.strerror})")) from None
+    except UnicodeDecodeError as error:
+        raise InvalidParameterError(
+            path.name, "be UTF-8 text", Shown(f"byte {error.object[error.start]:#04x} at offset {error.start}")
+        ) from None
+    except RecursionError:
+        raise InvalidParameterError(path.name, "be a TOML file", Shown("brackets nested too deeply")) from None
+    except ValueError as error:
+        raise _not_toml(path, text, str(error)) from None
+
+
+_LINE = re.compile(r"\(at line (\d+), column \d+\)")
+# What stands where TOML wants something else, and what to write instead.
+_HABITS = (
+    (re.compile(r"=.*\d,\d+\s*($|#)"), "decimals need a point"),
+    (re.compile(r"^\s*[\w.\-]+\s*:"), "keys and values are joined by ="),
+    (re.compile(r"=\s*\("), "arrays stand in brackets [ ]"),
+    (re.compile(r"=\s*[-+.\d]+\s*[A-Za-z]+"), "numbers have no units; they are SI and radians"),
+    (re.compile(r"=\s*(True|False)\b"), "truth values are true and false"),
+    (re.compile(r"=\s*[A-Za-z_./]+\s*($|#)"), "texts stand in quotes"),
+)
+
+
+def _not_toml(path: Path, text: str, reason: str) -> InvalidParameterError:
+    """Return the error about a text that is not TOML, with the line and a habit that may be behind it."""
+    if path.suffix.lower() == ".csv":
+        reason, remedy = "a table (.csv)", "recorded people are given with --people"
+        return InvalidParameterError(path.name, "be a TOML file", Shown(reason), remedy)
+    if text.lstrip().startswith("<") or path.suffix.lower() in {".urdf", ".xacro"}:
+        found, remedy = "XML", ""
+        if path.suffix.lower() in {".urdf", ".xacro"} or "<robot" in text:
+            found = "a robot model in XML"
+            remedy = (
+                "hrsafety arm reads a model (.urdf) by itself; cells and studies name it in a TOML file of their own"
+            )
+        return InvalidParameterError(path.name, "be a TOML file", Shown(found), remedy or None)
+    place = _LINE.search(reason)
+    lines = text.splitlines()
+    line = lines[int(place[1]) - 1] if place and int(place[1]) <= len(lines) else ""
+    found = f"an error: {reason}" + (f", {line.strip()[:60]}" if line.strip() else "")
+    advised = next((advice for habit, advice in _HABITS if habit.search(line)), None)
+    return InvalidParameterError(path.name, "be a TOML file", Shown(found), advised)

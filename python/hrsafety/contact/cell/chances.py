@@ -6,12 +6,14 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from hrsafety import contact
-from hrsafety.cli.cell.file import Cell, Planned, pad_of
-from hrsafety.cli.cell.judgement import reasons_of
+from hrsafety import _keys as kind
+from hrsafety.contact.cell.cell import Cell, PlannedContact, pad_of
+from hrsafety.contact.cell.judgement import reasons_of, strain
+from hrsafety.contact.chance import probability
+from hrsafety.contact.covering import Covering
+from hrsafety.contact.speed import AllowedSpeed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
-from hrsafety.scenarios import keys as kind
 
 __all__ = ["chance_doubts", "chance_of", "spread"]
 
@@ -61,14 +63,14 @@ def spread(name: str, given: Any, nominal: float | None) -> Mapping[str, object]
     return {word: made[kind.one_of(f"uncertain.{name}", word, made)]}
 
 
-def chance_of(cell: Cell, planned: Planned, allowed: contact.AllowedSpeed | None) -> dict[str, Any]:
+def chance_of(cell: Cell, planned: PlannedContact, allowed: AllowedSpeed | None) -> dict[str, Any]:
     """Return the chance that the planned speed is too fast, or why there is none.
 
     Parameters
     ----------
     cell : Cell
         What was asked.
-    planned : Planned
+    planned : PlannedContact
         The contact.
     allowed : AllowedSpeed or None
         Its allowed speed, if there is one.
@@ -86,12 +88,12 @@ def chance_of(cell: Cell, planned: Planned, allowed: contact.AllowedSpeed | None
     uncertain = {name: spread(name, given, nominal.get(name)) for name, given in _applying(cell, planned).items()}
     given: dict[str, Any] = {"robot_mass": cell.robot.mass, **uncertain}
     try:
-        found = contact.probability(
+        found = probability(
             speed=planned.speed + cell.human_speed,
             limits=planned.limit,
             covering=pad,
             area=planned.area if pad is None else None,
-            max_strain=None if planned.covering is None else cell.strains[planned.covering],
+            max_strain=strain(cell, planned.covering),
             draws=cell.draws,
             seed=cell.seed,
             **given,
@@ -140,9 +142,7 @@ def chance_doubts(cell: Cell, found: Mapping[str, Any]) -> tuple[ResultWarning, 
     return (ResultWarning("probability", "uncertain", message),)
 
 
-def _reason(
-    cell: Cell, planned: Planned, allowed: contact.AllowedSpeed | None, pad: contact.Covering | None
-) -> str | None:
+def _reason(cell: Cell, planned: PlannedContact, allowed: AllowedSpeed | None, pad: Covering | None) -> str | None:
     if not cell.uncertain:
         return "no input is uncertain"
     if allowed is None:
@@ -156,7 +156,7 @@ def _reason(
     return None
 
 
-def _nominal(cell: Cell, planned: Planned, pad: contact.Covering | None) -> dict[str, float | None]:
+def _nominal(cell: Cell, planned: PlannedContact, pad: Covering | None) -> dict[str, float | None]:
     limit = planned.limit
     found: dict[str, float | None] = {
         "robot_mass": cell.robot.mass,
@@ -172,7 +172,7 @@ def _nominal(cell: Cell, planned: Planned, pad: contact.Covering | None) -> dict
     return found
 
 
-def _applying(cell: Cell, planned: Planned) -> dict[str, Any]:
+def _applying(cell: Cell, planned: PlannedContact) -> dict[str, Any]:
     """Return what is uncertain of a contact: a clamped body has no mass, a limit that is not there no spread."""
     nominal = _nominal(cell, planned, pad_of(cell, planned, planned.covering))
     gone = {name for name in OF_REGIONS if nominal[name] is None or not math.isfinite(float(nominal[name] or 0.0))}
@@ -181,7 +181,7 @@ def _applying(cell: Cell, planned: Planned) -> dict[str, Any]:
     return {name: given for name, given in cell.uncertain.items() if name not in gone}
 
 
-def _own(pad: contact.Covering) -> set[str]:
+def _own(pad: Covering) -> set[str]:
     """Return the names of the numbers that a covering has."""
     shape = {name for name in ("thickness", "area", "radius", "length") if getattr(pad, name) is not None}
     return shape | set(pad.material.keys.values())

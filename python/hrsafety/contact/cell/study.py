@@ -1,21 +1,22 @@
-"""What a cell file asks for, computed: verdicts, loads, curves, sensitivities and chances as fields of the report."""
+"""Study of a cell: verdicts, loads, curves, sensitivities and chances of its planned contacts."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, replace
+from os import PathLike
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from hrsafety import contact, standards
-from hrsafety._arguments import Array
+from hrsafety._arguments import Array, callback, instance
 from hrsafety._records import dataclass
-from hrsafety.cli.cell.chances import chance_doubts, chance_of
-from hrsafety.cli.cell.driven import drive_doubts, drive_fields, driven_of
-from hrsafety.cli.cell.file import Cell, Planned, pad_of
-from hrsafety.cli.cell.judgement import (
+from hrsafety.contact.cell.cell import Cell, PlannedContact, pad_of
+from hrsafety.contact.cell.chances import chance_doubts, chance_of
+from hrsafety.contact.cell.driven import drive_doubts, drive_fields, driven_of
+from hrsafety.contact.cell.file import load_cell
+from hrsafety.contact.cell.judgement import (
     FASTEST,
     Judged,
     common,
@@ -26,13 +27,18 @@ from hrsafety.cli.cell.judgement import (
     reasons_of,
     strain,
 )
-from hrsafety.cli.cell.stops import speed_over_distance
-from hrsafety.cli.progress import Report
+from hrsafety.contact.cell.stops import speed_over_distance
+from hrsafety.contact.least_thickness import thickness
+from hrsafety.contact.sensitivities import sensitivity
+from hrsafety.contact.simulation import ContactImpact, batch, simulate
+from hrsafety.contact.speed import AllowedSpeed, allowed_speeds
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
+from hrsafety.standards.separation import SpeedCurve
 from hrsafety.standards.verdicts import strictest
+from hrsafety.tables import Columns, Table, unit_suffix
 
-__all__ = ["Study", "numbers_of", "studied", "verdicts_of"]
+__all__ = ["ContactStudy", "Curve", "numbers_of", "study", "verdicts_of"]
 
 SPEEDS = 41
 MAP_POINTS = 25
@@ -62,14 +68,19 @@ class Curve(NamedTuple):
     force: Array
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Study:
-    """Results, and what pictures are drawn from.
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class ContactStudy(Table):
+    """Contacts of a cell with their verdicts, and what pictures are drawn from.
 
     Attributes
     ----------
+    verdict : {"not_permitted", "exceeds", "not_checked", "within_limits"}
+        Strictest verdict of the contacts.
+    verdicts : list of dict
+        One row for each planned contact: its place, planned and allowed speeds in m/s, margin, verdict, the doubts
+        that take part in it by code, and the reasons in words.
     fields : dict
-        What report.json holds of the results.
+        Every result by name, as report.json holds it: `verdicts`, loads, curves, map, sensitivity and chances.
     impacts : dict of str to dict of str to ContactImpact
         Collisions at the planned speed by region and label.
     curves : dict of str to list of Curve
@@ -80,48 +91,89 @@ class Study:
         Of every result.
     """
 
+    verdict: str
+    verdicts: list[dict[str, Any]]
     fields: dict[str, Any]
-    impacts: Mapping[str, Mapping[str, contact.ContactImpact]]
+    impacts: Mapping[str, Mapping[str, ContactImpact]]
     curves: Mapping[str, list[Curve]]
-    speeds: standards.SpeedCurve | None
+    speeds: SpeedCurve | None
     warnings: tuple[ResultWarning, ...]
 
+    def columns(self) -> Columns:
+        """Return one row for each planned contact.
 
-def studied(cell: Cell, shown: Report | None = None) -> Study:
-    """Return everything that the report shows.
+        Returns
+        -------
+        dict of str to ndarray
+            Place, verdict, speeds and margin by name; NaN where there is no speed.
+        """
+        words = ("region", "contact", "covering", "verdict", "governs")
+        speeds = ("planned_speed", "allowed_speed", "margin")
+        found: Columns = {name: np.array([str(each[name] or "") for each in self.verdicts]) for name in words}
+        for name in speeds:
+            values = [math.nan if each[name] is None else each[name] for each in self.verdicts]
+            found[f"{name}{unit_suffix('m/s')}"] = np.array(values, dtype=np.float64)
+        return found | {"doubts": np.array([", ".join(each["doubts"]) for each in self.verdicts])}
+
+
+def study(cell: Cell | str | PathLike[str], *, progress: Callable[[int, int], object] | None = None) -> ContactStudy:
+    """Return whether the planned contacts of a cell keep their limits, with loads, curves and chances.
 
     Parameters
     ----------
-    cell : Cell
-        What was asked.
-    shown : callable or None
-        Told how far the longest part is, the map.
+    cell : Cell or path-like
+        The cell, or its file.
+    progress : callable or None
+        Called now and then as ``progress(done, total)`` while the longest part is computed, the map of speeds.
 
     Returns
     -------
-    Study
+    ContactStudy
         With the warnings of all results.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a file cannot be read, or a value breaks a rule.
+
+    Examples
+    --------
+    >>> from hrsafety import contact, standards
+    >>> hand = standards.limits().contact("hand_finger", "transient")
+    >>> cell = contact.Cell(
+    ...     robot=contact.ContactRobot.of_mass(8.0),
+    ...     contacts=[contact.PlannedContact(limit=hand, speed=0.25, area=1e-4)],
+    ... )
+    >>> found = contact.study(cell)
+    >>> found.verdict, round(found.verdicts[0]["allowed_speed"], 3)
+    ('within_limits', 1.369)
     """
+    cell = load_cell(cell) if isinstance(cell, (str, PathLike)) else instance("cell", cell, Cell)
+    callback("progress", progress)
     judged, loads, chances = verdicts_of(cell)
     curves = _over_speed(cell, judged)
     least = governing(judged)
     speeds = _over_distance(cell, judged)
     drawn = _by_region(judged, loads)
+    verdicts = [each.verdict for each in judged]
+    verdict = strictest(each["verdict"] for each in verdicts)
     fields: dict[str, Any] = {
-        "verdict": strictest(each.verdict["verdict"] for each in judged),
-        "verdicts": [each.verdict for each in judged],
+        "verdict": verdict,
+        "verdicts": verdicts,
         "doubts": _counts(judged),
         "confirmed": dict(cell.confirmed),
         "robot": _robot(cell),
         "limits": _limits(cell),
         "results": [_result(cell, each, impacts) for each, impacts in zip(judged, loads, strict=True)],
         "curves": _curve_fields(drawn, curves),
-        "map": None if least is None else _map(cell, least, shown),
+        "map": None if least is None else _map(cell, least, progress),
         "speed_over_distance": None if speeds is None else _speed_fields(cell, speeds),
         "sensitivity": None if least is None else _sensitivity(cell, least),
         "probability": [_named(each) | chance for each, chance in zip(judged, chances, strict=True)],
     }
-    return Study(
+    return ContactStudy(
+        verdict=verdict,
+        verdicts=verdicts,
         fields=fields,
         impacts=drawn,
         curves=curves,
@@ -132,7 +184,7 @@ def studied(cell: Cell, shown: Report | None = None) -> Study:
 
 def verdicts_of(
     cell: Cell,
-) -> tuple[list[Judged], list[dict[str | None, contact.ContactImpact]], list[dict[str, Any]]]:
+) -> tuple[list[Judged], list[dict[str | None, ContactImpact]], list[dict[str, Any]]]:
     """Return the contacts with their verdicts, their loads at the planned speed by covering, and their chances.
 
     Parameters
@@ -230,20 +282,20 @@ def _limits(cell: Cell) -> dict[str, Any]:
 # ---- loads --------------------------------------------------------------------------------------
 
 
-def _label(planned: Planned, covering: str | None) -> str:
+def _label(planned: PlannedContact, covering: str | None) -> str:
     kind = "clamped" if planned.limit.contact == "quasi_static" else "free"
     area = "" if planned.limit.area is None else f"{planned.limit.area}, "
     return f"{area}{kind}, {covering or 'bare'}"
 
 
-def _impact(cell: Cell, planned: Planned, covering: str | None) -> contact.ContactImpact | None:
+def _impact(cell: Cell, planned: PlannedContact, covering: str | None) -> ContactImpact | None:
     if math.isinf(cell.robot.mass) and planned.limit.body_mass == math.inf:
         return None
     hit = {**common(cell, planned), "covering": pad_of(cell, planned, covering), "head": False}
     hit["closing_speed"] = planned.speed + cell.human_speed
     try:
-        found = contact.simulate(**hit)
-        return contact.simulate(**hit, horizon=LATEST) if found.rising else found
+        found = simulate(**hit)
+        return simulate(**hit, horizon=LATEST) if found.rising else found
     except InvalidParameterError as error:
         # A covering that is compressed by more than was measured has no loads; the verdict says so, too.
         if "beyond_data" not in error.requirement:
@@ -251,7 +303,7 @@ def _impact(cell: Cell, planned: Planned, covering: str | None) -> contact.Conta
         return None
 
 
-def _loads(cell: Cell, judged: Judged) -> dict[str | None, contact.ContactImpact]:
+def _loads(cell: Cell, judged: Judged) -> dict[str | None, ContactImpact]:
     """Return the collisions at the planned speed, bare and with every covering."""
     if not known(judged.planned):
         return {}
@@ -260,10 +312,10 @@ def _loads(cell: Cell, judged: Judged) -> dict[str | None, contact.ContactImpact
 
 
 def _by_region(
-    judged: list[Judged], loads: list[dict[str | None, contact.ContactImpact]]
-) -> dict[str, dict[str, contact.ContactImpact]]:
+    judged: list[Judged], loads: list[dict[str | None, ContactImpact]]
+) -> dict[str, dict[str, ContactImpact]]:
     """Return collisions by region and label; of equal ones the last."""
-    found: dict[str, dict[str, contact.ContactImpact]] = {}
+    found: dict[str, dict[str, ContactImpact]] = {}
     for each, impacts in zip(judged, loads, strict=True):
         for covering, impact in impacts.items():
             found.setdefault(each.planned.limit.region, {})[_label(each.planned, covering)] = impact
@@ -279,13 +331,13 @@ def _over_speed(cell: Cell, judged: list[Judged]) -> dict[str, list[Curve]]:
         speeds = np.linspace(min(most, FASTEST) / SPEEDS, min(most, FASTEST), SPEEDS)
         for covering in dict.fromkeys((None, each.planned.covering)):
             pad = pad_of(cell, each.planned, covering)
-            rows = contact.batch(**common(cell, each.planned), covering=pad, closing_speed=speeds)
+            rows = batch(**common(cell, each.planned), covering=pad, closing_speed=speeds)
             label = _label(each.planned, covering)
             found.setdefault(each.planned.limit.region, []).append(Curve(label, speeds, rows.peak_force))
     return found
 
 
-def _allowed_fields(allowed: contact.AllowedSpeed) -> dict[str, Any]:
+def _allowed_fields(allowed: AllowedSpeed) -> dict[str, Any]:
     return {
         "allowed_closing_speed": allowed.speed,
         "governs": allowed.governs,
@@ -297,7 +349,7 @@ def _allowed_fields(allowed: contact.AllowedSpeed) -> dict[str, Any]:
     }
 
 
-def _result(cell: Cell, judged: Judged, impacts: Mapping[str | None, contact.ContactImpact]) -> dict[str, Any]:
+def _result(cell: Cell, judged: Judged, impacts: Mapping[str | None, ContactImpact]) -> dict[str, Any]:
     """Return what was found of a contact bare and with every covering."""
     planned = judged.planned
     rows = []
@@ -321,19 +373,19 @@ def _result(cell: Cell, judged: Judged, impacts: Mapping[str | None, contact.Con
     return _named(judged) | {"rows": rows}
 
 
-def _pressure(planned: Planned, covering: str | None, impact: contact.ContactImpact) -> float | None:
+def _pressure(planned: PlannedContact, covering: str | None, impact: ContactImpact) -> float | None:
     """Return the peak pressure; of a bare contact it is the force over the area that was given."""
     if covering is not None:
         return impact.peak_pressure
     return None if planned.area is None or impact.peak_force is None else impact.peak_force / planned.area
 
 
-def _thickness(cell: Cell, planned: Planned, covering: str) -> dict[str, Any]:
+def _thickness(cell: Cell, planned: PlannedContact, covering: str) -> dict[str, Any]:
     pad = pad_of(cell, planned, covering)
     if pad is None or pad.damping > 0.0 or pad.rate[:2] != (0.0, 0.0) or math.isinf(cell.robot.mass):
         return {"least_thickness": None, "least_thickness_status": "not_computed"}
     closing = planned.speed + cell.human_speed
-    found = contact.thickness(**common(cell, planned), covering=pad, speed=closing, max_strain=strain(cell, covering))
+    found = thickness(**common(cell, planned), covering=pad, speed=closing, max_strain=strain(cell, covering))
     return {
         "least_thickness": found.thickness,
         "least_thickness_status": found.status,
@@ -342,7 +394,7 @@ def _thickness(cell: Cell, planned: Planned, covering: str) -> dict[str, Any]:
 
 
 def _curve_fields(
-    impacts: Mapping[str, Mapping[str, contact.ContactImpact]], curves: Mapping[str, list[Curve]]
+    impacts: Mapping[str, Mapping[str, ContactImpact]], curves: Mapping[str, list[Curve]]
 ) -> list[dict[str, Any]]:
     return [
         {
@@ -369,7 +421,7 @@ def _named(judged: Judged) -> dict[str, Any]:
     }
 
 
-def _map(cell: Cell, judged: Judged, shown: Report | None) -> dict[str, Any] | None:
+def _map(cell: Cell, judged: Judged, progress: Callable[[int, int], object] | None) -> dict[str, Any] | None:
     """Return the allowed speed over thickness and strength of the covering that is planned."""
     if judged.planned.covering is None:
         return None
@@ -379,18 +431,18 @@ def _map(cell: Cell, judged: Judged, shown: Report | None) -> dict[str, Any] | N
     if name is None or not own:
         return None
     span = np.geomspace(1.0 / MAP_SPAN, MAP_SPAN, MAP_POINTS)
-    thickness, strength = pad.thickness * span, own * span
-    found = contact.allowed_speeds(
+    thick, strength = pad.thickness * span, own * span
+    found = allowed_speeds(
         **common(cell, judged.planned),
         covering=pad,
         max_strain=strain(cell, judged.planned.covering),
-        progress=None if shown is None else lambda done, total: shown("map of allowed speeds", done, total, None),
-        **{"thickness": thickness[:, np.newaxis], name: strength},
+        progress=progress,
+        **{"thickness": thick[:, np.newaxis], name: strength},
     )
     return {
         **_named(judged),
         "number": name,
-        "thickness": thickness,
+        "thickness": thick,
         "strength": strength,
         "speed": [[None if math.isnan(each) else each for each in row] for row in found.speed.tolist()],
         "planned_closing_speed": judged.verdict["planned_closing_speed"],
@@ -398,7 +450,7 @@ def _map(cell: Cell, judged: Judged, shown: Report | None) -> dict[str, Any] | N
     }
 
 
-def _over_distance(cell: Cell, judged: list[Judged]) -> standards.SpeedCurve | None:
+def _over_distance(cell: Cell, judged: list[Judged]) -> SpeedCurve | None:
     if cell.separation is None:
         return None
     # A contact that is not permitted, or of which something is not known, allows none at all; one that is planned too
@@ -419,7 +471,7 @@ def _usable(cell: Cell, judged: Judged) -> float | None:
     return None if row["doubts"] else speed
 
 
-def _speed_fields(cell: Cell, curve: standards.SpeedCurve) -> dict[str, Any]:
+def _speed_fields(cell: Cell, curve: SpeedCurve) -> dict[str, Any]:
     return {
         "rules": dict(cell.separation or {}),
         "contact": curve.status,
@@ -437,7 +489,7 @@ def _sensitivity(cell: Cell, judged: Judged) -> dict[str, Any] | None:
     pad = pad_of(cell, planned, planned.covering)
     if math.isinf(cell.robot.mass):
         return None
-    found = contact.sensitivity(
+    found = sensitivity(
         **common(cell, planned),
         covering=pad,
         area=planned.area if pad is None else None,
@@ -447,7 +499,7 @@ def _sensitivity(cell: Cell, judged: Judged) -> dict[str, Any] | None:
 
 
 def _warnings(
-    cell: Cell, judged: list[Judged], impacts: Mapping[str, Mapping[str, contact.ContactImpact]]
+    cell: Cell, judged: list[Judged], impacts: Mapping[str, Mapping[str, ContactImpact]]
 ) -> Iterator[ResultWarning]:
     yield from cell.robot.warnings
     for each in judged:

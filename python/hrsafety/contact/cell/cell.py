@@ -1,0 +1,275 @@
+"""Cells: a robot, its coverings and the contacts with people that are planned, as objects."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import field, fields, replace
+from typing import Any
+
+import numpy as np
+
+from hrsafety import _keys as kind
+from hrsafety._arguments import checked_text, count, flag, instance, number, sequence
+from hrsafety._records import dataclass
+from hrsafety._words import meant
+from hrsafety.contact.cell.robot import ContactRobot
+from hrsafety.contact.cell.stops import separation_of
+from hrsafety.contact.covering import Covering
+from hrsafety.contact.materials import StressTable
+from hrsafety.errors import InvalidParameterError
+from hrsafety.standards.contact_limits import ContactLimit
+from hrsafety.standards.limit_sets import LimitSet
+from hrsafety.standards.sets import limits as limit_set
+
+__all__ = ["MOST_CONTACTS", "MOST_COVERINGS", "NO_COVERING", "Cell", "PlannedContact", "checked_fit", "pad_of"]
+
+MOST_CONTACTS = 64
+MOST_COVERINGS = 16
+MOST_DRAWS = 10**7
+FASTEST_PLANNED = 20.0
+"""Largest planned speed in m/s."""
+ALLOWED_CHANCE = 0.01
+"""Chance of being too fast that is still within limits, unless the cell gives another one."""
+NEVER_CONFIRMED = ("beyond_data", "invalid_numbers", "not_checked", "region_unknown", "unfinished")
+"""Doubts that nobody can confirm away: nothing is known there."""
+NO_COVERING = "none"
+"""Word for a bare contact where a file has a covering for all others."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PlannedContact:
+    """A contact that is planned.
+
+    Parameters
+    ----------
+    limit : ContactLimit
+        Region and class with what it may bear.
+    speed : float
+        Planned speed of the robot's point towards the person, in m/s.
+    covering : str or None
+        Name of the covering; ``None``: bare.
+    area : float or None
+        Area of the bare contact in m^2; without it the pressure of a bare contact is not checked.
+    own_area : bool
+        Whether that area also takes the place of that of a flat covering.
+
+    Examples
+    --------
+    >>> from hrsafety import contact, standards
+    >>> hand = standards.limits().contact("hand_finger", "transient")
+    >>> contact.PlannedContact(limit=hand, speed=0.25, area=1e-4).covering is None
+    True
+    """
+
+    limit: ContactLimit
+    speed: float
+    covering: str | None = None
+    area: float | None = None
+    own_area: bool = False
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        instance("limit", self.limit, ContactLimit)
+        object.__setattr__(self, "speed", number("speed", self.speed))
+        if not 0.0 < self.speed <= FASTEST_PLANNED:
+            raise InvalidParameterError("speed", f"be above 0 and at most {FASTEST_PLANNED:g}", self.speed)
+        if self.covering is not None:
+            checked_text("covering", self.covering, "be the name of a covering")
+        if self.area is not None:
+            object.__setattr__(self, "area", number("contact_area", self.area))
+            if not 0.0 < self.area < 10.0:
+                raise InvalidParameterError("contact_area", "be above 0 and below 10", self.area)
+        if flag("own_area", self.own_area) and self.area is None:
+            raise InvalidParameterError("own_area", "come with an area", self.own_area)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Cell:
+    """A robot, its coverings and the contacts that are planned, of a file or made of objects; `study` judges it.
+
+    Parameters
+    ----------
+    robot : ContactRobot
+        The robot with its masses.
+    contacts : tuple of PlannedContact
+        What is judged, 1 to 64.
+    limits : LimitSet
+        Set of the limits of the contacts.
+    coverings : dict of str to Covering
+        By name; each contact is also judged with those that it does not plan.
+    strains : dict of str to float or None
+        Largest strain of a covering, its e_b when ``None`` or absent.
+    materials : dict of str to str
+        Source of the material of a covering.
+    human_speed : float
+        Speed of the person towards the robot in m/s.
+    separation : dict or None
+        Rules of the stop by name, as in a cell file; measured stops as a table of arrays.
+    uncertain : dict
+        Distributions by name: a spread around the number of each contact, or one of its own.
+    draws, seed : int
+        Of the chances.
+    allowed_chance : float
+        Chance of being too fast that is still within limits.
+    confirmed : dict of str to str
+        Doubts by code that somebody has confirmed not to hold here, with reason and name.
+    title : str
+        Heading of the page.
+    given : dict
+        What a file holds, as read.
+    files : dict of str to str
+        SHA-256 of files that were read, by what they are.
+
+    Attributes
+    ----------
+    inputs : dict
+        Everything that was given or is a default, as JSON holds it.
+
+    Examples
+    --------
+    >>> from hrsafety import contact, standards
+    >>> hand = standards.limits().contact("hand_finger", "transient")
+    >>> pad = contact.Covering(material=contact.Linear(modulus=2e5), thickness=0.02, area=4e-4)
+    >>> cell = contact.Cell(
+    ...     robot=contact.ContactRobot.of_mass(8.0),
+    ...     contacts=[contact.PlannedContact(limit=hand, speed=0.25, covering="pad")],
+    ...     coverings={"pad": pad},
+    ... )
+    >>> cell.limits.id
+    'iso_ts_15066_2016'
+    """
+
+    robot: ContactRobot
+    contacts: tuple[PlannedContact, ...]
+    limits: LimitSet = field(default_factory=limit_set)
+    coverings: Mapping[str, Covering] = field(default_factory=dict)
+    strains: Mapping[str, float | None] = field(default_factory=dict)
+    materials: Mapping[str, str] = field(default_factory=dict)
+    human_speed: float = 0.0
+    separation: Mapping[str, Any] | None = None
+    uncertain: Mapping[str, Any] = field(default_factory=dict)
+    draws: int = 100_000
+    seed: int = 0
+    allowed_chance: float = ALLOWED_CHANCE
+    confirmed: Mapping[str, str] = field(default_factory=dict)
+    title: str = "Contact of a robot with people"
+    given: Mapping[str, Any] = field(default_factory=dict)
+    files: Mapping[str, str] = field(default_factory=dict)
+    inputs: Mapping[str, Any] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        instance("robot", self.robot, ContactRobot)
+        instance("limits", self.limits, LimitSet)
+        checked_text("title", self.title, "be a text")
+        for name in ("coverings", "strains", "materials", "uncertain", "confirmed", "given", "files"):
+            if not isinstance(getattr(self, name), Mapping):
+                raise InvalidParameterError(name, "be a mapping", getattr(self, name))
+        rule = f"be 1 to {MOST_CONTACTS} planned contacts"
+        contacts = tuple(sequence("contacts", rule, self.contacts))
+        if not 1 <= len(contacts) <= MOST_CONTACTS:
+            raise InvalidParameterError("contacts", rule, len(contacts))
+        if len(self.coverings) > MOST_COVERINGS:
+            raise InvalidParameterError("coverings", f"be at most {MOST_COVERINGS}", len(self.coverings))
+        for name, pad in self.coverings.items():
+            instance(f"coverings[{name!r}]", pad, Covering)
+        for index, each in enumerate(contacts):
+            instance(f"contacts[{index}]", each, PlannedContact)
+            checked_fit(f"contacts[{index}]", each.covering, each.area if each.own_area else None, self.coverings)
+        human_speed, chance = number("human_speed", self.human_speed), number("allowed_chance", self.allowed_chance)
+        if not 0.0 <= human_speed < FASTEST_PLANNED:
+            raise InvalidParameterError("human_speed", "be at least 0 and below 20", human_speed)
+        if not 0.0 < chance < 1.0:
+            raise InvalidParameterError("allowed_chance", "be above 0 and below 1", chance)
+        count("draws", self.draws, most=MOST_DRAWS)
+        count("seed", self.seed, least=0, most=2**63 - 1)
+        made = {"contacts": contacts, "human_speed": human_speed, "allowed_chance": chance}
+        made["separation"] = separation_of(self.separation)
+        made["confirmed"] = _confirmed(self.confirmed)
+        for name, value in made.items():
+            object.__setattr__(self, name, value)
+        object.__setattr__(self, "inputs", kind.canonical({**self.given, **self._defaults()}))
+
+    def _defaults(self) -> dict[str, Any]:
+        """Return what counts, whether it was given or is a default, as plain values."""
+        found: dict[str, Any] = {
+            "limits": self.limits.id,
+            "human_speed": self.human_speed,
+            "draws": self.draws,
+            "seed": self.seed,
+            "allowed_chance": self.allowed_chance,
+            "contacts": [_input(each) for each in self.contacts],
+            "coverings": [
+                _numbers(name, pad) | {"max_strain": self.strains.get(name)} for name, pad in self.coverings.items()
+            ],
+            "robot": {**self.given.get("robot", {}), **self.robot.inputs},
+        }
+        more = {"separation": self.separation, "uncertain": self.uncertain, "confirmed": self.confirmed}
+        return found | {name: value for name, value in more.items() if value}
+
+
+def checked_fit(path: str, covering: str | None, own_area: float | None, coverings: Mapping[str, Covering]) -> None:
+    """Refuse a contact whose covering is not there, or has an area of its own beside the one that is given.
+
+    Parameters
+    ----------
+    path : str
+        Name of the contact in messages.
+    covering : str or None
+        Name of its covering.
+    own_area : float or None
+        Area that takes the place of that of the covering.
+    coverings : mapping
+        Those that there are.
+    """
+    if covering is None:
+        return
+    if covering not in coverings:
+        rule = f"name a covering ({', '.join(coverings) or 'none is given'}) or be {NO_COVERING!r}"
+        raise InvalidParameterError(f"{path}.covering", rule, covering, meant(covering, coverings))
+    if own_area is not None and coverings[covering].shape != "flat":
+        rule = f"be left out beside covering {covering!r}, whose area follows from its shape"
+        raise InvalidParameterError(f"{path}.contact_area", rule, own_area)
+
+
+def _confirmed(table: Mapping[str, Any]) -> dict[str, str]:
+    """Return reasons by code; what was not checked at all cannot be confirmed."""
+    found = {}
+    for code, reason in table.items():
+        path = f"confirmed.{code}"
+        if code in NEVER_CONFIRMED:
+            raise InvalidParameterError(path, "be left out: nothing is known there", code, "give what is missing")
+        found[code] = kind.word(path, reason)
+        if not found[code].strip():
+            raise InvalidParameterError(path, "say why the doubt does not hold here, and who says so", reason)
+    return found
+
+
+def pad_of(cell: Cell, planned: PlannedContact, covering: str | None) -> Covering | None:
+    """Return a covering as a contact meets it: a flat one over the area that the contact gives itself."""
+    if covering is None:
+        return None
+    pad = cell.coverings[covering]
+    return replace(pad, area=planned.area) if planned.own_area and pad.shape == "flat" else pad
+
+
+def _input(planned: PlannedContact) -> dict[str, Any]:
+    return {
+        "region": planned.limit.region,
+        "area_name": planned.limit.area,
+        "contact": planned.limit.contact,
+        "speed": planned.speed,
+        "covering": planned.covering,
+        "contact_area": planned.area,
+    }
+
+
+def _numbers(name: str, pad: Covering) -> dict[str, Any]:
+    """Return everything that a covering is, defaults included."""
+    law = pad.material
+    if isinstance(law, StressTable):
+        numbers: dict[str, Any] = {"strain": np.asarray(law.strain).tolist(), "stress": np.asarray(law.stress).tolist()}
+    else:
+        numbers = dict(zip(law.keys.values(), law.numbers, strict=True))
+    shape = {each.name: getattr(pad, each.name) for each in fields(pad) if each.name != "material"}
+    return {"name": name, "material": {"law": law.law, **numbers}, **shape}

@@ -1,0 +1,175 @@
+"""Cells made of objects: the same study as of their file, and nothing wrong gets in."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hrsafety import arms, contact, standards
+from hrsafety.contact.cell.study import numbers_of
+from hrsafety.errors import HrsafetyError, InvalidParameterError
+
+FILE = """
+limits = "iso_ts_15066_2016"
+speed = 0.2
+contact_area = 1e-4
+covering = "pad"
+[robot]
+mass = 8.0
+[[coverings]]
+name = "pad"
+material = { law = "linear", E = 2e5 }
+thickness = 0.02
+area = 4e-3
+max_strain = 0.4
+[[contacts]]
+region = "chest"
+[[contacts]]
+region = "hand_finger"
+contact = "transient"
+contact_area = 4e-4
+[separation]
+max_speed = 1.5
+reaction_time = 0.1
+deceleration = 3.0
+intrusion = 0.2
+uncertainty = 0.1
+[uncertain]
+robot_mass = { lognormal = 0.1 }
+"""
+LIMITS = standards.limits()
+PAD = contact.Covering(material=contact.Linear(modulus=2e5), thickness=0.02, area=4e-3)
+HAND = LIMITS.contact("hand_finger", "transient")
+
+
+def planned(region: str, kind: str, **more: Any) -> contact.PlannedContact:
+    return contact.PlannedContact(limit=LIMITS.contact(region, kind), speed=0.2, covering="pad", **more)
+
+
+def made(**more: Any) -> contact.Cell:
+    values: dict[str, Any] = {
+        "robot": contact.ContactRobot.of_mass(8.0),
+        "contacts": [
+            planned("chest", "quasi_static", area=1e-4),
+            planned("chest", "transient", area=1e-4),
+            planned("hand_finger", "transient", area=4e-4, own_area=True),
+        ],
+        "coverings": {"pad": PAD},
+        "strains": {"pad": 0.4},
+        "separation": dict(max_speed=1.5, reaction_time=0.1, deceleration=3.0, intrusion=0.2, uncertainty=0.1),
+        "uncertain": {"robot_mass": {"lognormal": 0.1}},
+        "draws": 2000,
+    }
+    return contact.Cell(**(values | more))
+
+
+def test_a_cell_of_objects_is_judged_as_its_file(tmp_path: Path) -> None:
+    path = tmp_path / "cell.toml"
+    path.write_text("draws = 2000\n" + FILE, encoding="utf-8")
+    of_file, of_objects = contact.study(path), contact.study(made())
+    assert json.dumps(numbers_of(of_file.fields)) == json.dumps(numbers_of(of_objects.fields))
+    assert of_file.warnings == of_objects.warnings
+    assert of_objects.verdict == "not_checked"  # a drive that pushes on exceeds the limits of the clamped chest
+    assert [row["verdict"] for row in of_objects.verdicts] == ["not_checked", "within_limits", "within_limits"]
+
+
+def test_a_study_is_a_table() -> None:
+    found = contact.study(made())
+    columns = found.columns()
+    assert columns["region"].tolist() == ["chest", "chest", "hand_finger"]
+    assert columns["allowed_speed_m_per_s"].tolist() == [row["allowed_speed"] for row in found.verdicts]
+    assert columns["doubts"].tolist()[0] == ", ".join(found.verdicts[0]["doubts"]) == "drive_not_given"
+    head = contact.PlannedContact(limit=LIMITS.contact("face", "transient"), speed=0.1)
+    columns = contact.study(made(contacts=[head], uncertain={})).columns()
+    assert columns["verdict"].tolist() == ["not_permitted"]
+    assert math.isnan(columns["margin_m_per_s"][0])
+
+
+def test_robots_of_objects_are_doubted_as_those_of_files() -> None:
+    arm = contact.ContactRobot.of_arm(arms.Arm.example(), link="tool", samples=50)
+    assert "no_motor_inertia" in [each.code for each in arm.warnings]
+    assert arm.poses == 50
+    base = contact.DifferentialBase(mass=20.0, inertia=0.8, offset=0.05)
+    robot = contact.ContactRobot.of_base(base, point=(0.2, 0.1), normal=(0.8, 0.6))
+    assert robot.mass == base.effective_mass((0.2, 0.1), (0.8, 0.6))
+    assert [each.code for each in robot.warnings] == ["no_motor_inertia"]
+    light = contact.study(made(robot=contact.ContactRobot.of_mass(0.01), uncertain={}))
+    assert {row["verdict"] for row in light.verdicts} == {"not_checked"}
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "words"),
+    [
+        ("contacts", [], "contacts must be 1 to 64 planned contacts"),
+        ("contacts", [HAND], r"contacts\[0\] must be a PlannedContact"),
+        ("coverings", {}, r"contacts\[0\].covering must name a covering"),
+        ("coverings", {"pad": None}, r"coverings\['pad'\] must be a Covering"),
+        ("coverings", dict.fromkeys(map(str, range(17)), PAD), "coverings must be at most 16"),
+        ("robot", 8.0, "robot must be a ContactRobot"),
+        ("human_speed", -0.1, "human_speed must be at least 0"),
+        ("human_speed", math.nan, "human_speed must be"),
+        ("separation", {"max_speed": 1.0}, "separation.reaction_time must be given"),
+        ("confirmed", {"not_checked": "J. Doe"}, "confirmed.not_checked must be left out"),
+        ("confirmed", {"edge": " "}, "confirmed.edge must say why"),
+        ("allowed_chance", 1.0, "allowed_chance must be above 0 and below 1"),
+        ("draws", 0, "draws must be"),
+        ("seed", -1, "seed must be"),
+        ("uncertain", None, "uncertain must be a mapping"),
+    ],
+)
+def test_a_wrong_cell_is_refused(name: str, value: object, words: str) -> None:
+    with pytest.raises(InvalidParameterError, match=words):
+        made(**{name: value})
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ({"speed": 0.0}, "speed must be above 0"),
+        ({"speed": 21.0}, "speed must be above 0 and at most 20"),
+        ({"area": -1.0}, "contact_area must be above 0"),
+        ({"own_area": True}, "own_area must come with an area"),
+        ({"limit": "chest"}, "limit must be a ContactLimit"),
+    ],
+)
+def test_a_wrong_contact_is_refused(more: dict[str, Any], words: str) -> None:
+    with pytest.raises(InvalidParameterError, match=words):
+        contact.PlannedContact(**({"limit": HAND, "speed": 0.2} | more))
+
+
+def test_an_area_of_its_own_is_refused_beside_a_covering_that_is_not_flat() -> None:
+    pad = contact.Covering(material=contact.Linear(modulus=2e5), thickness=0.02, shape="sphere", radius=0.05)
+    with pytest.raises(InvalidParameterError, match=r"contacts\[2\].contact_area must be left out"):
+        made(coverings={"pad": pad})
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    mass=st.floats(0.5, 200.0),
+    speed=st.floats(0.01, 3.0),
+    kind=st.sampled_from(standards.CONTACTS),
+    region=st.sampled_from(LIMITS.regions),
+    human=st.floats(0.0, 2.0),
+)
+def test_no_contact_is_within_limits_above_its_allowed_speed(
+    mass: float, speed: float, kind: str, region: str, human: float
+) -> None:
+    each = contact.PlannedContact(limit=LIMITS.contact(region, kind), speed=speed, area=1e-3)
+    try:
+        found = contact.study(
+            contact.Cell(robot=contact.ContactRobot.of_mass(mass), contacts=[each], human_speed=human)
+        )
+    except HrsafetyError as error:
+        pytest.fail(str(error))
+    row = found.verdicts[0]
+    if row["verdict"] == "within_limits":
+        assert row["allowed_speed"] >= speed
+        assert not row["doubts"]
+    elif row["verdict"] == "exceeds":
+        assert row["allowed_speed"] < speed
