@@ -311,3 +311,85 @@ def test_an_image_elsewhere_is_read_when_its_path_is_trusted(tmp_path: Path) -> 
     with pytest.raises(InvalidParameterError, match="trust_path=True"):
         nav.StaticMap.from_map_server(moved)
     assert nav.StaticMap.from_map_server(moved, trust_path=True) == nav.StaticMap.from_map_server(path)
+
+
+# ---- other grays and modes -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("negate", [False, True])
+@pytest.mark.parametrize("most", [16, 100, 200, 254, 1000, 4095, 65535])
+def test_the_gray_of_map_savers_is_known_at_every_depth(tmp_path: Path, most: int, negate: bool) -> None:
+    head = HEAD.replace("negate: 0", f"negate: {int(negate)}")
+    path = served(tmp_path, CELLS, free=0.3, head=head)
+    levels = np.array([[255, 205, 0], [205, 205, 255]])
+    values = np.round((255 - levels if negate else levels) * most / 255.0).astype(int)
+    body = values.astype(np.uint8 if most < 256 else ">u2").tobytes()
+    (tmp_path / "map.pgm").write_bytes(f"P5\n3 2\n{most}\n".encode() + body)
+    there = nav.StaticMap.from_map_server(path)
+    assert "unknown_gray" in codes(there)
+    assert there.grids[0].occupied[::-1].tolist() == (levels < 255).tolist()
+
+
+@settings(max_examples=40, deadline=None)
+@given(gray=st.integers(90, 204), more=st.floats(0.001, 0.2))
+def test_grays_that_a_threshold_frees_are_doubted(
+    gray: int, more: float, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    values = np.full((20, 20), WHITE)
+    values[0], values[5:9, 5:9] = BLACK, gray
+    free = (255 - gray) / 255.0 + more
+    path = served(tmp_path_factory.mktemp("map"), values, free=free, head=HEAD.replace("0.65", "0.95"))
+    there = nav.StaticMap.from_map_server(path)
+    assert codes(there) == ["unknown_gray"]
+    assert "16 of 400 cells (4 %)" in unsafe_doubts(there.warnings)[0].message
+
+
+@pytest.mark.parametrize(
+    ("values", "more", "doubted"),
+    [
+        ([[0, 100, 255], [0, 0, 50]], "mode: raw\n", False),
+        ([[0, 100, 255], [0, 0, 50]], "", True),
+        ([[WHITE, WHITE, BLACK], [WHITE, GRAY, WHITE]], "mode: raw\n", True),
+        ([[WHITE, WHITE, BLACK], [WHITE, GRAY, WHITE]], "", False),
+        ([[255, 255, 0], [0, 255, 0]], "", False),
+    ],
+)
+def test_gray_values_of_another_mode_are_doubted(tmp_path: Path, values: Any, more: str, doubted: bool) -> None:
+    there = nav.StaticMap.from_map_server(served(tmp_path, values, free=0.196, more=more))
+    assert ("other_mode" in {each.code for each in unsafe_doubts(there.warnings)}) == doubted
+
+
+def test_an_origin_in_other_units_is_doubted_and_an_empty_name_is_none(tmp_path: Path) -> None:
+    path = served(tmp_path, CELLS, free=0.196, head=HEAD.replace("-1.0, -0.5", "-50000, -25000"))
+    assert codes(nav.StaticMap.from_map_server(path)) == ["implausible"]
+    path.write_text(path.read_text(encoding="utf-8").replace("map.pgm", ""), encoding="utf-8")
+    with pytest.raises(InvalidParameterError, match="image must stand in"):
+        nav.StaticMap.from_map_server(path)
+
+
+def test_json_is_yaml(tmp_path: Path) -> None:
+    path = served(tmp_path, CELLS, free=0.196)
+    entries = {
+        "image": "map.pgm",
+        "resolution": 0.1,
+        "origin": [0, 0, 0],
+        "occupied_thresh": 0.65,
+        "free_thresh": 0.196,
+    }
+    read = []
+    for separators in ((", ", ": "), (",", ":")):
+        path.write_text(json.dumps(entries | {"negate": 0}, separators=separators), encoding="utf-8")
+        read.append(nav.StaticMap.from_map_server(path))
+    assert read[0] == read[1]
+
+
+def test_tables_tell_of_straight_ways_over_unknown_ground(tmp_path: Path) -> None:
+    values = np.full((40, 60), WHITE)
+    values[0] = BLACK
+    image = nav.StaticMap.from_map_server(served(tmp_path, values, free=0.196))
+    inside = nav.Scenario(start=(-0.5, 1.5), goal=(4.0, 1.5))
+    outside = nav.Scenario(start=(-0.5, 1.5), goal=(8.0, 1.5))
+    law = nav.SafeNavigation(nav.VirtualForceField(), map=image)
+    assert codes(nav.simulate_many([inside], [law])) == []
+    assert codes(nav.simulate_many([inside, outside], [law])) == ["unknown_ground"]
+    assert codes(nav.simulate_batch([outside], law)) == ["unknown_ground"]

@@ -27,6 +27,10 @@ FREE, UNKNOWN, OCCUPIED, BETWEEN = range(4)
 """What a cell is: `BETWEEN` has a value from 1 to 99 of 100."""
 SAVED_UNKNOWN = 205
 """Gray value that map savers write for unknown cells."""
+SAVED_FREE = 0.196
+"""Usual ``free_thresh``: grayer cells are not what savers write for free."""
+FEW_CELLS, MANY_CELLS = 1e-3, 0.1
+"""Shares of cells that are an accident, and that are none."""
 _NEEDED = ("image", "resolution", "origin", "occupied_thresh", "free_thresh")
 _MODES = ("trinary", "scale", "raw")
 _TRUTH = {"true": 1.0, "yes": 1.0, "on": 1.0, "false": 0.0, "no": 0.0, "off": 0.0}
@@ -94,7 +98,7 @@ def read_map_server(
     seen = _histogram(picture)
     kept = _kept(classes, rules, picture.most, fills)
     found = (
-        *_doubts_of_place(resolution, yaw),
+        *_doubts_of_place(resolution, (x, y), yaw),
         *_doubts_of_cells(picture, rules, classes, freed, kept, seen, fills=fills),
     )
     trusted = ((classes == UNKNOWN) & (kept == FREE)) | (freed & letter)
@@ -118,7 +122,7 @@ def _entries(path: str | PathLike[str]) -> tuple[Path, dict[str, Any]]:
     file = readable("path", path)
     entries = yaml_entries(file)
     for key in _NEEDED:
-        if key not in entries:
+        if key not in entries or entries[key] == []:
             raise InvalidParameterError(key, f"stand in {file.name}", Shown("nothing"))
     return file, entries
 
@@ -140,7 +144,7 @@ def _rules(entries: dict[str, Any], *, letter: bool = False, occupied_from: int 
 def _classes(most: int, rules: _Rules) -> tuple[Classes, Bits]:
     """Return what each gray value is, and which of them the letter of the file frees though savers mean unknown."""
     gray = np.arange(most + 1) * (255.0 / most)
-    share = gray / 255.0 if rules.negate else (255.0 - gray) / 255.0
+    share = _share(most, rules)
     found = np.full(most + 1, UNKNOWN, dtype=np.uint8)
     if rules.mode == "raw":
         percent = np.round(gray)
@@ -151,10 +155,28 @@ def _classes(most: int, rules: _Rules) -> tuple[Classes, Bits]:
         found[:] = np.where(_percent(most, rules) >= 100.0, OCCUPIED, BETWEEN)
     found[share >= rules.occupied] = OCCUPIED
     found[share <= rules.free if rules.letter else share < rules.free] = FREE
-    freed = (np.abs(gray - SAVED_UNKNOWN) < 0.5) & (found == FREE)
+    freed = _saved_unknown(most, rules) & (found == FREE)
     if not rules.letter:
         found[freed] = UNKNOWN
     return found, freed
+
+
+def _share(most: int, rules: _Rules) -> npt.NDArray[np.float64]:
+    """Return the occupancy from 0 to 1 that each gray value stands for."""
+    gray = np.arange(most + 1) * (255.0 / most)
+    found: npt.NDArray[np.float64] = gray / 255.0 if rules.negate else (255.0 - gray) / 255.0
+    return found
+
+
+def _saved_unknown(most: int, rules: _Rules) -> Bits:
+    """Return which gray values are 205 of 255, rounded to a picture of this depth; with ``negate`` it is 50 of 255."""
+    gray = np.arange(most + 1)
+    own = 255 - SAVED_UNKNOWN if rules.negate else SAVED_UNKNOWN
+    found: Bits = np.abs(gray * (255.0 / most) - own) < 0.5
+    found |= gray == round(own * most / 255.0)
+    found |= (gray == own) & (most <= 255)  # savers write the number itself, whatever white is
+    found[0 if rules.negate else most] = False
+    return found
 
 
 def _percent(most: int, rules: _Rules) -> npt.NDArray[np.float64]:
@@ -162,8 +184,7 @@ def _percent(most: int, rules: _Rules) -> npt.NDArray[np.float64]:
     gray = np.arange(most + 1) * (255.0 / most)
     if rules.mode == "raw":
         return np.round(gray)
-    share = gray / 255.0 if rules.negate else (255.0 - gray) / 255.0
-    return np.round(100.0 * (share - rules.free) / (rules.occupied - rules.free))
+    return np.round(100.0 * (_share(most, rules) - rules.free) / (rules.occupied - rules.free))
 
 
 def _kept(classes: Classes, rules: _Rules, most: int, fills: bool) -> Classes:
@@ -209,8 +230,9 @@ def _upwards(picture: Picture, chosen: Bits, *, hidden: bool) -> Bits:
 # ---- doubts ----------------------------------------------------------------------------------------
 
 
-def _doubts_of_place(resolution: float, yaw: float) -> Iterator[ResultWarning]:
+def _doubts_of_place(resolution: float, corner: tuple[float, float], yaw: float) -> Iterator[ResultWarning]:
     yield from implausible({"resolution": resolution}, {"resolution": "map_resolution"})
+    yield from implausible({"origin": corner}, {"origin": "floor_position"})
     yield from implausible({"yaw of origin": yaw}, {"yaw of origin": "heading"})
 
 
@@ -237,6 +259,15 @@ def _doubts_of_cells(
             f"write for unknown, which free_thresh {rules.free:g} makes free: {does}; write free_thresh: 0.196"
         )
         yield ResultWarning("unknown_gray", "free_thresh", message)
+    grayer = (classes == FREE) & ~freed & (_share(picture.most, rules) > SAVED_FREE)
+    pale = 0 if rules.mode == "raw" else int(seen[grayer].sum())
+    if pale > FEW_CELLS * cells:
+        message = (
+            f"{pale} of {cells} cells ({100.0 * pale / cells:.3g} %) are grayer than what savers write for free, and "
+            f"free_thresh {rules.free:g} makes them free: ground that nobody has seen? Write free_thresh: 0.196"
+        )
+        yield ResultWarning("unknown_gray", "free_thresh", message)
+    yield from _doubts_of_mode(picture.most, rules, seen)
     dark = 0 if picture.hidden is None else int(picture.hidden.sum())
     unknown = int(seen[classes == UNKNOWN].sum()) + dark
     if unknown and not fills:
@@ -258,6 +289,25 @@ def _doubts_of_cells(
             "there: give the map itself"
         )
         yield ResultWarning("mask_as_map", "mode", message)
+
+
+def _doubts_of_mode(most: int, rules: _Rules, seen: npt.NDArray[np.int64]) -> Iterator[ResultWarning]:
+    """Yield a doubt where gray values are those of another mode: raw ones are 0 to 100, and 255 for unknown."""
+    gray = np.round(np.arange(most + 1) * (255.0 / most))
+    cells = int(seen.sum())
+    others, between = (int(seen[which].sum()) for which in ((gray > 100) & (gray < 255), (gray > 0) & (gray <= 100)))
+    if rules.mode == "raw" and others > MANY_CELLS * cells:
+        message = (
+            f"{others} of {cells} cells ({100.0 * others / cells:.3g} %) have gray values from 101 to 254, which mode "
+            "raw takes for unknown, and black for free: leave the mode out if black is occupied"
+        )
+        yield ResultWarning("other_mode", "mode", message)
+    if rules.mode != "raw" and not rules.negate and others == 0 and between and seen[gray == 255].any():
+        message = (
+            f"all gray values are 0 to 100 or 255, as those of mode raw, where {between} cells above 0 are occupied "
+            "and 255 is unknown: mode: raw reads them so, and negate: 1 if white is occupied"
+        )
+        yield ResultWarning("other_mode", "mode", message)
 
 
 def _as(fills: bool) -> str:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 __all__ = ["yaml_entries"]
 
 MOST_BYTES = 1 << 20
-_ENTRY = r"""(\w+|"\w+"|'\w+')\s*:(?:\s+(.*)|)"""
+_ENTRY = r"""(?:(\w+)\s*:(?:\s+(.*)|)|("\w+"|'\w+')\s*:\s*(.*))"""
 
 
 def yaml_entries(file: Path) -> dict[str, Any]:
@@ -57,7 +57,8 @@ def _enter(file: Path, found: dict[str, Any], text: str, line: int) -> str:
     if match is None:
         shown = Shown(f"{text.strip()[:80]!r} in line {line}")
         raise InvalidParameterError(f"{file.name}", "be lines 'key: value' of a map", shown)
-    key, value = _unquoted(match[1]), (match[2] or "").strip()
+    plain, value, quoted, beside = match.groups()
+    key, value = _unquoted(plain or quoted), (value or beside or "").strip()
     if key in found:
         raise InvalidParameterError(key, f"stand once in {file.name}", Shown(f"another one in line {line}"))
     if value.startswith("[") and value.endswith("]"):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
+import numpy as np
+
 from hrsafety._arguments import Array
 from hrsafety.navigation.knowledge import late_cameras, warnings_of
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
@@ -72,6 +74,21 @@ def of_way(law: Law, position: Array) -> Iterator[ResultWarning]:
         yield from over_unknown(map, position, "the run")
 
 
+def _straight_way(scenario: Scenario, law: Law) -> Iterator[ResultWarning]:
+    """Warn of a straight way over ground that nobody has seen: a table has no positions to look at.
+
+    A guide keeps to what is known, so only the ends count under one.
+    """
+    ends = np.array([scenario.start, scenario.goal])
+    guided = isinstance(law, SafeNavigation) and law.guide is not None
+    for map in maps_of(law):
+        if not guided:
+            yield from over_unknown(map, ends, "the straight way to the goal")
+        elif map.unseen(ends).any():
+            message = "start or goal lies on unknown ground: nobody has seen what stands there"
+            yield ResultWarning("unknown_ground", "map", message)
+
+
 def of_commands(law: Law, periods: int) -> Iterator[ResultWarning]:
     """Warn of control periods in which commands from outside took the place of a law with a shield."""
     if periods and shield_of(law)[0] is not None:
@@ -112,7 +129,15 @@ def of_runs(
     kept = list(laws)
     named = zip(names, scenarios, strict=True)
     found = (
-        (name, [each for law in kept for each in of_run(scenario, law, built, motion_step)]) for name, scenario in named
+        (
+            name,
+            [
+                each
+                for law in kept
+                for each in (*of_run(scenario, law, built, motion_step), *_straight_way(scenario, law))
+            ],
+        )
+        for name, scenario in named
     )
     return (*gathered(found, "scenarios"), *_of_maps(kept, built))
 
