@@ -30,6 +30,8 @@ MANY_INSTANTS = 10
 """So many different times that all are whole numbers are no accident."""
 MILLISECONDS = 20.0
 """Times so far apart may be milliseconds, of a camera with at most 50 frames a second."""
+ONE_PLACE, NO_MOTION = 0.2, 1e-3
+"""Two people do not stand within the first, and nobody stands as still as the second, in m."""
 FAR = 0.5
 """Whoever gets so far from the first place does not stand, in m."""
 JUMP_SPEED, JUMP_LENGTH, ORDINARY_SPEED = 6.0, 0.5, 3.0
@@ -171,6 +173,11 @@ class Ways(NamedTuple):
         whole = self._whole_times()
         if not said and whole and median and median < STROLL:
             said.append(f"all times are whole numbers, and median speed of {moving} is {median:.4g} m/s")
+        extent = float(np.hypot(*np.ptp(self.position, axis=0)))
+        several = bool(self.who[-1] != self.who[0])
+        if len(walking) == 0 and not said and (extent < ONE_PLACE if several else 0.0 < extent < NO_MOTION):
+            message = f"all positions lie within {extent:.3g} m: kilometers or degrees given for meters?"
+            return (ResultWarning("implausible", "position", message),)
         if not said:
             return ()
         subject = "time_s" if said[0].startswith(("median time", "all times")) else f"median speed of {moving}"

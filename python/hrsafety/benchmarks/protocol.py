@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,7 @@ from hrsafety._records import dataclass
 from hrsafety.benchmarks.entries import Entry
 from hrsafety.benchmarks.results import Row
 from hrsafety.navigation.tables.runs import RunTable
+from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Case", "Suite", "rows_of"]
 
@@ -106,6 +107,8 @@ class Suite:
         Whether errors and age of measurements of people may be asked for.
     fastest : float or None
         Largest speed of people in m/s; ``None``: the data decide.
+    doubts : callable or None
+        Doubts about the data of so many episodes, from what the user names; ``None`` without any.
     scene : callable
         Scenario of an episode, to show it again.
     run : callable
@@ -125,6 +128,7 @@ class Suite:
     execution_error: float = 0.0
     sensed: bool = True
     fastest: float | None
+    doubts: Callable[[Path | None, int], Iterable[ResultWarning]] | None = None
     scene: Callable[[Case, int], tuple[nav.Scenario, nav.Law]] | None = None
     run: Callable[[Case], Iterator[Row]]
 

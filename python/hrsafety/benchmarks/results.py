@@ -41,6 +41,9 @@ class Row:
         People who touched the robot when they appeared in a recording or world, counted apart from the others.
     between : int
         How many of the people touched the robot on straight lines between two instants only.
+    lost : int
+        1 where somebody who was recorded may have been touched while nobody saw the person, or where the robot arrived
+        after the end of the recording; see `Recording.lost_near`.
     clearance : float
         Least distance of the surfaces in m; of the adversary suite while the robot moved toward somebody.
     score : float
@@ -60,10 +63,11 @@ class Row:
     clearance: float
     score: float = math.nan
     between: int = 0
+    lost: int = 0
 
 
 NAMES = tuple(each.name for each in fields(Row))
-_COUNTS = ("case", "contacts", "toward", "away", "at_fault", "walls", "apart", "between")
+_COUNTS = ("case", "contacts", "toward", "away", "at_fault", "walls", "apart", "between", "lost")
 
 
 def row_text(rows: Iterable[Row], *, head: bool) -> str:

@@ -139,7 +139,8 @@ def benchmark(
         if (name, speed) in kind.accepted and not noise and not latency
     }
     shielded = any("shield" in each.parts for each in entries)
-    doubts = (*(_doubts(kind, person_speed) if shielded else ()), *_between(kind, rows))
+    of_data = () if kind.doubts is None else kind.doubts(folder, runs)
+    doubts = (*of_data, *(_doubts(kind, person_speed) if shielded else ()), *_between(kind, rows), *_lost(rows))
     return Result(suite=kind.name, rows=rows, accepted=asked, warnings=doubts, conditions=_conditions(kind, settings))
 
 
@@ -201,6 +202,20 @@ def _between(kind: Suite, rows: Mapping[str, Sequence[Row]]) -> Iterator[ResultW
             f"in some episodes of {kind.name} somebody touches the robot on straight lines between two instants and at "
             f"none of them, which counts as a contact ({told})",
             safe_side=True,
+        )
+
+
+def _lost(rows: Mapping[str, Sequence[Row]]) -> Iterator[ResultWarning]:
+    """Tell where somebody may have been touched whom nobody saw."""
+    counts = {name: sum(row.lost > 0 for row in found) for name, found in rows.items()}
+    told = ", ".join(f"{name} {count} of {len(rows[name])}" for name, count in counts.items() if count)
+    if told:
+        yield ResultWarning(
+            "lost_nearby",
+            "contacts",
+            f"in some episodes ({told}) somebody may have been touched out of sight, before the first or after the "
+            "last row of the person, or the robot arrived after the end of the recording: whom nobody sees is taken "
+            "to be away",
         )
 
 

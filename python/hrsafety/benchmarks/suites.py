@@ -17,6 +17,7 @@ from hrsafety.benchmarks.protocol import Case, Suite
 from hrsafety.benchmarks.reacting import REACTING
 from hrsafety.benchmarks.results import Row
 from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import ResultWarning, gathered
 
 __all__ = ["SUITES"]
 
@@ -43,28 +44,41 @@ def recordings(folder: Path | None) -> list[Path]:
     return files
 
 
-def _crossing(case: Case, index: int) -> tuple[nav.Scenario, nav.Law]:
+def _chosen(case: Case, index: int) -> tuple[datasets.Recording, scenarios.Crossing]:
     files = recordings(case.data)
-    recording, run = divmod(index, RUNS)
-    if recording >= len(files):
+    number, run = divmod(index, RUNS)
+    if number >= len(files):
         raise InvalidParameterError("cases", f"be below {RUNS * len(files)}: {RUNS} of each recording", index)
-    crossing = _crossings(files[recording])[run]
+    recording, crossings = _known(files[number])
+    return recording, crossings[run]
+
+
+def _crossing(case: Case, index: int) -> tuple[nav.Scenario, nav.Law]:
+    _, crossing = _chosen(case, index)
     return replace(crossing.scenario, measurement=case.measurement), case.built()
 
 
 RUNS = 24
-_KNOWN: dict[Path, list[scenarios.Crossing]] = {}
+_KNOWN: dict[Path, tuple[datasets.Recording, list[scenarios.Crossing]]] = {}
 
 
-def _crossings(path: Path) -> list[scenarios.Crossing]:
+def _known(path: Path) -> tuple[datasets.Recording, list[scenarios.Crossing]]:
     if path not in _KNOWN:
-        _KNOWN[path] = list(scenarios.crossings(datasets.load_pedestrians(path), runs=RUNS))
+        recording = datasets.load_pedestrians(path)
+        _KNOWN[path] = recording, list(scenarios.crossings(recording, runs=RUNS))
     return _KNOWN[path]
+
+
+def _recorded_doubts(folder: Path | None, cases: int) -> tuple[ResultWarning, ...]:
+    """Return the doubts about the recordings that so many episodes cross."""
+    files = recordings(folder)[: -(-cases // RUNS)]
+    return gathered([(file.name, _known(file)[0].warnings) for file in files], "recordings")
 
 
 def _cross(case: Case) -> Iterator[Row]:
     for index in case.cases:
         place, law = _crossing(case, index)
+        recording, crossing = _chosen(case, index)
         run = nav.simulate(place, law)
         yield Row(
             case=index,
@@ -77,6 +91,7 @@ def _cross(case: Case) -> Iterator[Row]:
             at_fault=run.contacts_at_fault,
             walls=run.wall_contacts,
             apart=run.contacts_apart,
+            lost=int(bool(recording.lost_near(run, start_time=crossing.start_time))),
             clearance=float(run.min_clearance.min(initial=np.inf)),
         )
 
@@ -183,6 +198,7 @@ SUITES: dict[str, Suite] = {
             seed=0,
             most=1_000_000,
             files=recordings,
+            doubts=_recorded_doubts,
             accepted={(_GUARDED[1], 1.6): "- / - / 0"},
             scene=_crossing,
             run=_cross,

@@ -21,6 +21,7 @@ from hrsafety.cli.simulate_page import PageTable
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.tables.runs import RunTable
+from hrsafety.plausibility import ResultWarning, gathered
 from hrsafety.scenarios.laws import name_of
 from hrsafety.scenarios.recorded_people import ACTIVE_RADIUS, CRITICAL_RADIUS, PERSON_RADIUS
 
@@ -74,7 +75,7 @@ def simulate_people(options: argparse.Namespace) -> None:
     print(terminal.table(table.headers, table.rows, left=table.left))
     print()
     print(totals)
-    found = output.warnings_of(recording, *(crossing.scenario for crossing in crossings), summary)
+    found = _doubts(recording, crossings, summary, [nav.simulate(each.scenario, law, **stepping) for each in crossings])
     written = []
     if options.json is not None:
         report = _report(recording, crossings, law, summary, met)
@@ -108,6 +109,29 @@ def simulate_people(options: argparse.Namespace) -> None:
         print("\n".join(f"wrote {path}" for path in written))
     counts = verdict.counted(summary)
     verdict.end(_how_they_ended(summary, counts), counts, found, options, len(summary))
+
+
+def _doubts(
+    recording: datasets.Recording,
+    crossings: Sequence[scenarios.Crossing],
+    summary: RunTable,
+    runs: Sequence[nav.Trajectory],
+) -> tuple[ResultWarning, ...]:
+    """Return the doubts about a recording, and the first of each kind about the runs with the number of the others."""
+    own = dict.fromkeys(recording.warnings)
+    of_runs = [
+        (
+            f"run {row}",
+            [
+                *(each for each in run.warnings if each not in own),
+                *recording.lost_near(run, start_time=crossing.start_time, person_radius=PERSON_RADIUS),
+            ],
+        )
+        for row, (crossing, run) in enumerate(zip(crossings, runs, strict=True))
+    ]
+    told = (*own, *gathered(of_runs, "runs"))
+    codes = {each.code for each in told}
+    return (*told, *(each for each in summary.warnings if each.code not in codes))
 
 
 def _how_they_ended(summary: RunTable, counts: verdict.Counts) -> str:

@@ -11,10 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import navigation as nav
-from hrsafety._arguments import number, positive, with_article
+from hrsafety._arguments import finite, instance, number, positive, with_article
 from hrsafety._records import dataclass
 from hrsafety._tracks import WINDOW, Ways, smoothed_ways
 from hrsafety.datasets.flow import Flow, flow_of
+from hrsafety.datasets.track_ends import TrackEnds, ends_doubts, lost_doubts, track_ends
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.plausibility import ResultWarning
 
@@ -62,6 +63,7 @@ class Recording:
     _ids: npt.NDArray[np.int64] = field(init=False, repr=False)
     _first: npt.NDArray[np.intp] = field(init=False, repr=False)
     _sorted: Ways | None = field(init=False, repr=False, default=None)
+    _ends: TrackEnds | None = field(init=False, repr=False, default=None)
     _warnings: tuple[ResultWarning, ...] | None = field(init=False, repr=False, default=None)
 
     def __post_init__(self) -> None:
@@ -111,6 +113,8 @@ class Recording:
         slower than 0.7 m/s. ``teleport``: a step faster than 6 m/s and longer than 0.5 m among slow ones.
         ``identity_switch``: two people go on where the other one was. ``gap_in_track``: no row for longer than 2 s and
         10 median steps. ``noisy_positions``: noise of differences beyond 3 m/s^2 and a quarter of a step.
+        ``single_rows``: more than a tenth of the people have one row. ``broken_tracks``: more than half of the ways
+        that end go on under another id within 1 s.
 
         Examples
         --------
@@ -120,12 +124,15 @@ class Recording:
         'implausible'
         """
         if self._warnings is None:
-            object.__setattr__(
-                self,
-                "_warnings",
-                self._ways().doubts(self._named, moving="the people", of_frames=_OF_FRAMES, smoothing=_SMOOTHING),
-            )
+            ways = self._ways().doubts(self._named, moving="the people", of_frames=_OF_FRAMES, smoothing=_SMOOTHING)
+            units = all(each.code != "implausible" for each in ways)
+            object.__setattr__(self, "_warnings", (*ways, *ends_doubts(self._track_ends(), self._named, units=units)))
         return self._warnings  # type: ignore[return-value]  # just set
+
+    def _track_ends(self) -> TrackEnds:
+        if self._ends is None:
+            object.__setattr__(self, "_ends", track_ends(self._ways()))
+        return self._ends  # type: ignore[return-value]  # just set
 
     def _named(self, index: int) -> str:
         return f"person {self._ids[index]}"
@@ -327,6 +334,54 @@ class Recording:
             end = int(np.searchsorted(time, start_time + duration, side="left")) + 1
             people.append(nav.Human.from_path(time[begin:end] - start_time, position[begin:end], **human_fields))
         return tuple(people)
+
+    def lost_near(
+        self, run: nav.Trajectory, *, start_time: float, person_radius: float = 0.4
+    ) -> tuple[ResultWarning, ...]:
+        """Return doubts about people whom a robot may have touched while nobody saw them.
+
+        Before the first and after the last row a person is absent. Who vanishes in the middle of the scene may still be
+        there: within 1.6 m/s of the last place for 2 s, and likewise before the first one.
+
+        Parameters
+        ----------
+        run : Trajectory
+            Of a robot among these people.
+        start_time : float
+            Instant of the recording at which it starts, in s.
+        person_radius : float
+            Of the people, in m.
+
+        Returns
+        -------
+        tuple of ResultWarning
+            ``lost_nearby``, and ``recording_ended`` if the robot arrives after the last row of all.
+
+        Raises
+        ------
+        InvalidParameterError
+            If an argument is out of range, or the run has no scenario.
+
+        Examples
+        --------
+        Somebody vanishes 1 m beside the robot:
+
+        >>> from hrsafety import navigation as nav
+        >>> from hrsafety.datasets import Recording
+        >>> time = [0.0, 0.4, 0.8, 60.0]
+        >>> walk = Recording(time_s=time, person=[7, 7, 7, 9], position=[[1.9, -2], [1.9, -1.5], [1.9, -1], [9, 9]])
+        >>> scene = nav.Scenario(start=(0, 0), goal=(4, 0), obstacles=walk.humans(0.0, duration=10.0, radius=0.4))
+        >>> run = nav.simulate(scene, nav.VirtualForceField())
+        >>> run.outcome, [doubt.code for doubt in walk.lost_near(run, start_time=0.0)]
+        ('arrived', ['lost_nearby'])
+        """
+        instance("run", run, nav.Trajectory)
+        if run.scenario is None:
+            raise InvalidParameterError("run", "be a run in a scenario", Shown("a run after a reference"))
+        touch = run.scenario.robot.radius + positive("person_radius", person_radius)
+        begin = finite("start_time", start_time)
+        arrived = run.outcome == "arrived"
+        return lost_doubts(self._track_ends(), self._named, run, start_time=begin, touch=touch, arrived=arrived)
 
     def main_flow(self) -> Flow:
         """Return where and in which direction most people walk.

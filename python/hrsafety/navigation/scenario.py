@@ -10,6 +10,7 @@ from typing import Any
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, Parameters, assign, instance, pair, sequence
+from hrsafety._doubts import checked_doubts
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.obstacles.base import Obstacle
@@ -50,6 +51,9 @@ class Scenario(Parameters):
         Noise and age of the measured positions; ``None``: everything is known exactly.
     seed : int
         Seed of the noise, 0 <= seed < 2**64.
+    doubts : sequence of ResultWarning
+        Why the obstacles may not be what they seem to, such as `Recording.warnings` of people who were recorded; the
+        warnings of the scenario and of its runs hold them.
 
     Raises
     ------
@@ -80,6 +84,7 @@ class Scenario(Parameters):
     rest_time: float = 5.0
     measurement: Measurement | None = None
     seed: int = 0
+    doubts: Sequence[ResultWarning] = field(default=(), repr=False, compare=False)
     _native: _hrsafety.Scenario = field(init=False, repr=False, compare=False)
     _warnings: tuple[ResultWarning, ...] | None = field(init=False, repr=False, compare=False, default=None)
     _units: tuple[ResultWarning, ...] | None = field(init=False, repr=False, compare=False, default=None)
@@ -95,6 +100,8 @@ class Scenario(Parameters):
             instance("measurement", measurement, Measurement)
         if type(seed) is bool or not isinstance(seed, int) or not 0 <= seed < 2**64:
             raise InvalidParameterError("seed", "be an integer from 0 to 2**64 - 1", seed)
+        if type(self.doubts) is not tuple or self.doubts:  # seldom
+            self._set(doubts=checked_doubts("doubts", self.doubts))
         given = _as_given(robot, self.obstacles, rules[0], measurement)
         noise = (None if measurement is None else measurement._native, seed)
         try:

@@ -203,6 +203,7 @@ def _scenario(
         robot=robot,
         time_limit=time_limit,
         rest_time=time_limit,
+        doubts=recording.warnings,
     )
 
 

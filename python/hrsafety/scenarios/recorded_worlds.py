@@ -97,7 +97,13 @@ def with_recording(
         else Person(start=tuple(position[0].tolist()), recording=(time, position), radius=radius)
         for index, (time, position) in enumerate(seen)
     ]
-    return World(people=everybody, robots=robots, seed=checked_seed("seed", seed), time_limit=limit)
+    return World(
+        people=everybody,
+        robots=robots,
+        seed=checked_seed("seed", seed),
+        time_limit=limit,
+        doubts=recording.warnings,
+    )
 
 
 def _reacting(time: Array, position: Array, model: Pedestrian, radius: float, awareness: float) -> Person:

@@ -150,6 +150,7 @@ RULES: dict[str, dict[str, tuple[Any, ...]]] = {
         "rest_time": POSITIVE,
         "measurement": (0.025, "uniform", True),
         "seed": (-1, 2**64, 1.5, "1", None, True, NAN),
+        "doubts": (None, "doubt", 7, ["doubt"], np.array([1.0])),
     },
 }
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, Parameters, checked_seed, instance, pair, sequence
+from hrsafety._doubts import checked_doubts
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.crowd.agents import CrowdRobot, Person, Source
@@ -77,6 +78,9 @@ class World(Parameters):
         Longest simulated time, in s.
     seed : int
         Seed of everything that is drawn, 0 <= seed < 2**64.
+    doubts : sequence of ResultWarning
+        Why the people may not be what they seem to, such as `Recording.warnings` of people who were recorded; the
+        warnings of the world and of its runs hold them.
 
     Raises
     ------
@@ -108,6 +112,7 @@ class World(Parameters):
     step: float = 0.05
     time_limit: float = 60.0
     seed: int = 0
+    doubts: Sequence[ResultWarning] = field(default=(), repr=False, compare=False)
     _native: _hrsafety.CrowdWorld = field(init=False, repr=False, compare=False)
     _warnings: tuple[ResultWarning, ...] | None = field(init=False, repr=False, compare=False, default=None)
 
@@ -122,6 +127,7 @@ class World(Parameters):
             walls=tuple(_wall(f"walls[{index}]", wall) for index, wall in enumerate(given)),
             period=pair("period", self.period),
             seed=checked_seed("seed", self.seed),
+            doubts=checked_doubts("doubts", self.doubts),
         )
         # A step out of range is refused by the world, not by a robot that has it as its control period.
         step = self.step if 0.0 < self.step < float("inf") else 1.0
@@ -145,6 +151,6 @@ class World(Parameters):
             own = tuple(self.people), tuple(self.sources), tuple(self.robots)
             of_shields = of_robots(*own, self.step, walls=len(self.walls) > 0)
             in_walls = of_walls(*own, self._native) if self.walls else ()
-            found = (*of_numbers(*own, self.time_limit), *in_walls, *of_shields)
+            found = (*self.doubts, *of_numbers(*own, self.time_limit), *in_walls, *of_shields)
             self._set(_warnings=found)
         return found

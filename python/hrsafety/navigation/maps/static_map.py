@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, empty, instance, not_negative, number, numbers, pair, points, word
+from hrsafety._doubts import checked_doubts
 from hrsafety._records import dataclass
 from hrsafety.errors import ShapeError
 from hrsafety.navigation.maps.barn import barn_discs
@@ -88,11 +89,8 @@ class StaticMap(Parameters):
         if discs.ndim != 2 or discs.shape[1] != 3:
             raise ShapeError("discs", "(n, 3)", discs.shape)
         grids = [instance(f"grids[{i}]", each, Cells) for i, each in enumerate(items("grids", self.grids))]
-        doubts = items("warnings", self.warnings)
-        for index, doubt in enumerate(doubts):
-            instance(f"warnings[{index}]", doubt, ResultWarning)
         self._set(
-            warnings=tuple(doubts),
+            warnings=checked_doubts("warnings", self.warnings),
             walls=tuple(Wall(outline(corners), radius) for corners, radius in walls),
             polygons=tuple(outline(corners) for corners in polygons),
             discs=tuple((float(x), float(y), float(radius)) for x, y, radius in discs),

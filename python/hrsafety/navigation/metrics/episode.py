@@ -24,6 +24,7 @@ from hrsafety._arguments import (
     positive,
     sequence,
 )
+from hrsafety._doubts import checked_doubts
 from hrsafety._records import dataclass
 from hrsafety._tracks import WINDOW, Ways, smoothed_ways
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
@@ -189,9 +190,7 @@ class Episode(Parameters):
         if len(missing) == 1:
             raise InvalidParameterError(missing[0], "be given where the other arrivals are", Shown("none"))
         walls = sequence("walls", "be a sequence of discs, rectangles and polylines", self.walls)
-        doubts = sequence("warnings", "be a sequence of warnings", self.warnings)
-        for index, doubt in enumerate(doubts):
-            instance(f"warnings[{index}]", doubt, ResultWarning)
+        doubts = checked_doubts("warnings", self.warnings)
         flat: dict[str, Array | None] = {
             name: _rows(arrays[name]) for name in ("people", "people_without") if arrays[name] is not None
         }
@@ -200,7 +199,7 @@ class Episode(Parameters):
         arrays["unseen"] = self._unseen(people)
         self._set(person_speed=not_negative("person_speed", self.person_speed))
         kept = {name: None if array is None else _frozen(array) for name, array in arrays.items()}
-        self._set(**rules, **kept, walls=tuple(walls), warnings=tuple(doubts), _native=native)
+        self._set(**rules, **kept, walls=tuple(walls), warnings=doubts, _native=native)
 
     def _unseen(self, people: Array) -> npt.NDArray[np.bool_] | None:
         """Return when people are not seen and may be there, ``None`` without people and in a simulation."""

@@ -27,6 +27,7 @@ BELOW_SAFE = "region_below_safe"
 IN_CRITICAL_REGION = "start_in_critical_region"
 GOAL_IN_REGION = "goal_in_active_region"
 CLOSED_IN = "closed_in"
+IMPLAUSIBLE = "implausible"
 
 
 class Described(Protocol):
@@ -50,6 +51,8 @@ class Described(Protocol):
     def heading(self) -> float: ...
     @property
     def measurement(self) -> Measurement | None: ...
+    @property
+    def doubts(self) -> Sequence[ResultWarning]: ...
 
 
 def found(scenario: Described) -> tuple[ResultWarning, ...]:
@@ -64,10 +67,11 @@ def found(scenario: Described) -> tuple[ResultWarning, ...]:
     -------
     tuple of ResultWarning
         Codes ``"region_below_safe"``, ``"start_in_critical_region"``, ``"goal_in_active_region"``,
-        ``"implausible"``, ``"goal_out_of_reach"`` and ``"closed_in"``.
+        ``"implausible"``, ``"goal_out_of_reach"`` and ``"closed_in"``, and those of its ``doubts``.
     """
     about_ends = (*_starts(scenario), *_goals(scenario))
-    return (*_regions(scenario), *about_ends, *of_units(scenario), *_reach(scenario), *_closed(scenario))
+    own = (*_regions(scenario), *about_ends, *of_units(scenario), *_reach(scenario), *_closed(scenario))
+    return tuple(dict.fromkeys((*scenario.doubts, *own)))
 
 
 def _regions(scenario: Described) -> Iterator[ResultWarning]:
@@ -199,7 +203,8 @@ def _goals(scenario: Described) -> Iterator[ResultWarning]:
 
 
 def of_units(scenario: Described) -> tuple[ResultWarning, ...]:
-    """Return numbers outside the ranges of their quantities."""
+    """Return numbers outside the ranges of their quantities, and doubts of the scenario about units."""
+    given = (each for each in scenario.doubts if each.code == IMPLAUSIBLE)
     robot = scenario.robot
     values: dict[str, object] = {
         "start": scenario.start,
@@ -221,7 +226,7 @@ def of_units(scenario: Described) -> tuple[ResultWarning, ...]:
         for name, (value, quantity) in _numbers(obstacle).items():
             values[f"obstacles[{index}].{name}"] = value
             quantities[f"obstacles[{index}].{name}"] = quantity
-    return implausible(values, quantities)
+    return (*given, *implausible(values, quantities))
 
 
 def _numbers(obstacle: Obstacle) -> dict[str, tuple[object, str]]:
