@@ -164,8 +164,7 @@ def _classes(most: int, rules: _Rules) -> tuple[Classes, Bits]:
 def _share(most: int, rules: _Rules) -> npt.NDArray[np.float64]:
     """Return the occupancy from 0 to 1 that each gray value stands for."""
     gray = np.arange(most + 1) * (255.0 / most)
-    found: npt.NDArray[np.float64] = gray / 255.0 if rules.negate else (255.0 - gray) / 255.0
-    return found
+    return np.asarray(gray if rules.negate else 255.0 - gray, dtype=np.float64) / 255.0
 
 
 def _saved_unknown(most: int, rules: _Rules) -> Bits:
@@ -184,7 +183,10 @@ def _percent(most: int, rules: _Rules) -> npt.NDArray[np.float64]:
     gray = np.arange(most + 1) * (255.0 / most)
     if rules.mode == "raw":
         return np.round(gray)
-    return np.round(100.0 * (_share(most, rules) - rules.free) / (rules.occupied - rules.free))
+    found: npt.NDArray[np.float64] = np.round(
+        100.0 * (_share(most, rules) - rules.free) / (rules.occupied - rules.free)
+    )
+    return found
 
 
 def _kept(classes: Classes, rules: _Rules, most: int, fills: bool) -> Classes:
