@@ -1,13 +1,12 @@
 """How results show themselves: short in a terminal, as a table in a notebook, with units and warnings.
 
-Fields and units are those that the documentation of the class describes: they are declared there once.
+Units are declared in the annotations of the fields, once; documentation says the same, and a test compares.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import inspect
-import itertools
 import math
 import re
 from collections.abc import Mapping
@@ -20,19 +19,6 @@ from hrsafety._records import generates
 __all__ = ["displayed", "fields_with_units"]
 
 Kind = TypeVar("Kind")
-
-_UNITS = frozenset(
-    (
-        *("1/s", "rad/s^2", "rad/s", "rad", "N m s/rad", "N m/rad", "N m/A", "N s/m", "N/m^2", "N/m", "N m", "N"),
-        *("kg m^2", "kg", "m/s^3", "m/s^2", "m/s", "m^2", "m", "ms", "s", "Pa", "J", "W", "Hz", "V", "A", "K", "px"),
-        *("V s/rad", "V/rad", "pixels", "percent", "degrees", "g", "bytes"),
-    )
-)
-# What stands behind "in", up to the end of the clause or the next "in".
-_CLAUSE = r"(?:^|(?<=[ (,]))[Ii]n ([^.;:()]+?)(?=[.;:()]|,? in |$)"
-_PARTS = r", (?:and |in )?| and (?:in )?| or (?:in )?"
-_REST = r" (?:of|by|from|for|at|to|with|along|where|when) .*"
-_ENTRY = r"^([\w, *]+?) : "
 
 MOST_SHOWN = 6
 """Elements of a sequence that are shown; longer ones by size and range."""
@@ -47,7 +33,7 @@ def displayed(kind: type[Kind]) -> type[Kind]:
     Parameters
     ----------
     kind : type
-        A dataclass or a named tuple whose documentation describes its fields.
+        A dataclass or a named tuple whose fields declare their units.
 
     Returns
     -------
@@ -73,7 +59,10 @@ _KNOWN: dict[type, dict[str, str]] = {}
 
 
 def fields_with_units(kind: type) -> dict[str, str]:
-    """Return the fields of a class of results with the units that its documentation names.
+    """Return the fields of a class of results with the units that it declares for them.
+
+    A unit stands in the annotation of its field, ``time: Annotated[float, "s"]``, or, where fields follow from a list
+    of the native core, by their names in ``UNITS`` of the class.
 
     Parameters
     ----------
@@ -91,43 +80,20 @@ def fields_with_units(kind: type) -> dict[str, str]:
         names = [field.name for field in dataclasses.fields(kind) if field.repr and not field.name.startswith("_")]
     else:
         names = list(getattr(kind, "_fields", ()))
-    units = _documented(inspect.cleandoc(kind.__doc__ or ""))
+    units: dict[str, str] = {}
+    for base in reversed(kind.__mro__):
+        units |= {name: _unit_of(hint) for name, hint in inspect.get_annotations(base).items()}
+        units |= base.__dict__.get("UNITS", {})
     _KNOWN[kind] = {name: units.get(name, "") for name in names if name != "warnings"}
     return _KNOWN[kind]
 
 
-def _documented(text: str) -> dict[str, str]:
-    """Return the units that the entries of a docstring name: one for all of an entry, or one for each."""
-    found: dict[str, str] = {}
-    lines = text.splitlines()
-    for number, line in enumerate(lines):
-        entry = re.match(_ENTRY, line)
-        if entry is None:
-            continue
-        names = [name.strip(" *") for name in entry[1].split(",")]
-        rest = []
-        for following in lines[number + 1 :]:
-            if not following.startswith(" "):
-                break
-            rest.append(following.strip())
-        found |= _of_entry(names, " ".join(rest))
-    return found
-
-
-def _of_entry(names: list[str], text: str) -> dict[str, str]:
-    """Return the units of the names that one description is of: one for all, or one for each."""
-    clauses = [
-        [re.sub(_REST, "", part.strip()) for part in re.split(_PARTS, clause[1])]
-        for clause in re.finditer(_CLAUSE, text)
-    ]
-    clauses = [clause for clause in clauses if clause[0] in _UNITS]
-    if len(names) > 1 and clauses and len(clauses[0]) == len(names):
-        return {name: part for name, part in zip(names, clauses[0], strict=True) if part in _UNITS}
-    units = [part for clause in clauses for part in itertools.takewhile(_UNITS.__contains__, clause)]
-    if len(units) == len(names):
-        return dict(zip(names, units, strict=True))
-    # Of several units none is shown rather than a wrong one.
-    return dict.fromkeys(names, units[0]) if len(set(units)) == 1 else {}
+def _unit_of(hint: Any) -> str:
+    """Return the unit that an annotation holds, empty without one; annotations are mostly text, as Python writes it."""
+    if hasattr(hint, "__metadata__"):
+        return str(hint.__metadata__[0])
+    text = getattr(hint, "__forward_arg__", hint)
+    return text.split("'")[-2] if isinstance(text, str) and text.startswith("Annotated[") else ""
 
 
 def _rows(result: Any) -> list[tuple[str, str, str]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -60,15 +60,15 @@ class MassHistory(Table):
         Why masses may not be what they seem.
     """
 
-    time: Array
-    position: Array
-    velocity: Array
-    speed: Array
-    effective_mass: Array
-    iso_mass: float
-    robot_mass: Array
+    time: Annotated[Array, "s"]
+    position: Annotated[Array, "m"]
+    velocity: Annotated[Array, "m/s"]
+    speed: Annotated[Array, "m/s"]
+    effective_mass: Annotated[Array, "kg"]
+    iso_mass: Annotated[float, "kg"]
+    robot_mass: Annotated[Array, "kg"]
     status: Words
-    force: Array | None
+    force: Annotated[Array | None, "N"]
     margin: Array | None
     verdict: Words | None
     limit: ContactLimit | None

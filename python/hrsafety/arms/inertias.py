@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
@@ -26,7 +26,7 @@ class NearestInertia(NamedTuple):
         By how much the given one missed that, as a share of its trace; 0 if it did not, inf without a positive trace.
     """
 
-    inertia: Array
+    inertia: Annotated[Array, "kg m^2"]
     violation: float
 
 

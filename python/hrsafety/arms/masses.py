@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
@@ -36,9 +36,9 @@ class Extremes(NamedTuple):
         Why masses may not be what they seem.
     """
 
-    worst_mass: Array
+    worst_mass: Annotated[Array, "kg"]
     worst_direction: Array
-    least_mass: Array
+    least_mass: Annotated[Array, "kg"]
     least_direction: Array
     warnings: tuple[ResultWarning, ...] = ()
 
@@ -69,9 +69,9 @@ class EffectiveMass:
     True
     """
 
-    mass: Array | float
+    mass: Annotated[Array | float, "kg"]
     rule: str
-    iso_mass: float
+    iso_mass: Annotated[float, "kg"]
     warnings: tuple[ResultWarning, ...]
 
     @property
@@ -118,10 +118,10 @@ class PointMasses:
     True
     """
 
-    position: Array
+    position: Annotated[Array, "m"]
     direction: Array
-    effective_mass: Array
-    iso_mass: float
+    effective_mass: Annotated[Array, "kg"]
+    iso_mass: Annotated[float, "kg"]
     extremes: Extremes
     mobility: Array
     warnings: tuple[ResultWarning, ...]

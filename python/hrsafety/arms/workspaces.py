@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -49,11 +49,11 @@ class Workspace(Table):
 
     joint_names: tuple[str, ...]
     joint_kinds: tuple[str, ...]
-    joints: Array
-    position: Array
-    mass: Array
+    joints: Annotated[Array, "rad"]
+    position: Annotated[Array, "m"]
+    mass: Annotated[Array, "kg"]
     direction: Array
-    iso_mass: float
+    iso_mass: Annotated[float, "kg"]
     warnings: tuple[ResultWarning, ...]
 
     @property

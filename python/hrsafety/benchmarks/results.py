@@ -8,6 +8,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field, fields
 from pathlib import Path
+from typing import Annotated
 
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
@@ -52,15 +53,15 @@ class Row:
 
     case: int
     outcome: str
-    arrival_time: float
-    end_time: float
+    arrival_time: Annotated[float, "s"]
+    end_time: Annotated[float, "s"]
     contacts: int
     toward: int = 0
     away: int = 0
     at_fault: int
     walls: int = 0
     apart: int
-    clearance: float
+    clearance: Annotated[float, "m"]
     score: float = math.nan
     between: int = 0
     lost: int = 0

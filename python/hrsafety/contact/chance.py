@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import callback, checked_seed, count, number, positive, thread_count, word
@@ -61,7 +61,7 @@ class Exceedance(NamedTuple):
 
     probability: float
     interval: tuple[float, float]
-    quantiles: tuple[float, float, float]
+    quantiles: Annotated[tuple[float, float, float], "m/s"]
     exceeded: int
     draws: int
     not_checked: tuple[str, ...]

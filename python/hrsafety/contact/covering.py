@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
@@ -48,10 +48,10 @@ class Column(NamedTuple):
         thickness; empty if none holds.
     """
 
-    force: float
-    energy: float
-    peak_pressure: float
-    half_widths: tuple[float, float] | None
+    force: Annotated[float, "N"]
+    energy: Annotated[float, "J"]
+    peak_pressure: Annotated[float, "Pa"]
+    half_widths: Annotated[tuple[float, float] | None, "m"]
     status: tuple[str, ...]
 
 

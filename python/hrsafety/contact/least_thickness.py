@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import Annotated
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import positive
@@ -39,7 +40,7 @@ class LeastThickness:
         As in `AllowedSpeed`.
     """
 
-    thickness: float | None
+    thickness: Annotated[float | None, "m"]
     status: str
     not_checked: tuple[str, ...]
     warnings: Doubts

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -70,8 +70,8 @@ class RegionSpeed(NamedTuple):
     region: str
     contact: str
     status: str
-    robot_mass: float
-    speed: float
+    robot_mass: Annotated[float, "kg"]
+    speed: Annotated[float, "m/s"]
     allowed: AllowedSpeed | None
     warnings: tuple[ResultWarning, ...] = ()
 
@@ -190,10 +190,10 @@ class ContactMargins(Table):
         side are why an instant is not checked.
     """
 
-    time: Array
-    closing_speed: Array
-    robot_share: Array
-    margin: Array
+    time: Annotated[Array, "s"]
+    closing_speed: Annotated[Array, "m/s"]
+    robot_share: Annotated[Array, "m/s"]
+    margin: Annotated[Array, "m/s"]
     verdict: npt.NDArray[np.str_]
     touching: npt.NDArray[np.bool_]
     region: str

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import fields
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -105,20 +105,20 @@ class ContactImpact(Table):
     """
 
     status: str
-    release_time: float | None
-    peak_force: float | None
-    peak_force_time: float | None
-    peak_total_compression: float | None
-    peak_body_deflection: float | None
-    peak_covering_compression: float | None
+    release_time: Annotated[float | None, "s"]
+    peak_force: Annotated[float | None, "N"]
+    peak_force_time: Annotated[float | None, "s"]
+    peak_total_compression: Annotated[float | None, "m"]
+    peak_body_deflection: Annotated[float | None, "m"]
+    peak_covering_compression: Annotated[float | None, "m"]
     peak_strain: float | None
-    peak_pressure: float | None
-    rebound_speed: float | None
-    peak_body_acceleration_g: float | None
-    body_speed_end: float | None
+    peak_pressure: Annotated[float | None, "Pa"]
+    rebound_speed: Annotated[float | None, "m/s"]
+    peak_body_acceleration_g: Annotated[float | None, "g"]
+    body_speed_end: Annotated[float | None, "m/s"]
     hic15: float | None
     hic36: float | None
-    end_force: float | None
+    end_force: Annotated[float | None, "N"]
     bottomed: bool
     rising: bool
     warnings: Doubts

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -68,17 +68,17 @@ class AllowedSpeed:
         That speed, in m/s.
     """
 
-    speed: float | None
+    speed: Annotated[float | None, "m/s"]
     governs: str
     status: str
     speeds: dict[str, float | None]
     bare_speed_force: float | None
-    further: tuple[float, ...]
+    further: Annotated[tuple[float, ...], "m/s"]
     not_checked: tuple[str, ...]
-    covering_compression: float | None
+    covering_compression: Annotated[float | None, "m"]
     warnings: Doubts
     robot_speed: float | None
-    human_speed: float
+    human_speed: Annotated[float, "m/s"]
 
 
 @telling()
@@ -235,14 +235,14 @@ class AllowedSpeeds(Table):
         As in `AllowedSpeed`, with the number of rows.
     """
 
-    speed: Array
-    speed_force: Array
-    speed_pressure: Array
-    speed_strain: Array
-    bare_speed_force: Array
+    speed: Annotated[Array, "m/s"]
+    speed_force: Annotated[Array, "m/s"]
+    speed_pressure: Annotated[Array, "m/s"]
+    speed_strain: Annotated[Array, "m/s"]
+    bare_speed_force: Annotated[Array, "m/s"]
     governs: npt.NDArray[np.str_]
     status: npt.NDArray[np.str_]
-    covering_compression: Array
+    covering_compression: Annotated[Array, "m"]
     rising: npt.NDArray[np.bool_]
     outside_paraboloid: npt.NDArray[np.bool_]
     beyond_pad: npt.NDArray[np.bool_]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -33,10 +33,10 @@ class Flow(NamedTuple):
         center, in m.
     """
 
-    center: tuple[float, float]
+    center: Annotated[tuple[float, float], "m"]
     direction: tuple[float, float]
-    angle: float
-    spread: float
+    angle: Annotated[float, "rad"]
+    spread: Annotated[float, "m"]
 
 
 def flow_of(tracks: list[tuple[Array, Array]]) -> Flow:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -54,11 +54,11 @@ class FoamBoundary:
         Numbers that are hardly what was meant: of the manipulator, the head and the speed.
     """
 
-    damping: Array
-    stiffness: Array
+    damping: Annotated[Array, "N s/m"]
+    stiffness: Annotated[Array, "N/m"]
     status: npt.NDArray[np.str_]
     limited_by: npt.NDArray[np.str_]
-    crossings: tuple[Array, ...]
+    crossings: Annotated[tuple[Array, ...], "N/m"]
     crossing_status: tuple[tuple[str, ...], ...]
     holds_below: npt.NDArray[np.bool_]
     holds_above: npt.NDArray[np.bool_]

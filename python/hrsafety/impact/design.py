@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import fields, replace
+from typing import Annotated
 
 import numpy as np
 import numpy.typing as npt
@@ -78,7 +79,7 @@ class FoamDesign:
 
     manipulator: Manipulator
     limits: FoamLimits
-    closing_speed: float
+    closing_speed: Annotated[float, "m/s"]
     acceleration_head: Head
     force_head: AnyHead
     horizon: float | None = None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from hrsafety._arguments import Parameters, instance, positive
 from hrsafety._display import displayed
@@ -166,7 +166,7 @@ class FoamFeasibility(NamedTuple):
     """
 
     feasible: bool
-    max_closing_speed: float
-    slow_down: float
-    damping: float
-    stiffness: float
+    max_closing_speed: Annotated[float, "m/s"]
+    slow_down: Annotated[float, "m/s"]
+    damping: Annotated[float, "N s/m"]
+    stiffness: Annotated[float, "N/m"]

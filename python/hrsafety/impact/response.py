@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -169,16 +169,16 @@ class ImpactResponse(Table):
         thickness, which no foam can be).
     """
 
-    time: Array
-    contact_force: Array
-    head_acceleration: Array
-    head_position: Array
+    time: Annotated[Array, "s"]
+    contact_force: Annotated[Array, "N"]
+    head_acceleration: Annotated[Array, "m/s^2"]
+    head_position: Annotated[Array, "m"]
     head_velocity: Array
-    manipulator_position: Array
+    manipulator_position: Annotated[Array, "m"]
     manipulator_velocity: Array
-    compression: Array
-    release_times: Array
-    touch_times: Array
+    compression: Annotated[Array, "m"]
+    release_times: Annotated[Array, "s"]
+    touch_times: Annotated[Array, "s"]
     metrics: ImpactMetrics
     compression_status: str = "linear"
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -34,9 +34,9 @@ class Band(NamedTuple):
     """
 
     abscissa: Array
-    low: Array
-    middle: Array
-    high: Array
+    low: Annotated[Array, "m"]
+    middle: Annotated[Array, "m"]
+    high: Annotated[Array, "m"]
     runs: npt.NDArray[np.int64]
 
 

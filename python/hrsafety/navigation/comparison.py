@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from typing import Literal, get_args, overload
+from typing import Annotated, Literal, get_args, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -70,10 +70,10 @@ class Standing:
     toward_contact: Share
     away_contact: Share
     at_fault: Share
-    arrival_time: Mean
-    energy: Mean
-    path_length: Mean
-    min_clearance: Mean
+    arrival_time: Annotated[Mean, "s"]
+    energy: Annotated[Mean, "J"]
+    path_length: Annotated[Mean, "m"]
+    min_clearance: Annotated[Mean, "m"]
     performance_total: Mean
 
 

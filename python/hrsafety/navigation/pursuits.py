@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from typing import Any, Literal, cast
+from typing import Annotated, Any, Literal, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -67,15 +67,15 @@ class Pursuit(Table):
         1 if it touched a map, which the others hold, too.
     """
 
-    time: Array
-    position: Array
-    velocity: Array
-    person_position: Array
-    least_toward: float
-    min_clearance: float
-    arrival_time: float
-    end_time: float
-    top_speed: float
+    time: Annotated[Array, "s"]
+    position: Annotated[Array, "m"]
+    velocity: Annotated[Array, "m/s"]
+    person_position: Annotated[Array, "m"]
+    least_toward: Annotated[float, "m"]
+    min_clearance: Annotated[float, "m"]
+    arrival_time: Annotated[float, "s"]
+    end_time: Annotated[float, "s"]
+    top_speed: Annotated[float, "m/s"]
     contacts_toward: int = 0
     contacts_away: int = 0
     contacts_standing: int = 0
@@ -126,7 +126,7 @@ class Falsification:
 
     property_name: str
     margin: Array
-    min_clearance: Array
+    min_clearance: Annotated[Array, "m"]
     arrival_time: Array
     end_time: Array
     contacts_toward: npt.NDArray[np.int64]

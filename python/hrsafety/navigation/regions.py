@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import instance, number
@@ -26,8 +26,8 @@ class Regions(NamedTuple):
         Radius r_2 of the active region, in m.
     """
 
-    critical_radius: float
-    active_radius: float
+    critical_radius: Annotated[float, "m"]
+    active_radius: Annotated[float, "m"]
 
 
 def region_radii(

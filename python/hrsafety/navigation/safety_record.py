@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from typing import Annotated
 
 import numpy as np
 
@@ -64,20 +65,20 @@ class SafetyDecision:
         Local goal on that path, in m: where the guide sends the law while nobody stands.
     """
 
-    time: float
-    position: Array
-    velocity: Array
-    wanted: Array
-    command: Array
+    time: Annotated[float, "s"]
+    position: Annotated[Array, "m"]
+    velocity: Annotated[Array, "m/s"]
+    wanted: Annotated[Array, "m/s"]
+    command: Annotated[Array, "m/s"]
     status: str
     taken_over: bool
     margin: float
-    plan_time: Array
-    plan_position: Array
-    obstacle_position: Array
-    obstacle_reach: Array
-    path: Array
-    local_goal: Pair | None
+    plan_time: Annotated[Array, "s"]
+    plan_position: Annotated[Array, "m"]
+    obstacle_position: Annotated[Array, "m"]
+    obstacle_reach: Annotated[Array, "m"]
+    path: Annotated[Array, "m"]
+    local_goal: Annotated[Pair | None, "m"]
 
 
 @displayed

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any, Literal, Protocol
+from typing import Annotated, Any, Literal, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -147,42 +147,42 @@ class Trajectory(Table):
     # `X | Any`: None in a run after a reference only, which callers that made an episode need not ask.
     scenario: Scenario | Any = None
     law: Law | Any = None
-    time: Array
-    position: Array
-    velocity: Array
-    force: Array | Any = None
-    heading: Array
+    time: Annotated[Array, "s"]
+    position: Annotated[Array, "m"]
+    velocity: Annotated[Array, "m/s"]
+    force: Annotated[Array | Any, "N"] = None
+    heading: Annotated[Array, "rad"]
     wheel_current: Array | Any = None
-    obstacle_position: Array | Any = None
-    distance: Array | Any = None
+    obstacle_position: Annotated[Array | Any, "m"] = None
+    distance: Annotated[Array | Any, "m"] = None
     outcome: Outcome | Literal["running"] | Any = None
-    arrival_time: float | Any = None
-    energy: float | Any = None
-    min_distance: Array
-    min_clearance: Array
-    contact_time: Array
+    arrival_time: Annotated[float | Any, "s"] = None
+    energy: Annotated[float | Any, "J"] = None
+    min_distance: Annotated[Array, "m"]
+    min_clearance: Annotated[Array, "m"]
+    contact_time: Annotated[Array, "s"]
     contact_speed: Array
     contact_toward: npt.NDArray[np.bool_]
     contact_at_fault: npt.NDArray[np.bool_]
     contact_apart: npt.NDArray[np.bool_]
-    path_length: float
-    map_contact_time: float = math.nan
+    path_length: Annotated[float, "m"]
+    map_contact_time: Annotated[float, "s"] = math.nan
     map_contact_speed: float = math.nan
-    map_clearance: float = math.inf
-    motion_step: float = 0.01
+    map_clearance: Annotated[float, "m"] = math.inf
+    motion_step: Annotated[float, "s"] = 0.01
     commanded_periods: int = 0
-    stabilizing: Array | Any = None
+    stabilizing: Annotated[Array | Any, "N"] = None
     lyapunov: Array | Any = None
-    wheel_speed: Array | None = None
-    energy_used: Array | None = None
-    reference_position: Array | Any = None
-    seen_position: Array | None = None
+    wheel_speed: Annotated[Array | None, "rad/s"] = None
+    energy_used: Annotated[Array | None, "J"] = None
+    reference_position: Annotated[Array | Any, "m"] = None
+    seen_position: Annotated[Array | None, "m"] = None
     built: AsBuilt | None = None
-    speed: Array | Any = None
+    speed: Annotated[Array | Any, "m/s"] = None
     turn_rate: Array | Any = None
-    commanded_speed: Array | Any = None
-    commanded_turn_rate: Array | Any = None
-    reference_velocity: Array | Any = None
+    commanded_speed: Annotated[Array | Any, "m/s"] = None
+    commanded_turn_rate: Annotated[Array | Any, "rad/s"] = None
+    reference_velocity: Annotated[Array | Any, "m/s"] = None
     goal_phase: npt.NDArray[np.bool_] | Any = None
     reference: Followed | None = None
     tracking: Tracking | None = None

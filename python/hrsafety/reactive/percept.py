@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -41,14 +41,14 @@ class Percept:
     (9,)
     """
 
-    time: float
-    position: Array
+    time: Annotated[float, "s"]
+    position: Annotated[Array, "m"]
     velocity: Array
-    heading: float
-    readings: Array
-    source_range: float | None
-    source_bearing: float | None
-    obstacle_position: Array
+    heading: Annotated[float, "rad"]
+    readings: Annotated[Array, "m"]
+    source_range: Annotated[float | None, "m"]
+    source_bearing: Annotated[float | None, "rad"]
+    obstacle_position: Annotated[Array, "m"]
 
 
 def percept_of(fields: Mapping[str, Any]) -> Percept:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -61,8 +61,8 @@ class Crossing:
         What to simulate.
     """
 
-    start_time: float
-    planned_time: float
+    start_time: Annotated[float, "s"]
+    planned_time: Annotated[float, "s"]
     traffic: int
     people: tuple[int, ...]
     scenario: nav.Scenario

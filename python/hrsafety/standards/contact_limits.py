@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -110,9 +110,9 @@ class ContactLimit:
     area: str | None
     contact: str
     permitted: bool
-    force_limit: Quantity | None
-    pressure_limit: Quantity | None
-    spring: Quantity | None
+    force_limit: Annotated[Quantity | None, "N"]
+    pressure_limit: Annotated[Quantity | None, "Pa"]
+    spring: Annotated[Quantity | None, "N/m"]
     mass: Quantity | None
     pressure_area: str | None
     set_id: str

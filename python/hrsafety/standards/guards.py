@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import number
@@ -33,10 +33,10 @@ class GuardDistance(NamedTuple):
         Intrusion distance C in m.
     """
 
-    distance: float
-    first: float
-    approach_speed: float
-    intrusion: float
+    distance: Annotated[float, "m"]
+    first: Annotated[float, "m"]
+    approach_speed: Annotated[float, "m/s"]
+    intrusion: Annotated[float, "m"]
 
 
 @telling()

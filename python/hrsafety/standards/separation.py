@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -254,8 +254,8 @@ class SpeedCurve(Table):
         Numbers that are hardly meant in their unit, and what was taken as 0 because it was not given.
     """
 
-    distance: Array
-    speed: Array
+    distance: Annotated[Array, "m"]
+    speed: Annotated[Array, "m/s"]
     mode: npt.NDArray[np.str_]
     capped: npt.NDArray[np.bool_]
     outside_table: npt.NDArray[np.bool_]

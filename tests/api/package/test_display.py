@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 from html.parser import HTMLParser
-from typing import Any
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 import pytest
 
+from api.documented_units import documented_units
 from api.fuzzing import CALLS
 from fuzz.constructors import NO_CONSTRUCTORS, public_classes
 from hrsafety import _display, impact, plausibility, sweep
@@ -136,9 +137,29 @@ def test_what_calls_return_is_shown_short(name: str) -> None:
     ],
     ids=lambda each: getattr(each, "__name__", ""),
 )
-def test_units_are_those_of_the_documentation(kind: type, units: dict[str, str]) -> None:
+def test_units_are_those_of_the_fields(kind: type, units: dict[str, str]) -> None:
     found = fields_with_units(kind)
     assert {name: found[name] for name in units} == units
+
+
+@pytest.mark.parametrize("kind", DISPLAYED, ids=lambda kind: kind.__name__)
+def test_declared_units_are_those_that_the_documentation_names(kind: type) -> None:
+    named = documented_units(kind)
+    declared = fields_with_units(kind)
+    assert declared == {name: named.get(name, "") for name in declared}
+
+
+def test_a_unit_is_read_from_annotations_of_any_form() -> None:
+    class Written(NamedTuple):
+        speed: Annotated[float, "m/s"]
+        count: int
+
+    class Evaluated:
+        __annotations__ = {"speed": Annotated[float, "m/s"], "count": int}  # as without `from __future__`
+        _fields = ("speed", "count")
+
+    for kind in (Written, Evaluated):
+        assert fields_with_units(kind) == {"speed": "m/s", "count": ""}
 
 
 def test_warnings_are_shown_and_many_are_counted() -> None:

@@ -88,6 +88,7 @@ def with_criteria(kind: str) -> Callable[[C], C]:
     entries = [f"    {each.name} : {kind}\n        {_sentence(each)}" for each in CRITERIA.values()]
 
     def fill(owner: C) -> C:
+        owner.UNITS = {name: each.unit for name, each in CRITERIA.items()}  # type: ignore[attr-defined]  # read by _display
         # Without docstrings, as under python -OO, there is nothing to fill.
         if owner.__doc__:
             owner.__doc__ = owner.__doc__.replace("    {criteria}", "\n".join(entries))

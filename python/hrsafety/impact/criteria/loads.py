@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
-from typing import Literal, NamedTuple, Self, get_args
+from collections.abc import Callable, Iterator, Mapping
+from typing import Annotated, ClassVar, Literal, NamedTuple, Self, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -91,9 +91,9 @@ def with_warnings(text: str, warnings: Doubts) -> str:
 
 
 class _Window(NamedTuple):
-    value: float
-    start: float
-    end: float
+    value: Annotated[float, "g"]
+    start: Annotated[float, "s"]
+    end: Annotated[float, "s"]
 
 
 @displayed
@@ -110,6 +110,7 @@ class HeadInjury(_Window):
         What is doubtful about the signal; no item of the tuple.
     """
 
+    UNITS: ClassVar[Mapping[str, str]] = {"value": "s"}
     warnings: Doubts = ()
 
     def __repr__(self) -> str:

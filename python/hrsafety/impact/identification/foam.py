@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -29,11 +29,11 @@ MOST_MASS = 1e6
 
 
 class _Line(NamedTuple):
-    stiffness: float
-    force_offset: float
+    stiffness: Annotated[float, "N/m"]
+    force_offset: Annotated[float, "N"]
     covariance: Array
     interval: Array
-    force_deviation: float
+    force_deviation: Annotated[float, "N"]
     degrees_of_freedom: int
 
 
@@ -99,19 +99,19 @@ class FoamFit:
         Largest compression in any of the tests, in m: nothing is known of more.
     """
 
-    stiffness: float
+    stiffness: Annotated[float, "N/m"]
     damping_ratio: float
-    friction: float
-    drop_heights: Array
+    friction: Annotated[float, "N"]
+    drop_heights: Annotated[Array, "m"]
     covariance: Array
     interval: Array
     bootstrap_interval: Array | None
-    force_deviation: float
-    position_deviation: float
+    force_deviation: Annotated[float, "N"]
+    position_deviation: Annotated[float, "m"]
     degrees_of_freedom: int
     iterations: int
     warnings: tuple[ResultWarning, ...] = ()
-    largest_compression: float = math.inf
+    largest_compression: Annotated[float, "m"] = math.inf
 
     def foam(self, moving_mass: float, *, thickness: float = THICKNESS, linear_range: float | None = None) -> Foam:
         """Return the foam with its damping scaled to a moving mass.

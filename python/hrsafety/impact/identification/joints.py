@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy.typing as npt
 
@@ -40,11 +40,11 @@ class OpenLoopFit(NamedTuple):
         Standard deviation of the residuals, in rad.
     """
 
-    acceleration: float
-    decay: float
+    acceleration: Annotated[float, "rad/s^2"]
+    decay: Annotated[float, "1/s"]
     covariance: Array
     interval: Array
-    residual_deviation: float
+    residual_deviation: Annotated[float, "rad"]
 
 
 @displayed
@@ -74,11 +74,11 @@ class DirectDriveFit(NamedTuple):
     """
 
     command_gain: float
-    friction_offset: float
-    decay: float
-    torque_constant: float
-    viscous_friction: float
-    static_friction: float
+    friction_offset: Annotated[float, "rad/s^2"]
+    decay: Annotated[float, "1/s"]
+    torque_constant: Annotated[float, "N m/A"]
+    viscous_friction: Annotated[float, "N m s/rad"]
+    static_friction: Annotated[float, "N m"]
     covariance: Array
     interval: Array
     decay_interval: Array
@@ -96,8 +96,8 @@ class PdGains(NamedTuple):
         K_d in V s/rad.
     """
 
-    proportional: float
-    derivative: float
+    proportional: Annotated[float, "V/rad"]
+    derivative: Annotated[float, "V s/rad"]
 
 
 @displayed
@@ -112,8 +112,8 @@ class TubeInertia(NamedTuple):
         About the center, across the length, in kg m^2.
     """
 
-    mass: float
-    inertia: float
+    mass: Annotated[float, "kg"]
+    inertia: Annotated[float, "kg m^2"]
 
 
 def fit_open_loop(time: npt.ArrayLike, angle: npt.ArrayLike) -> OpenLoopFit:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
+from typing import Annotated
 
 import numpy as np
 
@@ -124,22 +125,22 @@ class DirectDriveResponse(Table):
         Numbers that are hardly what was meant.
     """
 
-    time: Array
-    manipulator_position: Array
-    manipulator_velocity: Array
-    head_position: Array
-    head_velocity: Array
-    head_acceleration: Array
-    contact_force: Array
-    compression: Array
-    command: Array
-    requested_command: Array
-    peak_head_acceleration: float
-    peak_contact_force: float
-    max_compression: float
-    impact_duration: float
-    saturated_from: float
-    saturated_time: float
+    time: Annotated[Array, "s"]
+    manipulator_position: Annotated[Array, "m"]
+    manipulator_velocity: Annotated[Array, "m/s"]
+    head_position: Annotated[Array, "m"]
+    head_velocity: Annotated[Array, "m/s"]
+    head_acceleration: Annotated[Array, "m/s^2"]
+    contact_force: Annotated[Array, "N"]
+    compression: Annotated[Array, "m"]
+    command: Annotated[Array, "V"]
+    requested_command: Annotated[Array, "V"]
+    peak_head_acceleration: Annotated[float, "m/s^2"]
+    peak_contact_force: Annotated[float, "N"]
+    max_compression: Annotated[float, "m"]
+    impact_duration: Annotated[float, "s"]
+    saturated_from: Annotated[float, "s"]
+    saturated_time: Annotated[float, "s"]
     status: str = "released"
     warnings: Doubts = ()
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 
 from hrsafety._arguments import word
@@ -61,11 +63,11 @@ class CrowdStanding:
     away_contact: Share
     at_fault: Share
     robot_contact: Share
-    arrival_time: Mean
-    path_length: Mean
-    min_clearance: Mean
-    discomfort_time: Mean
-    person_delay: Mean
+    arrival_time: Annotated[Mean, "s"]
+    path_length: Annotated[Mean, "m"]
+    min_clearance: Annotated[Mean, "m"]
+    discomfort_time: Annotated[Mean, "s"]
+    person_delay: Annotated[Mean, "s"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
+from typing import Annotated
 
 import numpy as np
 import numpy.typing as npt
@@ -39,8 +40,8 @@ class FundamentalDiagram(Table):
     """
 
     density: Array
-    speed: Array
-    reference: Array
+    speed: Annotated[Array, "m/s"]
+    reference: Annotated[Array, "m/s"]
 
     @property
     def rms(self) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Literal, NamedTuple, get_args
+from typing import Annotated, Literal, NamedTuple, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -51,9 +51,9 @@ class PredictionErrors(NamedTuple):
     """
 
     windows: int
-    one_step: float
-    average: float
-    final: float
+    one_step: Annotated[float, "m"]
+    average: Annotated[float, "m"]
+    final: Annotated[float, "m"]
 
 
 class Track(NamedTuple):

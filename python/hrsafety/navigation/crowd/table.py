@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -89,7 +89,7 @@ class CrowdTable(
     seed: npt.NDArray[np.uint64]
     gains: Array
     outcome: npt.NDArray[np.str_]
-    end_time: Array
+    end_time: Annotated[Array, "s"]
     contacts_toward: npt.NDArray[np.int64]
     contacts_away: npt.NDArray[np.int64]
     contacts_standing: npt.NDArray[np.int64]

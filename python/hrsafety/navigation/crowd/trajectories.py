@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
@@ -35,7 +35,7 @@ class Divergence:
         Which of them.
     """
 
-    time: float
+    time: Annotated[float, "s"]
     kind: Literal["person", "robot"]
     index: int
 
@@ -76,20 +76,20 @@ class CrowdTrajectories(Table):
     """
 
     world: World
-    time: Array
-    position: Array
-    velocity: Array
-    robot_position: Array
-    robot_velocity: Array
-    robot_heading: Array
+    time: Annotated[Array, "s"]
+    position: Annotated[Array, "m"]
+    velocity: Annotated[Array, "m/s"]
+    robot_position: Annotated[Array, "m"]
+    robot_velocity: Annotated[Array, "m/s"]
+    robot_heading: Annotated[Array, "rad"]
     radius: Array
     desired_speed: Array
     awareness: Array
-    person_arrival_time: Array
-    person_arrival_position: Array
-    robot_arrival_time: Array
+    person_arrival_time: Annotated[Array, "s"]
+    person_arrival_position: Annotated[Array, "m"]
+    robot_arrival_time: Annotated[Array, "s"]
     wall_rescues: int
-    max_person_speed: float
+    max_person_speed: Annotated[float, "m/s"]
     diverged: Divergence | None = None
 
     def __getattr__(self, name: str) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Annotated
 
 import numpy as np
 import numpy.typing as npt
@@ -71,13 +72,13 @@ class GainSensitivity(Table):
     scenarios: tuple[Scenario, ...]
     weights: tuple[float, float, float]
     gain_names: tuple[str, ...]
-    changes_percent: Array
+    changes_percent: Annotated[Array, "percent"]
     gains: Array
     outcome: npt.NDArray[np.str_]
-    arrival_time: Array
-    energy: Array
-    min_distance: Array
-    min_clearance: Array
+    arrival_time: Annotated[Array, "s"]
+    energy: Annotated[Array, "J"]
+    min_distance: Annotated[Array, "m"]
+    min_clearance: Annotated[Array, "m"]
     performance: Array
     mean_performance: Array
     reference_performance: Array

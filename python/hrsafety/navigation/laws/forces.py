@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -43,11 +43,11 @@ class ForceTerms(NamedTuple):
         Omega of (5.5.8), corrected, in N^2/s; NaN for the laws of other authors.
     """
 
-    attractive: Array
-    repulsive: Array
-    detour: Array
-    stabilizing: Array
-    total: Array
+    attractive: Annotated[Array, "N"]
+    repulsive: Annotated[Array, "N"]
+    detour: Annotated[Array, "N"]
+    stabilizing: Annotated[Array, "N"]
+    total: Annotated[Array, "N"]
     region: npt.NDArray[np.str_]
     side: npt.NDArray[np.int64]
     omega: float
@@ -67,12 +67,12 @@ class ForceField(NamedTuple):
         Lyapunov function V in N^2; NaN inside a critical region.
     """
 
-    position: Array
-    attractive: Array
-    repulsive: Array
-    detour: Array
-    stabilizing: Array
-    total: Array
+    position: Annotated[Array, "m"]
+    attractive: Annotated[Array, "N"]
+    repulsive: Annotated[Array, "N"]
+    detour: Annotated[Array, "N"]
+    stabilizing: Annotated[Array, "N"]
+    total: Annotated[Array, "N"]
     potential: Array
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field, replace
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, instance, number
@@ -39,8 +39,8 @@ class SafetyTrace(NamedTuple):
         ``"kept"``, ``"changed"`` or ``"braking"``.
     """
 
-    wanted: Pair
-    command: Pair
+    wanted: Annotated[Pair, "m/s"]
+    command: Annotated[Pair, "m/s"]
     taken_over: bool
     status: str
 

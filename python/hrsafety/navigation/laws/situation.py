@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -30,8 +30,8 @@ class PointMass:
         Limits that the robot keeps, whatever force is asked for, in m/s and m/s^2.
     """
 
-    mass: float
-    radius: float
+    mass: Annotated[float, "kg"]
+    radius: Annotated[float, "m"]
     max_speed: float
     max_acceleration: float
     max_deceleration: float

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -35,8 +35,8 @@ class LocalGoal(NamedTuple):
         Whether it is the goal itself.
     """
 
-    point: Pair
-    cost_to_go: float
+    point: Annotated[Pair, "m"]
+    cost_to_go: Annotated[float, "m"]
     is_goal: bool
 
 
@@ -65,8 +65,8 @@ class Plan:
     (True, True)
     """
 
-    goal: Pair
-    radius: float
+    goal: Annotated[Pair, "m"]
+    radius: Annotated[float, "m"]
     _native: _hrsafety.Plan = field(repr=False, compare=False)
     _made_from: tuple[Guide, StaticMap, Pair] = field(repr=False, compare=False)
     warnings: tuple[ResultWarning, ...] = field(default=(), compare=False)

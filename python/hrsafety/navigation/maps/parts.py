@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -60,9 +60,9 @@ class Cells(NamedTuple):
 
     bits: bytes
     shape: tuple[int, int]
-    resolution: float
-    origin: tuple[float, float]
-    yaw: float
+    resolution: Annotated[float, "m"]
+    origin: Annotated[tuple[float, float], "m"]
+    yaw: Annotated[float, "rad"]
     limits: bool = False
     unseen_bits: bytes = b""
 

@@ -110,6 +110,7 @@ def with_metrics(metrics: Mapping[str, Metric], suffix: str = "") -> Callable[[C
     entries = [f"    {each.name} : {kinds[each.kind]}\n        {_sentence(each)}" for each in metrics.values()]
 
     def fill(owner: C) -> C:
+        owner.UNITS = {name: each.unit for name, each in metrics.items()}  # type: ignore[attr-defined]  # read by _display
         # Without docstrings, as under python -OO, there is nothing to fill.
         if owner.__doc__:
             owner.__doc__ = owner.__doc__.replace("    {metrics}", "\n".join(entries))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
-from typing import Literal, NamedTuple, get_args
+from typing import Annotated, Literal, NamedTuple, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -199,8 +199,8 @@ class Twist(NamedTuple):
         Turn rate omega in rad/s, counter-clockwise.
     """
 
-    speed: float
-    turn_rate: float
+    speed: Annotated[float, "m/s"]
+    turn_rate: Annotated[float, "rad/s"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Annotated
 
 import numpy as np
 import numpy.typing as npt
@@ -55,9 +56,9 @@ class OpenLoopTest:
         If the arrays are not one-dimensional and of one length.
     """
 
-    command: float
-    time: Array
-    angle: Array
+    command: Annotated[float, "V"]
+    time: Annotated[Array, "s"]
+    angle: Annotated[Array, "rad"]
 
     def __post_init__(self) -> None:
         """Check the values."""
@@ -102,15 +103,15 @@ class WheelFit:
     """
 
     command_gain: float
-    decay: float
-    friction_deceleration: float
+    decay: Annotated[float, "1/s"]
+    friction_deceleration: Annotated[float, "rad/s^2"]
     covariance: Array
     interval: Array
-    command: Array
+    command: Annotated[Array, "V"]
     moved: npt.NDArray[np.bool_]
-    acceleration: Array
-    test_decay: Array
-    residual_deviation: Array
+    acceleration: Annotated[Array, "rad/s^2"]
+    test_decay: Annotated[Array, "1/s"]
+    residual_deviation: Annotated[Array, "rad"]
 
     @property
     def inertia(self) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -173,9 +173,9 @@ class WheelReference:
         If the arrays are not one-dimensional and of one length.
     """
 
-    angle: Array
-    speed: Array
-    acceleration: Array
+    angle: Annotated[Array, "rad"]
+    speed: Annotated[Array, "rad/s"]
+    acceleration: Annotated[Array, "rad/s^2"]
 
     def __post_init__(self) -> None:
         """Check the values."""
@@ -299,19 +299,19 @@ class WheelRun(Table):
         The same of a perfect follower, in J.
     """
 
-    time: Array
-    wanted_angle: Array
-    wanted_speed: Array
-    angle: Array
-    speed: Array
-    read_angle: Array
-    known_angle: Array
-    known_speed: Array
-    current: Array
-    voltage: Array
-    ideal_current: Array
-    energy: float
-    ideal_energy: float
+    time: Annotated[Array, "s"]
+    wanted_angle: Annotated[Array, "rad"]
+    wanted_speed: Annotated[Array, "rad/s"]
+    angle: Annotated[Array, "rad"]
+    speed: Annotated[Array, "rad/s"]
+    read_angle: Annotated[Array, "rad"]
+    known_angle: Annotated[Array, "rad"]
+    known_speed: Annotated[Array, "rad/s"]
+    current: Annotated[Array, "A"]
+    voltage: Annotated[Array, "V"]
+    ideal_current: Annotated[Array, "A"]
+    energy: Annotated[float, "J"]
+    ideal_energy: Annotated[float, "J"]
 
     @property
     def angle_error(self) -> Array:

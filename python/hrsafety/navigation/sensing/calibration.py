@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -80,7 +80,7 @@ class CameraCalibration:
     residual_px: Array
     pixel_deviation_px: float
     degrees_of_freedom: int
-    position_error: Array
+    position_error: Annotated[Array, "m"]
     evaluations: int
 
     @property

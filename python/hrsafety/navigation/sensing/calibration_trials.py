@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Annotated
 
 import numpy as np
 import numpy.typing as npt
@@ -118,13 +119,13 @@ class CalibrationStudy:
 
     camera: Camera
     pixel_deviation_px: float
-    points: Array
-    places: Array
+    points: Annotated[Array, "m"]
+    places: Annotated[Array, "m"]
     parameters: Array
     deviation: Array
-    point_error: Array
-    place_error: Array
-    place_bias: Array
+    point_error: Annotated[Array, "m"]
+    place_error: Annotated[Array, "m"]
+    place_bias: Annotated[Array, "m"]
 
 
 def calibration_study(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -178,9 +178,9 @@ class TrackedPositions(NamedTuple):
         velocity (m^2/s^2); zero for other estimators.
     """
 
-    position: Array
-    velocity: Array
-    measured_at: Array
+    position: Annotated[Array, "m"]
+    velocity: Annotated[Array, "m/s"]
+    measured_at: Annotated[Array, "s"]
     covariance: Array
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
-from typing import Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy.typing as npt
 
@@ -185,11 +185,11 @@ class Observation(NamedTuple):
         Exposure of the last frame in each estimate, in s; NaN while nothing is known.
     """
 
-    exposed: Array
-    measured: Array
-    position: Array
-    velocity: Array
-    measured_at: Array
+    exposed: Annotated[Array, "s"]
+    measured: Annotated[Array, "m"]
+    position: Annotated[Array, "m"]
+    velocity: Annotated[Array, "m/s"]
+    measured_at: Annotated[Array, "s"]
 
 
 def observe(

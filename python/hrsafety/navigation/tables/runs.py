@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Annotated
 
 import numpy as np
 import numpy.typing as npt
@@ -141,12 +142,12 @@ class RunTable(RunRows):
     seed: npt.NDArray[np.uint64]
     gains: Array
     outcome: npt.NDArray[np.str_]
-    end_time: Array
-    arrival_time: Array
-    energy: Array
-    path_length: Array
-    min_distance: Array
-    min_clearance: Array
+    end_time: Annotated[Array, "s"]
+    arrival_time: Annotated[Array, "s"]
+    energy: Annotated[Array, "J"]
+    path_length: Annotated[Array, "m"]
+    min_distance: Annotated[Array, "m"]
+    min_clearance: Annotated[Array, "m"]
     entered_active: npt.NDArray[np.int64]
     contacts_moving: npt.NDArray[np.int64]
     contacts_toward: npt.NDArray[np.int64]
@@ -161,12 +162,12 @@ class RunTable(RunRows):
     performance_energy_saving: Array
     descent_share: Array
     force_evaluations: npt.NDArray[np.int64]
-    contact_time: Array | None = None
+    contact_time: Annotated[Array | None, "s"] = None
     contact_speed: Array | None = None
-    time: Array | None = None
-    position: Array | None = None
-    distance: Array | None = None
-    motion_step: float = 0.01
+    time: Annotated[Array | None, "s"] = None
+    position: Annotated[Array | None, "m"] = None
+    distance: Annotated[Array | None, "m"] = None
+    motion_step: Annotated[float, "s"] = 0.01
     built: AsBuilt | None = None
 
     @property

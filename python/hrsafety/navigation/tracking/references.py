@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy.typing as npt
 
@@ -27,9 +27,9 @@ class ReferenceMotion(NamedTuple):
         In m, m/s and m/s^2.
     """
 
-    position: Array
-    velocity: Array
-    acceleration: Array
+    position: Annotated[Array, "m"]
+    velocity: Annotated[Array, "m/s"]
+    acceleration: Annotated[Array, "m/s^2"]
 
 
 class _Motion(Parameters):
@@ -156,9 +156,9 @@ class PathReference(_Motion):
     [[0.75, 0.0]]
     """
 
-    time: Array
-    position: Array
-    velocity: Array
+    time: Annotated[Array, "s"]
+    position: Annotated[Array, "m"]
+    velocity: Annotated[Array, "m/s"]
     _native: _hrsafety.ReferencePath = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:

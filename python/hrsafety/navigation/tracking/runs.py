@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cache
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -43,12 +43,12 @@ class TrackingSummary(Table):
         First instant from which the error stays below each level, in s; NaN if it does not.
     """
 
-    levels: Array
-    final_error: Array
-    max_error: Array
-    final_heading: Array
-    path_length: Array
-    settling_time: Array
+    levels: Annotated[Array, "m"]
+    final_error: Annotated[Array, "m"]
+    max_error: Annotated[Array, "m"]
+    final_heading: Annotated[Array, "rad"]
+    path_length: Annotated[Array, "m"]
+    settling_time: Annotated[Array, "s"]
 
     def __len__(self) -> int:
         """Return the number of runs."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
-from typing import Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -167,22 +167,22 @@ class FollowerRun(Table):
         The robot.
     """
 
-    time: Array
-    position: Array
-    heading: Array
-    virtual_velocity: Array
-    wheel_speed: Array
-    target: Array
-    source: Array
-    attraction: Array
-    repulsion: Array
-    readings: Array
-    clearance: Array
-    shift: Array
+    time: Annotated[Array, "s"]
+    position: Annotated[Array, "m"]
+    heading: Annotated[Array, "rad"]
+    virtual_velocity: Annotated[Array, "m/s"]
+    wheel_speed: Annotated[Array, "m/s"]
+    target: Annotated[Array, "m"]
+    source: Annotated[Array, "m"]
+    attraction: Annotated[Array, "N"]
+    repulsion: Annotated[Array, "N"]
+    readings: Annotated[Array, "m"]
+    clearance: Annotated[Array, "m"]
+    shift: Annotated[Array, "m"]
     contact_obstacle: int | None
-    contact_bearing: float | None
-    source_distance: float
-    path_length: float
+    contact_bearing: Annotated[float | None, "rad"]
+    source_distance: Annotated[float, "m"]
+    path_length: Annotated[float, "m"]
     turning: float
     scene: FollowerScene = field(repr=False)
     follower: Follower = field(repr=False)
@@ -251,8 +251,8 @@ class FixDeviations(NamedTuple):
         Standard deviations in m and rad.
     """
 
-    range: Array
-    bearing: Array
+    range: Annotated[Array, "m"]
+    bearing: Annotated[Array, "rad"]
 
 
 def fix_deviations(range: npt.ArrayLike, bearing: npt.ArrayLike) -> FixDeviations:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import count, number, positive
@@ -53,9 +53,9 @@ class SkirtSpacing(NamedTuple):
         Factor a with which (3) gives the gap of the ring that closes.
     """
 
-    closing_gap: float
-    printed_gap: float
-    printed_gap_closed: float
+    closing_gap: Annotated[float, "rad"]
+    printed_gap: Annotated[float, "rad"]
+    printed_gap_closed: Annotated[float, "rad"]
     closing_correction: float
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import field
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -173,8 +173,8 @@ class SkirtTest(Table):
     layout: npt.NDArray[np.int64]
     direction: npt.NDArray[np.str_]
     repeat: npt.NDArray[np.int64]
-    min_clearance: Array
-    contact_time: Array
+    min_clearance: Annotated[Array, "m"]
+    contact_time: Annotated[Array, "s"]
     nearest_seen: npt.NDArray[np.bool_]
 
     def __len__(self) -> int:
@@ -337,19 +337,19 @@ class SkirtRun(Table):
     """
 
     skirt: UltrasonicSkirt
-    course: float
-    time: Array
-    position: Array
-    velocity: Array
-    heading: Array
-    yaw_rate: Array
-    readings: Array
+    course: Annotated[float, "rad"]
+    time: Annotated[Array, "s"]
+    position: Annotated[Array, "m"]
+    velocity: Annotated[Array, "m/s"]
+    heading: Annotated[Array, "rad"]
+    yaw_rate: Annotated[Array, "rad/s"]
+    readings: Annotated[Array, "m"]
     action: npt.NDArray[np.str_]
-    disc_center: Array
-    disc_radius: Array
+    disc_center: Annotated[Array, "m"]
+    disc_radius: Annotated[Array, "m"]
     disc_seen: npt.NDArray[np.bool_]
-    min_clearance: float
-    contact_time: float
+    min_clearance: Annotated[float, "m"]
+    contact_time: Annotated[float, "s"]
 
     def columns(self) -> Columns:
         """Return one-dimensional columns by name, a row for each firing.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Annotated
 
 import numpy as np
 
@@ -51,8 +52,8 @@ class SmallestSkirt(Table):
 
     sensors: int | None
     contact_share: float
-    chassis_radius: float
-    speed: float
+    chassis_radius: Annotated[float, "m"]
+    speed: Annotated[float, "m/s"]
     counts: tuple[int, ...]
     contacts: tuple[Share, ...]
     skirts: tuple[UltrasonicSkirt, ...]

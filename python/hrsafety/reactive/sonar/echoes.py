@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import field
-from typing import Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -156,8 +156,8 @@ class SonarMounts(NamedTuple):
         Directions in rad.
     """
 
-    position: Array
-    axis: Array
+    position: Annotated[Array, "m"]
+    axis: Annotated[Array, "rad"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
@@ -37,7 +37,7 @@ class Delays(NamedTuple):
         First sample of the window that was compared.
     """
 
-    delay_12: float
+    delay_12: Annotated[float, "s"]
     delay_13: float
     lag_12: int
     lag_13: int
@@ -64,7 +64,7 @@ class Likeness:
     """
 
     method: str
-    sample_rate: float
+    sample_rate: Annotated[float, "Hz"]
     lags_12: np.ndarray[tuple[int, ...], np.dtype[np.int64]]
     lags_13: np.ndarray[tuple[int, ...], np.dtype[np.int64]]
     values_12: Array

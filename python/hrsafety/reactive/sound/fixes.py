@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import field
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -45,10 +45,10 @@ class Fix:
         between the microphones; ``"no_curvature"``: the wave front is not that of a source in front.
     """
 
-    range: float
-    bearing: float
+    range: Annotated[float, "m"]
+    bearing: Annotated[float, "rad"]
     covariance: Array
-    curvature: float
+    curvature: Annotated[float, "m"]
     status: str
 
     @property
@@ -88,10 +88,10 @@ class Fixes(Table):
         c (t_1 - 2 t_2 + t_3) in m.
     """
 
-    range: Array
-    bearing: Array
+    range: Annotated[Array, "m"]
+    bearing: Annotated[Array, "rad"]
     covariance: Array
-    curvature: Array
+    curvature: Annotated[Array, "m"]
     _status_code: npt.NDArray[np.uint8] = field(repr=False)
 
     @property
