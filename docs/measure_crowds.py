@@ -48,8 +48,6 @@ DOORS = ((0.70, 1.61), (0.95, 1.76), (1.20, 2.27), (1.30, 2.72), (1.60, 3.10), (
 WALKED = {"length": 20.0, "width": 3.0, "two_way": False, "radius": 0.2, "time_limit": 40.0}
 """Corridor in which people of a model walk."""
 LABORATORY_SEEDS = 5
-STANDS = 0.05
-"""Speed in m/s up to which a robot stands."""
 
 
 def say(*words: object) -> None:
@@ -61,7 +59,7 @@ def crossings() -> str:
     """Return the contacts in crossings of a recording whose people react."""
     recording = datasets.load_pedestrians(Path(os.environ["HRSAFETY_RECORDINGS"]) / "zara01.csv")
     laws = {"field": nav.VirtualForceField(), "ORCA": nav.OptimalReciprocalCollisionAvoidance()}
-    lines = head("people", *(f"{law}: {what}" for law in laws for what in ("standing", "moving")))
+    lines = head("people", *(f"{law}: {what}" for law in laws for what in ("toward", "away", "standing")))
     for model in MODELS:
         say(model.__name__)
         cells = [count for law in laws.values() for count in encounters(model(), recording, law)]
@@ -69,22 +67,19 @@ def crossings() -> str:
     return "\n".join(lines) + "\n"
 
 
-def encounters(model: nav.crowd.Pedestrian, recording: datasets.Recording, law: nav.Law) -> tuple[int, int]:
-    """Return how many crossings have a contact with the standing and with the moving robot."""
-    standing = moving = 0
+def encounters(model: nav.crowd.Pedestrian, recording: datasets.Recording, law: nav.Law) -> tuple[int, ...]:
+    """Return how many crossings have a contact while the robot moves toward somebody, moves away, and stands."""
+    found = []
     for crossing in scenarios.crossings(recording, runs=CROSSINGS):
         scene = crossing.scenario
         robot = nav.crowd.CrowdRobot(start=scene.start, goal=scene.goal, law=law, robot=scene.robot)
         world = scenarios.with_recording(
             recording, 1.0, model=model, robots=[robot], start_time=crossing.start_time, radius=0.4
         )
-        run = nav.crowd.simulate_crowd(world)
-        gap = np.hypot(*np.moveaxis(run.position - run.robot_position, -1, 0)) - run.radius - scene.robot.radius
-        speed = np.hypot(*run.robot_velocity[:, 0].T)
-        touched = np.min(np.where(np.isnan(gap), np.inf, gap), axis=1, initial=np.inf) < 0.0
-        standing += bool((touched & (speed <= STANDS)).any())
-        moving += bool((touched & (speed > STANDS)).any())
-    return standing, moving
+        (episode,) = nav.crowd.episodes_of(nav.crowd.simulate_crowd(world))
+        (arrival_time,) = nav.metrics.evaluate_many([episode]).arrival_time.tolist()
+        found.append(contacts_of(episode, arrival_time))
+    return tuple(sum(getattr(each, kind) > 0 for each in found) for kind in ("toward", "away", "standing"))
 
 
 def laboratory() -> str:

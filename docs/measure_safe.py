@@ -50,22 +50,39 @@ def say(*words: object) -> None:
     print(time.strftime("%H:%M:%S"), *words, file=sys.stderr, flush=True)
 
 
-def rows_of(result: Result, where: str, speed: float) -> Iterator[str]:
+EXACT = "exact"
+SENSING = {EXACT: {}, f"±{1e3 * ERROR:g} mm, {LATENCY:g} s late": {"noise": ERROR, "latency": LATENCY}}
+"""Arguments of a benchmark by how people are measured; shields know it."""
+
+
+def rows_of(result: Result, where: str, speed: float, sensing: str = EXACT) -> Iterator[str]:
     """Return the lines of a suite."""
     for name, rows in result.rows.items():
         counts = [sum(row.outcome == "arrived" for row in rows)]
         counts += [sum(getattr(row, name) > 0 for row in rows) for name in ("contacts", "toward", "away", "at_fault")]
         shown = "-" if "shield" not in name else f"{speed:.1f}"
         cells = [percent(count, len(rows)) for count in counts]
-        yield line(where, name, shown, len(rows), *cells, f"{result.mean_arrival(name):.1f}")
+        yield line(where, name, shown, sensing, len(rows), *cells, f"{result.mean_arrival(name):.1f}")
 
 
 def shares() -> str:
     """Return the table of the suites."""
-    lines = head("suite", "law", "v of shield, m/s", "episodes", "success %", "contact %", *SPLIT, "arrival, s")
+    lines = head(
+        "suite",
+        "law",
+        "v of shield, m/s",
+        "people measured",
+        "episodes",
+        "success %",
+        "contact %",
+        *SPLIT,
+        "arrival, s",
+    )
     for where, suite, speed, seed, laws in SUITES:
-        say(where, speed, laws)
-        lines += rows_of(benchmark(suite, laws, person_speed=speed, seed=seed), where, speed)
+        for sensing, measured in SENSING.items():
+            say(where, speed, laws, sensing)
+            result = benchmark(suite, laws, person_speed=speed, seed=seed, **measured)
+            lines += rows_of(result, where, speed, sensing)
     worlds = os.environ.get("HRSAFETY_BARN")
     if worlds:
         say("BARN")

@@ -118,7 +118,7 @@ def sensed_scenes(name: str, body: str, sensing: str, sized: bool) -> list[nav.S
     return scenes
 
 
-def contact_cells(name: str, body: str, sensing: str, sized: bool, parts: int = 3) -> dict[tuple[str, str], str]:
+def contact_cells(name: str, body: str, sensing: str, sized: bool) -> dict[tuple[str, str], str]:
     """Return the shares of contacts by gain set and mode; without noise a configuration is a single run."""
     scenes = sensed_scenes(name, body, sensing, sized)
     cells = {}
@@ -126,14 +126,14 @@ def contact_cells(name: str, body: str, sensing: str, sized: bool, parts: int = 
         law = nav.VirtualForceField(**options)
         for gains, values in GAIN_SETS.items():
             table = nav.simulate_batch(scenes, law, np.array([values]))
-            cells[gains, mode] = shares(table, parts) if len(scenes) > 1 else single(table, parts)
+            cells[gains, mode] = shares(table) if len(scenes) > 1 else single(table)
     return cells
 
 
-def single(table: nav.RunTable, parts: int = 3) -> str:
+def single(table: nav.RunTable) -> str:
     """Return what a single run touched."""
-    if table.contacts_toward[0] or (parts == 2 and table.contacts_moving[0]):
-        return "contact, moving toward it" if parts == 3 else "contact, moving"
+    if table.contacts_toward[0]:
+        return "contact, moving toward it"
     if table.contacts_moving[0]:
         return "contact, moving away"
     return "contact, standing" if table.contacts_standing[0] else "none"

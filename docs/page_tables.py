@@ -28,15 +28,15 @@ def percent(count: int, runs: int, digits: int = 1) -> str:
     return f"{100 * share.value:.{digits}f} ({100 * share.low:.{digits}f} to {100 * share.high:.{digits}f})"
 
 
-def shares(table: nav.RunTable, parts: int = 3) -> str:
+def shares(table: nav.RunTable) -> str:
     """Return the shares of runs with a contact, by what the robot did.
 
     It moved toward somebody, was touched from behind or from the side while it moved, or only while it stood, a run in
-    the first of these that it has. Of two parts the first is all contacts of a moving robot.
+    the first of these that it has.
     """
     toward, moving = table.contacts_toward > 0, table.contacts_moving > 0
     standing = (table.contacts_standing > 0) & ~moving
-    split = (toward, moving & ~toward, standing) if parts == 3 else (moving, standing)
+    split = (toward, moving & ~toward, standing)
     return "; ".join(percent(int(each.sum()), len(each)) for each in split)
 
 

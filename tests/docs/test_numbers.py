@@ -82,9 +82,7 @@ def test_contacts_of_the_stabilizing_modes_have_every_sensing(sized: bool) -> No
 def test_contacts_with_a_sensing_are_what_is_computed(name: str, body: str, sensing: str, sized: bool) -> None:
     column = list(SENSINGS).index(sensing)
     rows = sensed_cells(sized)
-    # Contacts of a moving robot stand split on the page or not.
-    parts = 3 if any("; " in cell and cell.count("; ") == 2 for cells in rows.values() for cell in cells) else 2
-    for (gains, mode), cell in measure_stabilizing.contact_cells(name, body, sensing, sized, parts).items():
+    for (gains, mode), cell in measure_stabilizing.contact_cells(name, body, sensing, sized).items():
         title = f"{name}, {body} measured, {measure_stabilizing.GAINS[gains]}, {mode}"
         assert rows[title][column] == cell
 
@@ -92,9 +90,12 @@ def test_contacts_with_a_sensing_are_what_is_computed(name: str, body: str, sens
 def test_text_quotes_the_contacts_with_a_delay() -> None:
     of_source, sized = sensed_cells(sized=False), sensed_cells(sized=True)
     people = {title: cells[2] for title, cells in sized.items() if "people measured" in title}
-    assert {cell.split()[0] for cell in people.values()} == {"0.0"}
-    crowds = [float(of_source[title][2].split()[0]) for title in people if title.startswith("crowds of 12")]
-    assert f"{min(crowds):.1f} to {max(crowds):.1f} % in the crowds of 12" in " ".join(VALIDATION.split())
+    assert {part.split()[0] for cell in people.values() for part in cell.split("; ")[:2]} == {"0.0"}
+    words = "moves toward somebody in {:.1f} to {:.1f} % of the crowds of 12, "
+    words += "and is touched while it retreats in {:.1f} to {:.1f} %"
+    crowds = [of_source[title][2].split("; ") for title in people if title.startswith("crowds of 12")]
+    toward, away = ([float(cell[part].split()[0]) for cell in crowds] for part in (0, 1))
+    assert words.format(min(toward), max(toward), min(away), max(away)) in " ".join(VALIDATION.split())
     for gains, words in (("New*", "in {:.1f} to {:.1f} % of the runs"), ("New", "in up to {1:.1f} %")):
         titles = [f"c3, people and robot measured, {gains}, {mode}" for mode in measure_stabilizing.MODES]
         narrow = [float(sized[title][2].split()[0]) for title in titles]
