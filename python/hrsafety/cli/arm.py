@@ -16,6 +16,7 @@ from hrsafety import arms
 from hrsafety._arguments import Array, meant, readable
 from hrsafety.cli import output, terminal
 from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.pages.report import Report, Section, Table
 
 __all__ = ["show_arm"]
 
@@ -42,12 +43,15 @@ def show_arm(options: argparse.Namespace) -> None:
         directions["u"] = tuple(options.direction)
     place = {"link": link, "point": options.point, "check_limits": not options.no_limits}
     masses = arm.point_masses(poses[:, np.newaxis], direction=list(directions.values()), **place)
-    print("\n".join(_summary(arm, options, link)))
-    print()
-    print(_table(masses, list(directions)))
-    print()
-    for path in _write(arm, poses, masses, list(directions), place, Path(options.out)):
-        print(f"wrote {path}")
+    report = Report(
+        title=f"Masses of {arm.name}",
+        facts=list(_facts(arm, options, link)),
+        sections=[Section("Masses", [_table(masses, list(directions))])],
+        warnings=masses.warnings,
+        source=options.robot,
+    )
+    print(terminal.told(report))
+    output.say_written(list(_write(arm, poses, masses, list(directions), place, Path(options.out))))
     output.report_warnings(masses.warnings, options.strict)
 
 
@@ -142,25 +146,25 @@ def _read_poses(arm: arms.Arm, path: Path) -> Array:
 # ---- words --------------------------------------------------------------------------------------
 
 
-def _summary(arm: arms.Arm, options: argparse.Namespace, link: str | None) -> Iterator[str]:
+def _facts(arm: arms.Arm, options: argparse.Namespace, link: str | None) -> Iterator[tuple[str, str]]:
     point = ", ".join(f"{each:g}" for each in options.point)
-    yield f"robot          {arm.name} ({options.robot}, SHA-256 {arm.sha256[:16]})"
-    yield f"joints         {', '.join(arm.joint_names)}"
+    yield "robot", f"{arm.name} ({options.robot}, SHA-256 {arm.sha256[:16]})"
+    yield "joints", ", ".join(arm.joint_names)
     if arm.locked:
-        yield f"locked         {', '.join(arm.locked)}"
-    yield f"point          ({point}) m on {link}"
+        yield "locked", ", ".join(arm.locked)
+    yield "point", f"({point}) m on {link}"
     payload = f", payload {arm.payload_mass:g} kg" if arm.payloads else ""
     plate = "compare with the type plate" if arm.type_plate_mass is None else f"type plate {arm.type_plate_mass:g} kg"
-    yield f"all links      {arm.total_mass:g} kg ({plate})"
-    yield f"moving mass    {arm.moving_mass:g} kg{payload}"
-    yield f"ISO mass       {arm.iso_mass:g} kg (half of the moving mass, and the payload)"
+    yield "all links", f"{arm.total_mass:g} kg ({plate})"
+    yield "moving mass", f"{arm.moving_mass:g} kg{payload}"
+    yield "ISO mass", f"{arm.iso_mass:g} kg (half of the moving mass, and the payload)"
 
 
 def _mass(value: float) -> str:
     return "unbounded" if math.isinf(value) else f"{value:.3f}"
 
 
-def _table(masses: arms.PointMasses, names: Sequence[str]) -> str:
+def _table(masses: arms.PointMasses, names: Sequence[str]) -> Table:
     rows = []
     for index, position in enumerate(masses.position[:, 0]):
         along = [_mass(value) for value in masses.effective_mass[index]]
@@ -168,7 +172,7 @@ def _table(masses: arms.PointMasses, names: Sequence[str]) -> str:
         rows.append((index, *(f"{value:.3f}" for value in position), *along, *(_mass(each) for each in extremes)))
     header = ("pose", "x", "y", "z", *(f"along {name}" for name in names), "least", "worst")
     units = ("", "m", "m", "m", *("kg" for _ in names), "kg", "kg")
-    return terminal.table((header, units), rows)
+    return Table(headers=(header, units), rows=rows, left=(), printed=True)
 
 
 def _write(
@@ -187,7 +191,8 @@ def _write(
     one = arm.point_masses(pose, direction=(1.0, 0.0, 0.0), **place)  # type: ignore[arg-type]  # as in show_arm
     skeleton = arm.skeleton(pose, check_limits=bool(place["check_limits"]))
     figure = plotting.mass_ellipse(skeleton, one, title=f"{arm.name or 'arm'}, pose {worst}: mass by direction")
-    yield output.write_picture(place_of / "mass_ellipse.png", figure)
+    drawn = output.pictures(place_of, [("mass_ellipse", figure, "Mass by direction in the pose with the worst mass.")])
+    yield from (place_of / f"{each.name}.png" for each in drawn)
 
 
 def _rows(poses: Array, masses: arms.PointMasses) -> Iterator[list[object]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 from hrsafety import navigation as nav
@@ -12,7 +13,8 @@ from hrsafety.benchmarks.results import HEAD, NAMES
 from hrsafety.benchmarks.runs import case_of
 from hrsafety.cli import output, progress, terminal
 from hrsafety.errors import InvalidParameterError
-from hrsafety.pages import Picture, require_jinja, written
+from hrsafety.pages import Picture
+from hrsafety.pages.report import Report, Section, Table
 
 __all__ = ["run_suite"]
 
@@ -31,8 +33,7 @@ def run_suite(options: argparse.Namespace) -> None:
     """
     place = None if options.out is None else output.planned_folder(options.out)
     if place is not None:
-        output.require_matplotlib("benchmark --out")
-        require_jinja("benchmark --out")
+        output.require_page("benchmark --out")
     try:
         with progress.live() as shown:
             result = benchmark(
@@ -51,32 +52,36 @@ def run_suite(options: argparse.Namespace) -> None:
     except InvalidParameterError as error:
         name = OPTIONS.get(error.argument)
         raise error if name is None else error.renamed(name) from None
-    print(f"{result.suite}: {result.conditions}; shares in percent with 95 % Wilson intervals\n")
-    print(terminal.table([HEAD], result.cells(), left=(0,)))
+    table = Table(headers=[HEAD], rows=result.cells(), printed=True)
+    note = (
+        "Shares in percent with 95 % Wilson intervals. A contact is at fault where the robot moves toward whom it "
+        "touches."
+    )
+    report = Report(
+        title=f"Benchmark {result.suite}",
+        facts=[("suite", result.suite), ("conditions", result.conditions)],
+        sections=[Section("Shares", [table, note])],
+        warnings=result.warnings,
+        warned="What a shield does not cover here",
+    )
+    print(terminal.told(report))
     if place is not None:
-        print()
-        for path in _write(options, result, Path(options.out)):
-            print(f"wrote {path}")
+        output.say_written(_write(options, result, report, Path(options.out)))
     output.report_warnings(result.warnings, options.strict)
 
 
-def _write(options: argparse.Namespace, result: Result, place: Path) -> Iterator[Path]:
+def _write(options: argparse.Namespace, result: Result, report: Report, place: Path) -> list[Path]:
     """Write table and page beside the rows."""
     stem = f"{result.suite}-{'+'.join(str(len(rows)) for rows in list(result.rows.values())[:1])}"
-    yield output.write_csv(place / f"{stem}.csv", HEAD, result.cells())
     every = [(name, *(getattr(row, each) for each in NAMES)) for name, rows in result.rows.items() for row in rows]
-    yield output.write_csv(place / f"{stem}-episodes.csv", ("law", *NAMES), every)
-    pictures = list(_failures(options, result))
-    page = written(
-        "benchmark.html",
-        title=f"Benchmark {result.suite}",
-        summary=result.conditions,
-        head=HEAD,
-        rows=result.cells(),
-        pictures=pictures,
-        warned=result.warnings,
-    )
-    yield output.write_text(place / f"{stem}.html", page)
+    tables = [
+        output.write_csv(place / f"{stem}.csv", HEAD, result.cells()),
+        output.write_csv(place / f"{stem}-episodes.csv", ("law", *NAMES), every),
+    ]
+    failed = list(_failures(options, result))
+    sections = [*report.sections, *([Section("Episodes that did not succeed", failed)] if failed else [])]
+    whole = replace(report, sections=sections, files=[path.name for path in tables])
+    return [*tables, output.write_text(place / f"{stem}.html", whole.page())]
 
 
 def _failures(options: argparse.Namespace, result: Result) -> Iterator[Picture]:

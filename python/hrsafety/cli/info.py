@@ -11,6 +11,7 @@ from pathlib import Path
 
 import hrsafety
 from hrsafety.cli import terminal
+from hrsafety.pages.report import Report, Section, Table
 
 __all__ = ["print_info"]
 
@@ -22,10 +23,9 @@ _OWN = frozenset({"test", "dev", "docs", "all"})
 
 def print_info() -> None:
     """Print versions, machine and optional extras with what each of them still needs."""
-    print("\n".join(f"{name:<10}{words}" for name, words in _facts()))
-    print()
     rows = [(extra, ", ".join(has) or "-", ", ".join(lacks) or "-", _command(lacks)) for extra, has, lacks in _extras()]
-    print(terminal.table([("extra", "installed", "missing", "to install")], rows, left=(0, 1, 2, 3)))
+    table = Table(headers=[("extra", "installed", "missing", "to install")], rows=rows, left=(0, 1, 2, 3), printed=True)
+    print(terminal.told(Report(title="hrsafety", facts=list(_facts()), sections=[Section("Extras", [table])])))
 
 
 def _facts() -> Iterator[tuple[str, str]]:

@@ -6,16 +6,20 @@ import argparse
 import math
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
-from hrsafety.cli import output, simulate_page, terminal, verdict
+from hrsafety.cli import output, terminal, verdict
 from hrsafety.cli.output import decimal
-from hrsafety.cli.simulate_page import PageTable
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.trajectory import CONTACT_SPEED
+from hrsafety.pages.report import Report, Section, Table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 __all__ = ["simulate_file"]
 
@@ -34,42 +38,31 @@ def simulate_file(options: argparse.Namespace) -> None:
         described = scenarios.load(options.scenario)
     scenario, law = described.scenario, output.with_options(described.law, options)
     score = nav.evaluate(scenario, law, integrator=options.integrator, step=options.step, hold=options.hold)
-    place = None if options.out is None else output.folder(options.out)
-    setting = [
-        ("scenario", options.scenario),
-        ("law", output.law_words(law)),
-        ("stepping", output.stepping_words(options, scenario.control_period)),
-    ]
-    summary, table = list(_summary(score)), _obstacle_table(score.trajectory)
-    print("\n".join(f"{name:<10}{words}" for name, words in setting))
-    print()
-    print("\n".join(f"{name:<15}{words}" for name, words in summary))
-    if scenario.obstacles:
-        print()
-        print(terminal.table(table.headers, table.rows, left=table.left))
-    found = output.warnings_of(scenario, score.trajectory)
+    run = score.trajectory
+    found, said = output.warnings_of(scenario, run), _how_it_ended(run)
+    report = Report(
+        title=f"Simulation of {Path(options.scenario).name}",
+        facts=[
+            ("scenario", options.scenario),
+            ("law", output.law_words(law)),
+            ("stepping", output.stepping_words(options, scenario.control_period)),
+            *_summary(score),
+        ],
+        said=said,
+        good=run.outcome == "arrived",
+        sections=[Section("Obstacles", [_obstacle_table(run)])] if scenario.obstacles else [],
+        warnings=found,
+        source=options.scenario,
+    )
+    print(terminal.told(report))
     written = []
-    if place is not None:
-        written = [score.trajectory.to_csv(place / "trajectory.csv")]
-        pictures = dict(_draw(score.trajectory, place))
-        written += pictures
-        page = simulate_page.html(
-            source=options.scenario,
-            said=_how_it_ended(score.trajectory),
-            good=score.trajectory.outcome == "arrived",
-            facts=[*setting, *summary],
-            table=table,
-            pictures=pictures,
-            files=written,
-            found=found,
-        )
-        written.append(output.write_text(place / "summary.html", page))
+    if options.out is not None:
+        place = output.folder(options.out)
+        written = output.write_report(report, place, _draw(run), [run.to_csv(place / "trajectory.csv")])
     if options.animate is not None:
-        written.append(output.animation(score.trajectory, options.animate))
-    if written:
-        print()
-        print("\n".join(f"wrote {path}" for path in written))
-    verdict.end(_how_it_ended(score.trajectory), verdict.counted(score.trajectory), found, options, 1)
+        written.append(output.animation(run, options.animate))
+    output.say_written(written)
+    verdict.end(said, verdict.counted(run), found, options, 1)
 
 
 def _how_it_ended(run: nav.Trajectory) -> str:
@@ -117,7 +110,7 @@ def _summary(score: nav.Performance) -> Iterator[tuple[str, str]]:
     yield "performance H", f"{score.total:.3f}  ({parts})"
 
 
-def _obstacle_table(run: nav.Trajectory) -> PageTable:
+def _obstacle_table(run: nav.Trajectory) -> Table:
     of_contact = ("first contact", "robot speed then", "robot moved")
     names = ("obstacle", "kind", "r_3", "r_2", "least distance", "least clearance", *of_contact)
     units = ("", "", "m", "m", "m", "m", "s", "m/s", "")
@@ -135,17 +128,13 @@ def _obstacle_table(run: nav.Trajectory) -> PageTable:
         )
         for index, obstacle in enumerate(run.scenario.obstacles)
     ]
-    return PageTable(heading="Obstacles", headers=(names, units), rows=rows, left=(1,))
+    return Table(headers=(names, units), rows=rows, left=(1,), printed=True)
 
 
-def _draw(run: nav.Trajectory, place: Path) -> Iterator[tuple[Path, str]]:
-    """Write the pictures; yield each with its caption."""
+def _draw(run: nav.Trajectory) -> Iterator[tuple[str, Figure, str]]:
     from hrsafety import plotting
 
-    for name, figure, caption in (
-        ("paths", plotting.paths([run]), "Path of the robot and of everything that moves."),
-        ("time_sequence", plotting.time_sequence(run), "The scene at instants of the run."),
-        ("distances", plotting.distances([run]), "Distance to the goal and to the obstacles over time."),
-        ("energy", plotting.energy([run]), "Wheel currents and accumulated loss over time."),
-    ):
-        yield output.write_picture(place / f"{name}.png", figure), caption
+    yield "paths", plotting.paths([run]), "Path of the robot and of everything that moves."
+    yield "time_sequence", plotting.time_sequence(run), "The scene at instants of the run."
+    yield "distances", plotting.distances([run]), "Distance to the goal and to the obstacles over time."
+    yield "energy", plotting.energy([run]), "Wheel currents and accumulated loss over time."

@@ -11,6 +11,7 @@ import os
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,7 +22,8 @@ from hrsafety.cli.exit_codes import WARNED
 from hrsafety.cli.progress import live
 from hrsafety.cli.terminal import styled
 from hrsafety.errors import InvalidParameterError, MissingExtraError, Shown
-from hrsafety.pages import require_jinja
+from hrsafety.pages import Picture, require_jinja
+from hrsafety.pages.report import Report, Section
 from hrsafety.plausibility import ResultWarning
 from hrsafety.scenarios.laws import law_named, name_of
 
@@ -37,16 +39,19 @@ __all__ = [
     "leave_if_strict",
     "located",
     "picture",
+    "pictures",
     "planned_animation",
     "planned_folder",
     "report_warnings",
     "require_matplotlib",
+    "require_page",
+    "say_written",
     "stepping_words",
     "target",
     "warnings_of",
     "with_options",
     "write_csv",
-    "write_picture",
+    "write_report",
     "write_text",
 ]
 
@@ -227,8 +232,7 @@ def check_targets(options: argparse.Namespace) -> None:
     """Refuse before a run the folder and files that could not be written after it."""
     if options.out is not None:
         planned_folder(options.out)
-        require_matplotlib("--out")
-        require_jinja("--out")
+        require_page("--out")
     if options.animate is not None:
         planned_animation(options.animate)
     if options.json is not None:
@@ -257,6 +261,55 @@ def write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[object]
     return write_text(path, buffer.getvalue())
 
 
+def pictures(place: Path, drawn: Iterable[tuple[str, Figure, str]]) -> list[Picture]:
+    """Write pictures as PNG into a folder, and return them for a page.
+
+    Parameters
+    ----------
+    place : Path
+        The folder.
+    drawn : iterable of (str, Figure, str)
+        File name without ending, picture and caption.
+    """
+    found = []
+    for name, figure, caption in drawn:
+        found.append(Picture(name=name, caption=caption, png=picture(figure)))
+        write_file(place / f"{name}.png", found[-1].png)
+    return found
+
+
+def write_report(
+    report: Report, place: Path, drawn: Iterable[tuple[str, Figure, str]], files: Sequence[Path], name: str = "summary"
+) -> list[Path]:
+    """Write the pictures of a report and its page, and return all files.
+
+    Parameters
+    ----------
+    report : Report
+        What was found.
+    place : Path
+        The folder.
+    drawn : iterable of (str, Figure, str)
+        Pictures that stand at the end of the page, see `pictures`.
+    files : sequence of Path
+        Files beside the page that are written already.
+    name : str
+        Name of the page without ending.
+    """
+    made = pictures(place, drawn)
+    written = [*files, *(place / f"{each.name}.png" for each in made)]
+    sections = [*report.sections, *([Section("Pictures", made)] if made else [])]
+    whole = replace(report, sections=sections, files=[*report.files, *(path.name for path in written)])
+    return [*written, write_text(place / f"{name}.html", whole.page())]
+
+
+def say_written(paths: Sequence[Path]) -> None:
+    """Print which files were written."""
+    if paths:
+        print()
+        print("\n".join(f"wrote {path}" for path in paths))
+
+
 def picture(figure: Figure) -> bytes:
     """Return a picture as PNG."""
     buffer = io.BytesIO()
@@ -264,9 +317,10 @@ def picture(figure: Figure) -> bytes:
     return buffer.getvalue()
 
 
-def write_picture(path: Path, figure: Figure) -> Path:
-    """Write a picture as PNG."""
-    return write_file(path, picture(figure))
+def require_page(option: str) -> None:
+    """Find out before the run that its page and pictures cannot be made."""
+    require_matplotlib(option)
+    require_jinja(option)
 
 
 def planned_animation(path: str) -> None:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,15 +14,18 @@ import numpy.typing as npt
 from hrsafety import datasets, scenarios
 from hrsafety import navigation as nav
 from hrsafety._records import dataclass
-from hrsafety.cli import output, simulate_page, terminal, verdict
+from hrsafety.cli import output, terminal, verdict
 from hrsafety.cli.output import decimal
-from hrsafety.cli.simulate_page import PageTable
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.tables.runs import RunTable
+from hrsafety.pages.report import Report, Section, Table
 from hrsafety.plausibility import ResultWarning, gathered
 from hrsafety.scenarios.laws import name_of
 from hrsafety.scenarios.recorded_people import ACTIVE_RADIUS, CRITICAL_RADIUS, PERSON_RADIUS
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 __all__ = ["simulate_people"]
 
@@ -67,48 +69,35 @@ def simulate_people(options: argparse.Namespace) -> None:
     stepping = {"integrator": options.integrator, "step": options.step, "hold": options.hold}
     summary = nav.simulate_batch([crossing.scenario for crossing in crossings], law, **stepping)
     met = _encounters(crossings, summary)
-    place = None if options.out is None else output.folder(options.out)
-    setting, table = list(_heading(options, recording, crossings, law)), _run_table(crossings, summary)
-    totals = "\n".join(_totals(summary, met))
-    print("\n".join(f"{name:<10}{words}" for name, words in setting))
-    print()
-    print(terminal.table(table.headers, table.rows, left=table.left))
-    print()
-    print(totals)
     found = _doubts(recording, crossings, summary, [nav.simulate(each.scenario, law, **stepping) for each in crossings])
+    counts, totals = verdict.counted(summary), "\n".join(_totals(summary, met))
+    said = _how_they_ended(summary, counts)
+    report = Report(
+        title=f"Simulation of {Path(options.people).name}",
+        facts=list(_heading(options, recording, crossings, law)),
+        said=said,
+        good=not counts["any"],
+        sections=[Section("Runs", [_run_table(crossings, summary), totals])],
+        warnings=found,
+        values=_values(recording, crossings, law, summary, met),
+        source=options.people,
+    )
+    print(f"{terminal.told(report)}\n\n{totals}")
     written = []
     if options.json is not None:
-        report = _report(recording, crossings, law, summary, met)
-        report["warnings"] = [warning.message for warning in dict.fromkeys(found)]
-        text = json.dumps(report, indent=1, allow_nan=False)
-        written.append(output.write_text(Path(options.json), text + "\n"))
-    if place is not None or options.animate is not None:
+        written.append(output.write_text(Path(options.json), report.json()))
+    if options.out is not None or options.animate is not None:
         index = int(np.argmax(summary.entered_active)) if shown is None else shown
         trajectory = nav.simulate(crossings[index].scenario, law, **stepping)
-        if place is not None:
-            files = list(_tables(crossings, summary, met, place))
-            pictures = dict(_draw(summary, trajectory, place))
-            files += pictures
-            page = simulate_page.html(
-                source=options.people,
-                said=_how_they_ended(summary, verdict.counted(summary)),
-                good=bool((summary.outcome == "arrived").all()),
-                facts=setting,
-                table=table,
-                pictures=pictures,
-                files=files,
-                found=found,
-                totals=totals,
-            )
-            written += [*files, output.write_text(place / "summary.html", page)]
+        if options.out is not None:
+            place = output.folder(options.out)
+            tables = list(_tables(crossings, summary, met, place))
+            written += output.write_report(report, place, _draw(summary, trajectory), tables)
         if options.animate is not None:
             print(f"\nanimated run  {index}")
             written.append(output.animation(trajectory, options.animate))
-    if written:
-        print()
-        print("\n".join(f"wrote {path}" for path in written))
-    counts = verdict.counted(summary)
-    verdict.end(_how_they_ended(summary, counts), counts, found, options, len(summary))
+    output.say_written(written)
+    verdict.end(said, counts, found, options, len(summary))
 
 
 def _doubts(
@@ -189,7 +178,7 @@ RUN_HEADER = (
 )
 
 
-def _run_table(crossings: Sequence[scenarios.Crossing], summary: RunTable) -> PageTable:
+def _run_table(crossings: Sequence[scenarios.Crossing], summary: RunTable) -> Table:
     rows = [
         (
             row,
@@ -207,7 +196,7 @@ def _run_table(crossings: Sequence[scenarios.Crossing], summary: RunTable) -> Pa
         )
         for row, crossing in enumerate(crossings)
     ]
-    return PageTable(heading="Runs", headers=RUN_HEADER, rows=rows, left=(4,))
+    return Table(headers=RUN_HEADER, rows=rows, left=(4,), printed=True)
 
 
 def _totals(summary: RunTable, met: _Encounters) -> Iterator[str]:
@@ -297,7 +286,7 @@ def _law(law: nav.Law) -> dict[str, Any]:
     return {"type": name_of(law), **numbers}
 
 
-def _report(
+def _values(
     recording: datasets.Recording,
     crossings: Sequence[scenarios.Crossing],
     law: nav.Law,
@@ -318,13 +307,9 @@ def _report(
         "law": _law(law),
         "outcomes": dict(zip(words.tolist(), counts.tolist(), strict=True)),
         **{name: int(getattr(summary, name).sum()) for name in RUN_COLUMNS if name.startswith("contacts_")},
-        "runs": [{key: _finite_or_none(value) for key, value in record.items()} for record in records],
+        "runs": records,
         "people": _person_records(crossings, met),
     }
-
-
-def _finite_or_none(value: object) -> object:
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _tables(
@@ -336,16 +321,12 @@ def _tables(
     yield output.write_csv(place / "people.csv", PERSON_COLUMNS, (list(record.values()) for record in people))
 
 
-def _draw(summary: RunTable, trajectory: nav.Trajectory, place: Path) -> Iterator[tuple[Path, str]]:
-    """Write the pictures of one run and of all; yield each with its caption."""
+def _draw(summary: RunTable, trajectory: nav.Trajectory) -> Iterator[tuple[str, Figure, str]]:
+    """Yield the pictures of one run and of all, each with its caption."""
     from hrsafety import plotting
 
-    for name, figure, caption in (
-        ("paths", plotting.paths([trajectory], regions=False), "Path of the robot across the people, in one run."),
-        ("time_sequence", plotting.time_sequence(trajectory), "Instants of the same run."),
-        ("outcomes", plotting.outcomes({"all runs": summary}), "How the runs ended."),
-    ):
-        yield output.write_picture(place / f"{name}.png", figure), caption
+    yield "paths", plotting.paths([trajectory], regions=False), "Path of the robot across the people, in one run."
+    yield "time_sequence", plotting.time_sequence(trajectory), "Instants of the same run."
+    yield "outcomes", plotting.outcomes({"all runs": summary}), "How the runs ended."
     if np.isfinite(summary.min_clearance).any():
-        figure = plotting.clearances({"all runs": summary})
-        yield output.write_picture(place / "clearances.png", figure), "Least clearance of the runs."
+        yield "clearances", plotting.clearances({"all runs": summary}), "Least clearance of the runs."

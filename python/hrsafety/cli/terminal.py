@@ -16,7 +16,9 @@ from typing import TYPE_CHECKING, TextIO
 if TYPE_CHECKING:
     from rich.console import Console
 
-__all__ = ["can_draw", "colored", "console", "styled", "table"]
+    from hrsafety.pages.report import Report
+
+__all__ = ["can_draw", "colored", "console", "styled", "table", "told"]
 
 WIDEST = 10_000  # columns
 
@@ -78,6 +80,16 @@ def table(headers: Sequence[Sequence[str]], rows: Iterable[Sequence[object]], *,
     """
     cells = [[str(cell) for cell in row] for row in rows]
     return (_drawn if can_draw(sys.stdout) else _aligned)(headers, cells, left)
+
+
+def told(report: Report) -> str:
+    """Return what the terminal shows of a report: its facts, and the tables that are printed."""
+    parts = ["\n".join(f"{name:<15}{words}" for name, words in report.facts)]
+    for each in report.printed:
+        rows = list(each.rows)
+        more = [each.more] if each.most is not None and len(rows) > each.most else []
+        parts.append("\n".join([table(each.headers, rows[: each.most], left=each.left), *more]))
+    return "\n\n".join(filter(None, parts))
 
 
 def _aligned(headers: Sequence[Sequence[str]], rows: Sequence[Sequence[str]], left: Sequence[int]) -> str:

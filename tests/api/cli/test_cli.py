@@ -99,7 +99,7 @@ def test_another_law_drives_the_robot(name: str, scene: Path, capsys: pytest.Cap
     assert main(["simulate", str(scene), "--law", name]) == 0
     text = capsys.readouterr().out
     run = nav.simulate(scenarios.configuration("c1"), LAWS[name.replace("-", "_")]())
-    assert f"law       {name.replace('-', ' ')}, " in text
+    assert f"law            {name.replace('-', ' ')}, " in text
     assert f"arrival time   {run.arrival_time:.2f} s" in text
 
 

@@ -117,7 +117,7 @@ def test_where_nothing_fits_the_largest_closing_speed_is_told(
     assert f"up to {found.max_closing_speed:.3f} m/s" in text
     assert f"slow down by   {3.0 - found.max_closing_speed:.3f} m/s" in text
     page = (tmp_path / "out" / "summary.html").read_text(encoding="utf-8")
-    assert "fits at 3 m/s" in page
+    assert "None fits with a damping of 0 to 200 N s/m at 3 m/s" in page
     assert f"{found.max_closing_speed:.3f} m/s" in page
 
 

@@ -148,7 +148,7 @@ def test_unbalanced_sobol_design_is_told_on_terminal_and_page(
         file = written(tmp_path / f"{size}.toml", f"{sampled}[design]\nkind = 'sobol'\nsize = {size}\n")
         assert main(["sweep", file, "--out", str(tmp_path / str(size))]) == 0
         page = (tmp_path / str(size) / "summary.html").read_text(encoding="utf-8")
-        assert (f"warning: {told.format(size)}" in capsys.readouterr().out) == wrong
+        assert (f"warning: {told.format(size)}" in capsys.readouterr().err) == wrong
         assert (f'<div class="banner no"><strong>Warnings</strong><ul><li>{told.format(size)}' in page) == wrong
 
 

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from hrsafety.cli.cell.pictures import PARTS, Drawing
 from hrsafety.cli.cell.report import at_path
-from hrsafety.pages import DASH, shown, written
+from hrsafety.pages import DASH, shown
 from hrsafety.standards.verdicts import VERDICT_WORDS
 
 if TYPE_CHECKING:
     from markupsafe import Markup
+
+    from hrsafety.pages.report import Report
 
 __all__ = ["html"]
 
@@ -30,13 +32,13 @@ LOOKS = {"not_permitted": "bad", "exceeds": "bad", "not_checked": "unsure", "wit
 CONTACT_WORDS = {"quasi_static": "clamped", "transient": "free (transient)"}
 
 
-def html(report: Mapping[str, Any], drawings: Sequence[Drawing]) -> str:
+def html(report: Report, drawings: Sequence[Drawing]) -> str:
     """Return the page.
 
     Parameters
     ----------
-    report : dict
-        What report.json holds.
+    report : Report
+        With the values of report.json.
     drawings : sequence of Drawing
         Pictures.
 
@@ -47,9 +49,11 @@ def html(report: Mapping[str, Any], drawings: Sequence[Drawing]) -> str:
     """
     from markupsafe import Markup, escape
 
+    values = {**report.values, "warnings": report.messages}
+
     def number(path: str, spec: str = ".4g", scale: float = 1.0) -> Markup:
         """Return a number of the report with its path; words as they are."""
-        value = at_path(report, path)
+        value = at_path(values, path)
         if value is None:
             words = DASH
         elif isinstance(value, (str, bool)):
@@ -63,19 +67,17 @@ def html(report: Mapping[str, Any], drawings: Sequence[Drawing]) -> str:
     by_part: dict[str, list[Drawing]] = {part: [] for part in PARTS}
     for each in drawings:
         by_part[each.part].append(each)
-    return written(
+    return report.page(
         "cell.html",
-        title=report["title"],
-        report=report,
+        values=values,
         n=number,
         drawn=by_part,
         svg=Markup,
         verdict_words=VERDICT_WORDS,
         status_words=STATUS_WORDS,
         contact_words=CONTACT_WORDS,
-        good="within_limits",
         looks=LOOKS,
-        inputs=list(_paths(report["inputs"], "inputs")),
+        inputs=list(_paths(values["inputs"], "inputs")),
     )
 
 

@@ -15,8 +15,10 @@ from hrsafety._keys import canonical
 from hrsafety.contact import Cell, ContactStudy
 from hrsafety.contact.cell.study import numbers_of
 from hrsafety.pages import versions
+from hrsafety.pages.report import Report, Section, Table
+from hrsafety.standards.verdicts import VERDICT_WORDS
 
-__all__ = ["CONFIRM", "NOT_COVERED", "at_path", "json_text", "report_of"]
+__all__ = ["CONFIRM", "NOT_COVERED", "at_path", "report_of"]
 
 FORMAT = 1
 CONFIRM = (
@@ -33,11 +35,13 @@ NOT_COVERED = (
 )
 
 
-def report_of(cell: Cell, study: ContactStudy, *, command: str, date: str | None) -> dict[str, Any]:
-    """Return what report.json holds.
+def report_of(path: str, cell: Cell, study: ContactStudy, *, command: str, date: str | None) -> Report:
+    """Return the report of a study.
 
     Parameters
     ----------
+    path : str
+        The cell file, as given.
     cell : Cell
         What was asked.
     study : ContactStudy
@@ -46,34 +50,63 @@ def report_of(cell: Cell, study: ContactStudy, *, command: str, date: str | None
         How the report was made.
     date : str or None
         Date to print; absent when ``None``.
-
-    Returns
-    -------
-    dict
-        Values of JSON only.
     """
-    head: dict[str, Any] = {"format": "hrsafety contact report", "format_version": FORMAT, "title": cell.title}
-    if date is not None:
-        head["date"] = date
-    found: dict[str, Any] = numbers_of(
+    values: dict[str, Any] = numbers_of(
         {
-            **head,
+            "format": "hrsafety contact report",
+            "format_version": FORMAT,
+            **({} if date is None else {"date": date}),
             **study.fields,
             "inputs": cell.inputs,
             "materials": cell.materials,
             "equations": _equations(cell, study),
             "not_covered": list(NOT_COVERED),
             "confirmation": CONFIRM,
-            "warnings": list(dict.fromkeys(each.message for each in study.warnings)),
             "audit": _audit(cell, command),
         }
     )
-    return found
+    return Report(
+        title=cell.title,
+        facts=list(_facts(path, cell, values)),
+        said=VERDICT_WORDS[study.verdict],
+        good=study.verdict == "within_limits",
+        sections=[Section("Contacts", [_contacts(study)])],
+        warnings=study.warnings,
+        values=values,
+        source=path,
+    )
 
 
-def json_text(report: Mapping[str, Any]) -> str:
-    """Return a report as text: sorted keys, shortest floats that read back the same."""
-    return json.dumps(report, indent=1, sort_keys=True, ensure_ascii=False, allow_nan=False) + "\n"
+def _facts(path: str, cell: Cell, values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    robot, limits = values["robot"], values["limits"]
+    mass = robot["mass"] if isinstance(robot["mass"], str) else f"{robot['mass']:.3f} kg"
+    yield "cell", path
+    yield "robot", f"{mass} ({robot['rule']})"
+    if robot["iso_mass"] is not None:
+        directional = robot["directional_mass"]
+        shown = directional if isinstance(directional, str) else f"{directional:.3f} kg"
+        yield "masses", f"effective {shown}, ISO/TS 15066 {robot['iso_mass']:.3f} kg"
+        pose = ", ".join(f"{each['joint']} {each['value']:.4g}" for each in robot["pose"])
+        drawn = " drawn between the limits of the joints; poses in [robot] names those that occur"
+        sampled = "samples" in cell.robot.inputs
+        yield "worst pose", f"{pose} (rad or m), of {robot['poses']:,}{drawn if sampled else ''}"
+    yield "limits", f"{limits['title']}, edition {limits['edition']}"
+    yield "verdict", VERDICT_WORDS[values["verdict"]]
+    yield "", CONFIRM
+
+
+def _contacts(study: ContactStudy) -> Table:
+    rows = []
+    for each in study.verdicts:
+        numbers = [each[name] for name in ("planned_speed", "allowed_speed", "margin")]
+        shown = ["-" if value is None else f"{value:.3f}" for value in numbers]
+        place = (each["region"], each["contact"], each["covering"] or "bare")
+        area = "-" if each["contact_area"] is None else f"{1e4 * each['contact_area']:.3g}"
+        words = (each["governs"] or "-", ", ".join(each["doubts"]) or "-")
+        rows.append((*place, area, VERDICT_WORDS[each["verdict"]], *shown, *words))
+    names = ("region", "contact", "covering", "area", "verdict", "planned", "allowed", "margin", "governs", "doubts")
+    units = ("", "", "", "cm2", "", "m/s", "m/s", "m/s", "", "")
+    return Table(headers=(names, units), rows=rows, left=(0, 1, 2, 4, 8, 9), printed=True)
 
 
 def at_path(report: Any, path: str) -> Any:

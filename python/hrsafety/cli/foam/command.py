@@ -6,18 +6,16 @@ import argparse
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from hrsafety import impact
 from hrsafety.cli import output, terminal
-from hrsafety.cli.foam import page as foam_page
+from hrsafety.cli.foam import report as foam_report
 from hrsafety.cli.foam.curves import Remembered
 from hrsafety.cli.foam.file import Array, FoamDesignFile, load
-from hrsafety.cli.foam.report import Check, FoamReport, Judged, Range
-from hrsafety.pages import require_jinja
+from hrsafety.cli.foam.found import Check, FoundFoams, Judged, Range
 from hrsafety.plausibility import ResultWarning
 
 if TYPE_CHECKING:
@@ -37,8 +35,7 @@ def design_file(options: argparse.Namespace) -> None:
         Of ``hrsafety foam``.
     """
     output.planned_folder(options.out)
-    output.require_matplotlib("foam")
-    require_jinja("foam")
+    output.require_page("foam")
     with output.located(options.design):
         described = load(options.design)
     place = output.folder(options.out)
@@ -47,16 +44,13 @@ def design_file(options: argparse.Namespace) -> None:
         upper=Remembered(design.upper) if design.limits.given().keys() - {"max_compression"} else None,
         lower=Remembered(design.lower),
     )
-    report = _report(described, design, curves)
-    print(f"design         {options.design}")
-    print("\n".join(_summary(report)))
-    if report.foams:
-        print()
-        print(_foam_table(report))
-    print()
-    for path in _write(report, _picture(report, design, curves), place):
-        print(f"wrote {path}")
-    output.report_warnings(report.warnings, options.strict)
+    found = _found(described, design, curves)
+    report = foam_report.report_of(options.design, found)
+    print(terminal.told(report))
+    table = output.write_csv(place / "boundaries.csv", ["damping_N_s_per_m", *_COLUMNS], _rows(found))
+    drawn = [("boundaries", _picture(found, design, curves), foam_report.CAPTION)]
+    output.say_written(output.write_report(report, place, drawn, [table]))
+    output.report_warnings(found.warnings, options.strict)
 
 
 # ---- judging ----------------------------------------------------------------------------------------
@@ -90,8 +84,8 @@ class _Curves(NamedTuple):
     lower: Remembered
 
 
-def _report(file: FoamDesignFile, design: impact.FoamDesign, curves: _Curves) -> FoamReport:
-    return FoamReport(
+def _found(file: FoamDesignFile, design: impact.FoamDesign, curves: _Curves) -> FoundFoams:
+    return FoundFoams(
         file=file,
         upper=curves.upper(file.damping) if curves.upper else None,
         lower=curves.lower(file.damping),
@@ -146,65 +140,16 @@ def _judged(design: impact.FoamDesign, name: str, foam: impact.Foam) -> Judged:
     )
 
 
-# ---- words ------------------------------------------------------------------------------------------
-
-
-def _summary(report: FoamReport) -> Iterator[str]:
-    file = report.file
-    arm = file.manipulator
-    yield f"manipulator    {arm.mass:g} kg, {arm.damping:g} N s/m, {arm.stiffness / KILO:g} kN/m"
-    yield f"closing speed  {file.closing_speed:g} m/s"
-    yield f"limits         {foam_page.limits_words(file.limits)}"
-    found = report.feasibility
-    span = f"{file.damping[0]:g} to {file.damping[-1]:g} N s/m"
-    yield f"margin         {100.0 * file.margin:g} % of every limit and of the linear range"
-    if not found.max_closing_speed > 0.0:
-        yield f"foams          none fits with a damping of {span}, at any speed"
-        return
-    if not found.feasible:
-        yield f"foams          none fits with a damping of {span}"
-        yield f"slow down by   {found.slow_down:.3f} m/s"
-    elif report.widest is not None:
-        words = foam_page.range_words(report.widest)
-        yield f"foams          fit; widest range at {report.widest.damping:g} N s/m: {words}"
-    else:
-        yield f"foams          fit with a damping of {span}"
-    yield (
-        f"fastest        some foam fits up to {found.max_closing_speed:.3f} m/s: {found.stiffness / KILO:.2f} kN/m "
-        f"with {found.damping:g} N s/m"
-    )
-
-
-def _foam_table(report: FoamReport) -> str:
-    rows = []
-    for judged in report.foams:
-        values = [f"{check.value:.3f}{'' if check.kept else ' !'}" for check in judged.checks]
-        verdict = judged.verdict
-        stiffness, damping = f"{judged.foam.stiffness / KILO:.2f}", f"{judged.foam.damping:.1f}"
-        rows.append((judged.name, verdict, stiffness, damping, *values, f"{judged.max_closing_speed:.3f}"))
-    checks = report.foams[0].checks
-    names = ("foam", "verdict", "stiffness", "damping", *(check.name for check in checks), "fits up to")
-    units = ("", "", "kN/m", "N s/m", *(check.unit for check in checks), "m/s")
-    return terminal.table((names, units), rows, left=(0, 1))
-
-
 # ---- files ------------------------------------------------------------------------------------------
-
-
-def _write(report: FoamReport, picture: Figure, place: Path) -> Iterator[Path]:
-    yield output.write_csv(place / "boundaries.csv", ["damping_N_s_per_m", *_COLUMNS], _rows(report))
-    drawn = output.write_picture(place / "boundaries.png", picture)
-    yield drawn
-    yield output.write_text(place / "summary.html", foam_page.html(report, drawn.read_bytes()))
 
 
 _COLUMNS = ("upper_stiffness_N_per_m", "upper_status", "lower_stiffness_N_per_m", "lower_status")
 
 
-def _rows(report: FoamReport) -> Iterator[list[object]]:
-    for index, damping in enumerate(report.file.damping):
+def _rows(found: FoundFoams) -> Iterator[list[object]]:
+    for index, damping in enumerate(found.file.damping):
         row: list[object] = [float(damping)]
-        for boundary in (report.upper, report.lower):
+        for boundary in (found.upper, found.lower):
             if boundary is None:
                 row += ["", "no limit"]
             else:
@@ -212,22 +157,22 @@ def _rows(report: FoamReport) -> Iterator[list[object]]:
         yield row
 
 
-def _picture(report: FoamReport, design: impact.FoamDesign, curves: _Curves) -> Figure:
+def _picture(found: FoundFoams, design: impact.FoamDesign, curves: _Curves) -> Figure:
     from hrsafety import plotting
     from hrsafety.plotting.impacts.boundaries import refined
 
-    file = report.file
+    file = found.file
     damping = refined(file.damping, [curve for curve in curves if curve])
     return plotting.foam_boundaries(
         damping,
         curves.upper(damping) if curves.upper else None,
         curves.lower(damping),
-        foams=report.file.foams,
-        accepted={judged.name: judged.accepted for judged in report.foams},
+        foams=file.foams,
+        accepted={judged.name: judged.accepted for judged in found.foams},
         statuses={name: getattr(design.margin(foam), "status", "") for name, foam in file.foams.items()},
         results=[design],
         fitting=design.stiffness_range(damping, 0.0),
         upper_label="upper",
         lower_label="lower",
-        title=report.file.title,
+        title=file.title,
     )

@@ -13,25 +13,13 @@ from typing import Any
 from hrsafety import navigation as nav
 from hrsafety._atomic import only_writer
 from hrsafety.cli import exit_codes, output, progress, terminal
-from hrsafety.cli.optimize import page as optimize_page
 from hrsafety.cli.optimize import pictures as optimize_pictures
 from hrsafety.cli.optimize import record as optimize_record
+from hrsafety.cli.optimize import report as optimize_report
 from hrsafety.cli.optimize.file import GAIN_NAMES, Gains, GainStudy, load
-from hrsafety.cli.optimize.report import (
-    MOST_PATHS,
-    NOT_EVERYWHERE,
-    GainReport,
-    Scored,
-    confidence_words,
-    gain_words,
-    scenario_table,
-    scenario_words,
-    search_words,
-    set_table,
-)
+from hrsafety.cli.optimize.found import MOST_PATHS, FoundGains, Scored, gain_words
 from hrsafety.errors import FolderInUseError, InvalidParameterError, Shown
 from hrsafety.navigation.gains.metrics import is_maximized
-from hrsafety.pages import Picture, require_jinja
 
 __all__ = ["optimize_file"]
 
@@ -39,7 +27,6 @@ LOCK = ".lock"
 CHECKPOINT = "search.checkpoint"
 FRONT_CHECKPOINT = "front.checkpoint"
 SO_FAR = "best_so_far.json"
-MOST_LINES = 20  # scenarios that are printed
 _STEPPING = ("integrator", "step", "hold")
 # Argument of a search to the table of the file that it comes from.
 _TABLES = {
@@ -79,32 +66,27 @@ def optimize_file(options: argparse.Namespace) -> None:
         With code 3, when everything has been written, if no gain set keeps the constraints.
     """
     output.planned_folder(options.out)
-    output.require_matplotlib("optimize")
-    require_jinja("optimize")
+    output.require_page("optimize")
     study = _loaded(options.study)
     new = not Path(options.out).exists()
     place = output.folder(options.out)
     with only_writer(place / LOCK, FolderInUseError):
         try:
-            report = _searched(options, study, place)
+            found = _searched(options, study, place)
         except InvalidParameterError as error:
             if new and [path.name for path in place.iterdir()] == [LOCK]:
                 (place / LOCK).unlink()
                 place.rmdir()
             raise _located(options.study, error) from None
-        print("\n".join(_summary(report)))
-        print()
-        for path in _write(report, place):
-            print(f"wrote {path}")
+        _show(found, place)
         for path in (*_checkpoints(study, place), place / SO_FAR):
             path.unlink(missing_ok=True)
-    found = output.warnings_of(report.search)
-    output.report_warnings(found, strict=False)
-    if not report.search.valid:
-        search = report.search
+    search, doubts = found.search, output.warnings_of(found.search)
+    output.report_warnings(doubts, strict=False)
+    if not search.valid:
         print(f"hrsafety: nothing feasible: {search.shortcoming}; {search.remedy}", file=sys.stderr, flush=True)
         raise SystemExit(exit_codes.FAILED_RUN)
-    output.leave_if_strict(found, options.strict)
+    output.leave_if_strict(doubts, options.strict)
 
 
 def _checkpoints(study: GainStudy, place: Path) -> tuple[Path, Path]:
@@ -133,7 +115,7 @@ def _located(path: str, error: InvalidParameterError) -> InvalidParameterError:
 # ---- searching --------------------------------------------------------------------------------------
 
 
-def _searched(options: argparse.Namespace, study: GainStudy, place: Path) -> GainReport:
+def _searched(options: argparse.Namespace, study: GainStudy, place: Path) -> FoundGains:
     """Search, resumed or from the start, and score what was found."""
     checkpoint, front_checkpoint = _checkpoints(study, place)
     for path in (checkpoint, front_checkpoint):
@@ -156,7 +138,7 @@ def _searched(options: argparse.Namespace, study: GainStudy, place: Path) -> Gai
             stopped = front is None
     if stopped:
         _leave(options, study, search, place)
-    return GainReport(
+    return FoundGains(
         path=options.study,
         study=study,
         search=search,
@@ -289,51 +271,16 @@ def _sensitivity(study: GainStudy, law: nav.Law, threads: int | None) -> nav.gai
     return nav.gain_sensitivity(study.scenarios, law, threads=threads, **_scoring(study))
 
 
-# ---- words ------------------------------------------------------------------------------------------
-
-
-def _summary(report: GainReport) -> Iterator[str]:
-    search, study = report.search, report.study
-    best = report.sets[0]
-    since = " since it was resumed" if report.resumed else ""
-    yield f"study          {report.path}"
-    yield f"scenarios      {scenario_words(study)}"
-    yield f"search         {search_words(search)}"
-    yield (
-        f"counted        {search.evaluations:,} gain sets, {search.failures:,} of them with a contact or without "
-        f"arrival; {search.episodes:,} runs in {report.seconds:.2f} s{since}"
-    )
-    if search.valid:
-        yield f"best gains     {gain_words(best.law.gains)}"
-    else:
-        yield f"best gains     none: {search.shortcoming}"
-        yield f"remedy         {search.remedy}"
-        yield f"nearest gains  {gain_words(best.law.gains)}"
-    yield f"objective      {report.objective} {best.value:.5f}{confidence_words(search)}"
-    if search.valid and not search.feasible:
-        yield f"not feasible   {NOT_EVERYWHERE}"
-    yield ""
-    yield terminal.table(*set_table(report), left=(0,))
-    yield ""
-    header, rows = scenario_table(report)
-    yield terminal.table(header, rows[:MOST_LINES], left=(0, 1))
-    if len(rows) > MOST_LINES:
-        yield f"and {len(rows) - MOST_LINES} more scenarios in results.json"
-
-
 # ---- files ------------------------------------------------------------------------------------------
 
 
-def _write(report: GainReport, place: Path) -> Iterator[Path]:
-    pictures = dict(optimize_pictures.make(report))
-    drawn = {name: output.write_picture(place / f"{name}.png", picture.figure) for name, picture in pictures.items()}
-    yield from drawn.values()
-    if report.front is not None:
-        yield report.front.to_csv(place / "front.csv")
-    yield output.write_text(place / "results.json", optimize_record.results(report))
-    shown = {
-        name: Picture(name=name, caption=f"{picture.caption}.", png=drawn[name].read_bytes())
-        for name, picture in pictures.items()
-    }
-    warned = list(dict.fromkeys(map(str, output.warnings_of(report.search))))
-    yield output.write_text(place / "summary.html", optimize_page.html(report, shown, warned))
+def _show(found: FoundGains, place: Path) -> None:
+    """Print what was found, and write values, pictures and page."""
+    pictures = output.pictures(place, optimize_pictures.make(found))
+    report = optimize_report.report_of(found, {each.name: each for each in pictures})
+    print(terminal.told(report))
+    files = [place / f"{each.name}.png" for each in pictures]
+    if found.front is not None:
+        files.append(found.front.to_csv(place / "front.csv"))
+    files.append(output.write_text(place / "results.json", report.json()))
+    output.say_written(output.write_report(report, place, (), files))

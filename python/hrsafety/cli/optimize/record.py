@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -12,26 +10,27 @@ import numpy as np
 from hrsafety import __version__
 from hrsafety import navigation as nav
 from hrsafety.cli.optimize.file import GAIN_NAMES, GainStudy
-from hrsafety.cli.optimize.report import GainReport, Scored
+from hrsafety.cli.optimize.found import FoundGains, Scored
+from hrsafety.pages.report import json_text
 
-__all__ = ["best_so_far", "results"]
+__all__ = ["best_so_far", "settings", "values"]
 
 
-def results(report: GainReport) -> str:
-    """Return everything that was found as JSON.
+def values(report: FoundGains) -> dict[str, Any]:
+    """Return every value that was found.
 
     Parameters
     ----------
-    report : GainReport
+    report : FoundGains
         What was found.
 
     Returns
     -------
-    str
-        JSON text; what is not a finite number is null.
+    dict
+        By name.
     """
     found = report.flatness
-    content = _head(report.path, report.study, report.search) | {
+    return _head(report.path, report.study, report.search) | {
         "seconds": report.seconds,
         "gain_sets": [_scored(entry, report.study) for entry in report.sets],
         "flatness": {
@@ -48,7 +47,6 @@ def results(report: GainReport) -> str:
         "local": [_local(entry) for entry in report.search.local],
         "front": None if report.front is None else _front(report.front),
     }
-    return _text(content)
 
 
 def best_so_far(path: str, study: GainStudy, search: nav.GainSearch) -> str:
@@ -69,7 +67,7 @@ def best_so_far(path: str, study: GainStudy, search: nav.GainSearch) -> str:
         JSON text.
     """
     unfinished = {"interrupted": True}  # the front, if the search itself came to its end
-    return _text(_head(path, study, search) | unfinished | {"history": [_round(entry) for entry in search.history]})
+    return json_text(_head(path, study, search) | unfinished | {"history": [_round(entry) for entry in search.history]})
 
 
 def _head(path: str, study: GainStudy, search: nav.GainSearch) -> dict[str, Any]:
@@ -194,20 +192,3 @@ def _front(front: nav.gains.ParetoFront) -> dict[str, Any]:
 
 def _by_gain(values: Sequence[Any] | np.ndarray[Any, Any]) -> dict[str, Any]:
     return dict(zip(GAIN_NAMES, values, strict=True))
-
-
-def _text(content: dict[str, Any]) -> str:
-    return json.dumps(_plain(content), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-
-
-def _plain(value: Any) -> Any:
-    """Return a value with nothing but what JSON has."""
-    if isinstance(value, dict):
-        return {str(name): _plain(entry) for name, entry in value.items()}
-    if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
-    if isinstance(value, (list, tuple)):
-        return [_plain(entry) for entry in value]
-    if isinstance(value, np.generic):
-        return _plain(value.item())
-    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -16,12 +16,10 @@ from typing import Any
 
 from hrsafety import sweep
 from hrsafety.cli import output, progress, terminal
-from hrsafety.cli.sweep import page as sweep_page
-from hrsafety.cli.sweep import pictures as sweep_pictures
+from hrsafety.cli.sweep import report as sweep_report
 from hrsafety.cli.sweep.file import SweepFile, load
-from hrsafety.cli.sweep.summary import Summary, summarized
+from hrsafety.cli.sweep.pictures import make
 from hrsafety.errors import InvalidParameterError, MissingExtraError
-from hrsafety.pages import Picture, require_jinja
 from hrsafety.sweep.estimates import size_words, time_words
 
 __all__ = ["sweep_file"]
@@ -46,8 +44,7 @@ def sweep_file(options: argparse.Namespace) -> None:
     """
     if not options.dry_run:
         output.planned_folder(options.out)
-        output.require_matplotlib("sweep")
-        require_jinja("sweep")
+        output.require_page("sweep")
     if options.table is not None:
         output.target("--table", options.table, _FORMATS)
     if options.workers is not None and options.workers < 1:
@@ -64,12 +61,15 @@ def sweep_file(options: argparse.Namespace) -> None:
     if options.chunks is not None and not result.complete:
         print(_share_words(options, result))
         return
-    seconds = time.perf_counter() - begin
-    summary = summarized(result)
-    print("\n".join(_words(options, described, summary, seconds)))
-    print()
-    for path in _write(options, described, summary, Path(options.out)):
-        print(f"wrote {path}")
+    report = sweep_report.report_of(options.study, described, result, time.perf_counter() - begin)
+    print(terminal.told(report))
+    place = output.folder(options.out)
+    tables = []
+    if options.table is not None:
+        target = Path(options.table)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        tables = [result.to_parquet(target) if target.suffix == ".parquet" else result.to_npz(target)]
+    output.say_written(output.write_report(report, place, make(result, described.show), tables))
     output.report_warnings(output.warnings_of(result), options.strict)
 
 
@@ -169,33 +169,3 @@ def _workers(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
             yield {"client": client}
     else:
         yield {}
-
-
-def _words(options: argparse.Namespace, described: SweepFile, summary: Summary, seconds: float) -> Iterator[str]:
-    result = summary.result
-    yield f"study    {options.study}"
-    yield f"design   {sweep_page.design_words(result)}"
-    for axis in result.axes:
-        yield f"axis     {axis.label}: {sweep_page.axis_words(axis)}"
-    chunks = "1 chunk" if result.chunk_count == 1 else f"{result.chunk_count:,} chunks"
-    yield f"rows     {len(result):,} in {chunks}, {seconds:.1f} s"
-    yield from (str(warning) for warning in result.warnings)
-    yield ""
-    rows = [(each.label, *each.numbers()) for each in summary.numbers if each.column.name in described.show]
-    yield terminal.table((("column", "least", "mean", "largest", "without value"),), rows, left=(0,))
-    for each in summary.words:
-        yield f"{each.label}: {', '.join(f'{word} {number:,}' for word, number in each.counts)}"
-
-
-def _write(options: argparse.Namespace, described: SweepFile, summary: Summary, place: Path) -> Iterator[Path]:
-    pictures = []
-    for name, figure, caption in sweep_pictures.make(summary.result, described.show):
-        drawn = output.write_picture(place / f"{name}.png", figure)
-        pictures.append(Picture(name=name, caption=f"{caption}.", png=drawn.read_bytes()))
-        yield drawn
-    if options.table is not None:
-        target = Path(options.table)
-        target.parent.mkdir(parents=True, exist_ok=True)
-        yield summary.result.to_parquet(target) if target.suffix == ".parquet" else summary.result.to_npz(target)
-    page = sweep_page.html(described.title, summary, described.show, pictures)
-    yield output.write_text(place / "summary.html", page)

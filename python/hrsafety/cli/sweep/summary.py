@@ -72,6 +72,10 @@ class Words:
         """Name."""
         return self.column.label
 
+    def shares(self) -> str:
+        """Return how often each word occurs, as text."""
+        return ", ".join(f"{word} {number:,}" for word, number in self.counts)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Summary:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -111,14 +111,14 @@ class ContactRobot:
     """
 
     kind: str
-    mass: float
+    mass: Annotated[float, "kg"]
     rule: str
-    directional_mass: float | None = None
-    iso_mass: float | None = None
-    total_mass: float | None = None
-    moving_mass: float | None = None
-    payload_mass: float | None = None
-    quantile_mass: float | None = None
+    directional_mass: Annotated[float | None, "kg"] = None
+    iso_mass: Annotated[float | None, "kg"] = None
+    total_mass: Annotated[float | None, "kg"] = None
+    moving_mass: Annotated[float | None, "kg"] = None
+    payload_mass: Annotated[float | None, "kg"] = None
+    quantile_mass: Annotated[float | None, "kg"] = None
     near_singular: bool = False
     pose: Mapping[str, float] | None = None
     position: tuple[float, ...] | None = None

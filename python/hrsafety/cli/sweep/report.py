@@ -1,0 +1,105 @@
+"""The report of ``hrsafety sweep``."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+
+from hrsafety.cli.sweep.file import SweepFile
+from hrsafety.cli.sweep.summary import Summary, summarized
+from hrsafety.pages import sentence
+from hrsafety.pages.report import Report, Section, Table
+from hrsafety.sweep import Axis, SweepResult
+
+__all__ = ["report_of"]
+
+_KINDS = {"grid": "grid", "latin_hypercube": "Latin hypercube", "sobol": "Sobol sequence"}
+# More values than these are given as a count.
+MOST_LISTED = 8
+
+
+def design_words(result: SweepResult) -> str:
+    """Return the design in a line."""
+    settings = result.design.settings()
+    seed = f", seed {settings['seed']}" if "seed" in settings else ""
+    cases = f", {len(result.cases)} cases each" if result.cases else ""
+    return f"{_KINDS[settings['kind']]} of {settings['rows']:,} rows{seed}{cases}"
+
+
+def axis_words(axis: Axis) -> str:
+    """Return the values of an axis in a line."""
+    if axis.values is not None:
+        if len(axis.values) <= MOST_LISTED:
+            return ", ".join(f"{value:g}" for value in axis.values)
+        return f"{len(axis.values)} values from {min(axis.values):g} to {max(axis.values):g}"
+    number = f"{axis.size} values " if axis.size is not None else ""
+    scale = {"linear": "", "log": ", logarithmic", "integer": ", whole numbers"}[axis.scale]
+    return f"{number}{axis.low:g} to {axis.high:g}{scale}"
+
+
+def report_of(study: str, described: SweepFile, result: SweepResult, seconds: float) -> Report:
+    """Return the report of a sweep.
+
+    Parameters
+    ----------
+    study : str
+        Its file, as given.
+    described : SweepFile
+        What was asked.
+    result : SweepResult
+        What was found.
+    seconds : float
+        How long the run took, in s.
+    """
+    summary = summarized(result)
+    cases = f" ({', '.join(result.cases)})" if result.cases else ""
+    chunks = "1 chunk" if result.chunk_count == 1 else f"{result.chunk_count:,} chunks"
+    source = result.provenance
+    shown = [each for each in summary.numbers if each.column.name in described.show]
+    rest = [each for each in summary.numbers if each.column.name not in described.show]
+    titles = ("quantity", "least", "mean", "largest", "without value")
+    extremes = _extremes(summary, described.show)
+    blocks: list[str | Table] = [
+        Table(headers=[titles], rows=[(each.label, *each.numbers()) for each in shown], printed=True),
+        *([Table(headers=[titles], rows=[(each.label, *each.numbers()) for each in rest])] if rest else []),
+        *(f"{sentence(each.label)}: {each.shares()}." for each in summary.words),
+    ]
+    settings = json.dumps(source["settings"], indent=1, ensure_ascii=False)
+    return Report(
+        title=described.title,
+        facts=[
+            ("study", study),
+            ("design", f"{design_words(result)}{cases}"),
+            *(("axis", f"{axis.label}: {axis_words(axis)}") for axis in result.axes),
+            ("rows", f"{len(result):,} in {chunks}, {seconds:.1f} s"),
+            *((each.label, each.shares()) for each in summary.words),
+            ("begun", f"{source['created']} with hrsafety {source['version']}, fingerprint {source['fingerprint']}"),
+        ],
+        said=f"{len(result):,} rows",
+        sections=[
+            Section("Columns", blocks),
+            *([Section("Extremes", [extremes])] if extremes.rows else []),
+            Section("Settings", [settings]),
+        ],
+        warnings=result.warnings,
+        warned="Warnings",
+        files=["sweep.json", "the folder chunks, read with hrsafety.sweep.open"],
+        source=study,
+    )
+
+
+def _extremes(summary: Summary, show: Sequence[str]) -> Table:
+    """Return where the columns that are drawn are least and largest."""
+    drawn = [each for each in summary.numbers if each.column.name in show and each.finite]
+    labels = {column.name: column.label for column in summary.result.columns}
+    names = list(drawn[0].least_row) if drawn else []
+    rows = [
+        (each.label, word, f"{value:.5g}", *(_shown(row[name]) for name in names))
+        for each in drawn
+        for word, value, row in (("least", each.least, each.least_row), ("largest", each.largest, each.largest_row))
+    ]
+    return Table(headers=[["quantity", "", "value", *(labels[name] for name in names)]], rows=rows, left=(0, 1))
+
+
+def _shown(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

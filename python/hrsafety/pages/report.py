@@ -1,0 +1,184 @@
+"""A report: facts, tables, pictures, verdict and warnings of a command, as a page and as JSON."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from hrsafety._records import dataclass
+from hrsafety.pages import Picture, written
+from hrsafety.plausibility import ResultWarning, unsafe_doubts
+
+__all__ = ["Cell", "Report", "Section", "Table", "json_text"]
+
+
+class Cell(NamedTuple):
+    """A cell of a table with a look of its own on the page.
+
+    Attributes
+    ----------
+    text : str
+        What it says.
+    look : str
+        ``"good"``, ``"bad"`` or ``""``.
+    small : str
+        What the page adds in small letters.
+    """
+
+    text: str
+    look: str = ""
+    small: str = ""
+
+    def __str__(self) -> str:
+        """Return the text."""
+        return self.text
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Table:
+    """A table of the terminal and of the page.
+
+    Attributes
+    ----------
+    headers : sequence of sequence of str
+        Lines of titles; of several the last one has the units.
+    rows : sequence of sequence
+        Cells.
+    left : tuple of int
+        Columns of words.
+    most : int or None
+        Rows that are shown at once; the page folds the whole table below them.
+    summary : str
+        What the folded table is called; without `most` all of it is folded.
+    printed : bool
+        Whether the terminal shows it, too.
+    more : str
+        What the terminal says of the rows beyond `most`.
+    """
+
+    headers: Sequence[Sequence[str]]
+    rows: Sequence[Sequence[object]]
+    left: tuple[int, ...] = (0,)
+    most: int | None = None
+    summary: str = ""
+    printed: bool = False
+    more: str = ""
+
+    @property
+    def titles(self) -> list[str]:
+        """Titles in one line, units in brackets."""
+        *names, units = self.headers if len(self.headers) > 1 else (self.headers[0], [""] * len(self.headers[0]))
+        words = [" ".join(filter(None, parts)) for parts in zip(*names, strict=True)]
+        return [f"{name} ({unit})" if unit else name for name, unit in zip(words, units, strict=True)]
+
+
+class Section(NamedTuple):
+    """A part of a page.
+
+    Attributes
+    ----------
+    heading : str
+        Above it; none if empty.
+    blocks : iterable of str, Table or Picture
+        Paragraphs, tables and pictures in their order.
+    """
+
+    heading: str
+    blocks: Sequence[str | Table | Picture]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Report:
+    """What a command found.
+
+    Attributes
+    ----------
+    title : str
+        Of the page.
+    facts : sequence of (str, str)
+        Inputs and results in a line each, by name.
+    said : str
+        Verdict in a sentence; empty without one.
+    good : bool
+        Whether it is a good one; doubts that may lie on the unsafe side make it unsure.
+    advice : str
+        What follows from the verdict.
+    sections : sequence of Section
+        Everything else.
+    warnings : sequence of ResultWarning
+        Of all results.
+    warned : str
+        Title above the warnings of the page.
+    values : mapping
+        Every value by name, for JSON.
+    files : sequence of str
+        Names of the files beside the page.
+    source : str
+        The file that was read, as given.
+    """
+
+    title: str
+    facts: Sequence[tuple[str, str]] = ()
+    said: str = ""
+    good: bool = True
+    advice: str = ""
+    sections: Sequence[Section] = ()
+    warnings: Sequence[ResultWarning] = ()
+    warned: str = "Is this what was meant?"
+    values: Mapping[str, Any] = field(default_factory=dict)
+    files: Sequence[str] = ()
+    source: str = ""
+
+    @property
+    def printed(self) -> list[Table]:
+        """Tables that the terminal shows."""
+        blocks = (block for section in self.sections for block in section.blocks)
+        return [block for block in blocks if isinstance(block, Table) and block.printed]
+
+    @property
+    def messages(self) -> list[str]:
+        """Every different warning in words."""
+        return list(dict.fromkeys(each.message for each in self.warnings))
+
+    def page(self, template: str = "report.html", **content: object) -> str:
+        """Return the page.
+
+        Parameters
+        ----------
+        template : str
+            File in the folder of templates.
+        **content : object
+            What it shows beside the report.
+
+        Returns
+        -------
+        str
+            A complete HTML document.
+        """
+        good = "unsure" if self.good and unsafe_doubts(self.warnings) else self.good
+        return written(template, title=self.title, report=self, good=good, **content)
+
+    def json(self, *, sort: bool = False) -> str:
+        """Return title, every value and the warnings as JSON, in their order or in that of their names."""
+        return json_text({"title": self.title, **self.values, "warnings": self.messages}, sort=sort)
+
+
+def json_text(values: Mapping[str, Any], *, sort: bool = False) -> str:
+    """Return values as JSON: shortest floats that read back the same, null for what is not finite."""
+    return json.dumps(_plain(values), indent=1, sort_keys=sort, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _plain(value: Any) -> Any:
+    """Return a value with nothing but what JSON has."""
+    if isinstance(value, Mapping):
+        return {str(name): _plain(entry) for name, entry in value.items()}
+    if isinstance(value, (np.ndarray, np.generic)):
+        return _plain(value.tolist())
+    if isinstance(value, (list, tuple)):
+        return [_plain(entry) for entry in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

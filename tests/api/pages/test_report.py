@@ -1,0 +1,119 @@
+"""One report: the same facts, tables and verdict on the terminal, in JSON and on the page."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+pytest.importorskip("jinja2")
+
+from hrsafety import pages
+from hrsafety.cli import terminal
+from hrsafety.pages.report import Cell, Report, Section, Table, json_text
+from hrsafety.plausibility import ResultWarning
+
+DOUBT = ResultWarning("edge", "covering.radius", "an edge <b>")
+TABLE = Table(
+    headers=(("region", "speed"), ("", "m/s")),
+    rows=[("chest", Cell("0.1 !", "bad", "-3 %")), ("hand", 0.25), ("face", "-")],
+    most=2,
+    summary="All 3 regions",
+    more="and 1 more",
+    printed=True,
+)
+
+
+def report(**more: Any) -> Report:
+    values: dict[str, Any] = {
+        "title": "A <cell>",
+        "facts": [("cell", "cell.toml"), ("limits", "ISO")],
+        "said": "within limits",
+        "sections": [Section("contacts", [TABLE, "One paragraph.", "two\nlines"])],
+        "values": {"speed": np.array([0.1, math.inf]), "count": np.int64(3)},
+    }
+    return Report(**(values | more))
+
+
+def test_terminal_shows_facts_and_printed_tables() -> None:
+    assert terminal.told(report()).splitlines() == [
+        "cell           cell.toml",
+        "limits         ISO",
+        "",
+        "region  speed",
+        "          m/s",
+        "------  -----",
+        "chest   0.1 !",
+        "hand     0.25",
+        "and 1 more",
+    ]
+    assert terminal.told(report(facts=[], sections=[Section("", ["words"])])) == ""
+
+
+def test_page_shows_everything_escaped_with_looks_and_folded_rows() -> None:
+    html = re.sub(r"\s+", " ", report(warnings=[DOUBT]).page())
+    assert "<title>A &lt;cell&gt;</title>" in html
+    assert "<h2>Contacts</h2>" in html
+    assert '<td class="bad">0.1 ! <small>(-3 %)</small></td>' in html
+    assert '<th scope="col">speed (m/s)</th>' in html
+    assert html.count('<th scope="row">face</th>') == 1  # in the folded table only
+    assert "<summary>All 3 regions</summary>" in html
+    assert "<p>One paragraph.</p>" in html
+    assert "<pre>two" in html
+    assert "an edge &lt;b&gt;" in html
+
+
+@pytest.mark.parametrize(
+    ("good", "warnings", "look"),
+    [
+        (True, [], 'class="banner"'),
+        (True, [DOUBT], 'class="banner unsure"'),
+        (True, [ResultWarning("edge", "x", "careful", safe_side=True)], 'class="banner"'),
+        (False, [DOUBT], 'class="banner no"'),
+    ],
+)
+def test_doubts_that_may_be_unsafe_make_a_good_verdict_unsure(
+    good: bool, warnings: list[ResultWarning], look: str
+) -> None:
+    html = report(good=good, warnings=warnings).page()
+    assert f"<div {look}><strong>Within limits.</strong>" in re.sub(r"\s+<strong>", "<strong>", html)
+
+
+def test_json_has_every_value_and_warning_and_no_number_that_is_none() -> None:
+    found = json.loads(report(warnings=[DOUBT, DOUBT]).json())
+    assert found == {"title": "A <cell>", "speed": [0.1, None], "count": 3, "warnings": [DOUBT.message]}
+
+
+def test_no_command_renders_by_itself() -> None:
+    folder = Path(pages.__file__).parents[1] / "cli"
+    texts = {path.name: path.read_text(encoding="utf-8") for path in folder.rglob("*.py")}
+    assert not [name for name, text in texts.items() if "import written" in text]
+    assert {path.name for path in (folder.parent / "pages" / "templates").glob("*.html")} == {
+        *("base.html", "parts.html", "report.html", "cell.html")
+    }
+
+
+VALUES = st.recursive(
+    st.none() | st.booleans() | st.integers(-(2**60), 2**60) | st.floats() | st.text(max_size=5),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3),
+    max_leaves=12,
+)
+
+
+@given(st.dictionaries(st.text(max_size=5), VALUES, max_size=4))
+def test_json_reads_back_as_it_was_but_for_what_is_not_finite(values: dict[str, Any]) -> None:
+    def plain(value: Any) -> Any:
+        if isinstance(value, dict):
+            return {name: plain(each) for name, each in value.items()}
+        if isinstance(value, list):
+            return [plain(each) for each in value]
+        return None if isinstance(value, float) and not math.isfinite(value) else value
+
+    assert json.loads(json_text(values)) == plain(values)
