@@ -200,3 +200,60 @@ def test_noise_is_a_doubt_and_smoothing_takes_it_away(seed: int, sigma: float) -
     assert smooth.path_length == pytest.approx(4.6, rel=0.03)
     assert smooth.max_acceleration < 0.1 * found.max_acceleration
     assert nav.metrics.evaluate(own, **rules).warnings == ()
+
+
+# ---- what metrics are of -------------------------------------------------------------------------
+
+
+WALK = np.linspace([[0.0, 0.0]], [[10.0, 0.0]], 101)
+AMONG = {"step": 0.1, "goal": (10.0, 0.0), "robot_radius": 0.3}
+
+
+def doubted(result: Any) -> set[str]:
+    return {each.code for each in unsafe_doubts(result.warnings)}
+
+
+@settings(max_examples=25, deadline=None)
+@given(tolerance=st.floats(10.1, 1e4), many=st.booleans())
+def test_a_robot_that_has_arrived_at_once_is_doubted(tolerance: float, many: bool) -> None:
+    own = WALK[:, 0]
+    for options in ({"arrival_tolerance": tolerance}, {"goal": (0.1, 0.0)}):
+        episode = nav.metrics.Episode(position=own, people=WALK + np.array([5.0, 0.0]), **AMONG | options)
+        found = nav.metrics.evaluate_many([episode]) if many else nav.metrics.evaluate(episode)
+        assert doubted(found) == ({"implausible"} if "arrival_tolerance" in options else {"not_scored"})
+
+
+@pytest.mark.parametrize("factor", [1000.0, 100.0])
+def test_people_in_another_unit_than_the_robot_are_doubted_though_they_stand(factor: float) -> None:
+    stand = np.broadcast_to(factor * np.array([5.0, 0.0]), (101, 1, 2))
+    episode = nav.metrics.Episode(position=WALK[:, 0], people=stand, **AMONG)
+    for found in (nav.metrics.evaluate(episode), nav.metrics.evaluate_many([episode])):
+        assert doubted(found) == {"implausible"}
+        assert "another unit" in found.warnings[0].message
+
+
+def test_metrics_of_a_world_carry_the_doubts_of_its_positions() -> None:
+    def world(people: Any = WALK, **options: Any) -> set[str]:
+        goals = [(10.0, 0.0)] * people.shape[1]
+        return doubted(
+            nav.metrics.evaluate_world(
+                people, **{"person_goals": goals, "step": 0.1, "time_limit": 10.0, "robot_radius": 0.3, **options}
+            )
+        )
+
+    beside = WALK + np.array([0.0, 5.0])
+    lost = beside.copy()
+    lost[40:60] = np.nan
+    jump = WALK.copy()
+    jump[50:, :, 1] = 30.0
+    noisy = WALK + np.random.default_rng(1).normal(0.0, 0.05, WALK.shape)
+    assert world() == world(robots=beside) == set()
+    assert world(1000.0 * WALK) == world(step=100.0) == world(robots=beside, robot_radius=300.0) == {"implausible"}
+    assert (
+        world(np.nan * WALK) == world(robots=np.nan * beside) == world(robots=lost) - {"gap_in_track"} == {"not_scored"}
+    )
+    assert world(jump) == {"teleport"}
+    assert world(noisy) == {"noisy_positions"}
+    assert world(jump, simulated=True) == set()
+    with pytest.raises(nav.InvalidParameterError, match="robot_radius must be finite"):
+        world(robots=beside, robot_radius=np.nan)

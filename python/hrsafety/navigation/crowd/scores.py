@@ -173,5 +173,6 @@ def world_metrics(run: CrowdTrajectories) -> WorldMetrics:
         robots=run.robot_position if world.robots else (),
         robot_radius=[robot.robot.radius for robot in world.robots],
         period=world.period,
+        simulated=True,
     )
     return WorldMetrics(found.to_dict(), run.warnings)

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, callback, empty, number, numbers, pair, points, sequence, thread_count
+from hrsafety._arguments import Array, callback, empty, flag, number, numbers, pair, points, sequence, thread_count
 from hrsafety._statistics import Share, wilson
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.metrics.between import doubts_between
@@ -19,7 +19,10 @@ from hrsafety.navigation.metrics.doubts import (
     contacts_between,
     implausible_numbers,
     may_be_implausible,
+    may_have_doubts,
     of_tracks,
+    of_values,
+    of_world,
 )
 from hrsafety.navigation.metrics.episode import Episode, Recorded
 from hrsafety.navigation.metrics.unseen import unscored
@@ -206,7 +209,8 @@ def evaluate(
     found, _ = _hrsafety.crowd_metrics([episode._native], 1, None)
     values = {name: column[0].item() for name, column in found.items()}
     doubts = doubts_between(episode, *(values[name] for name in ENDS))
-    told = (*episode.warnings, *implausible_numbers(episode, values["max_speed"]), *of_tracks(episode), *doubts)
+    numbers_of = (*implausible_numbers(episode, values["max_speed"]), *of_values(episode, values))
+    told = (*episode.warnings, *numbers_of, *of_tracks(episode), *doubts)
     changed, unscored_ones = unscored(episode, values)
     return EpisodeMetrics(values | changed, (*told, *unscored_ones))
 
@@ -269,13 +273,17 @@ def evaluate_many(
     scored = [_scored(index, each) for index, each in enumerate(given)]
     found, extremes = _measured(scored, threads=threads, progress=progress)
     speeds = found["max_speed"]
-    doubtful = np.flatnonzero(may_be_implausible(speeds, extremes)).tolist()
+    doubtful = np.flatnonzero(may_be_implausible(scored, speeds, extremes)).tolist()
     doubts = {index: implausible_numbers(scored[index], float(speeds[index])) for index in doubtful}
     own = [
         (_name(index), (*each.warnings, *doubts.get(index, ()), *of_tracks(each))) for index, each in enumerate(scored)
     ]
+    of_found = (
+        (_name(index), of_values(scored[index], {name: values[index].item() for name, values in found.items()}))
+        for index in np.flatnonzero(may_have_doubts(found)).tolist()
+    )
     between = contacts_between(scored, _name, found, extremes)
-    told = (*gathered(own, "episodes"), *gathered(between, "episodes"))
+    told = (*gathered((*own, *of_found), "episodes"), *gathered(between, "episodes"))
     return MetricTable(found, (*told, *gathered(_left_open(scored, found), "episodes")))
 
 
@@ -339,6 +347,7 @@ def evaluate_world(
     robot_radius: float | npt.ArrayLike = (),
     person_tolerance: float = 0.3,
     period: tuple[float, float] = (0.0, 0.0),
+    simulated: bool = False,
 ) -> WorldMetrics:
     """Return the metrics of a whole world.
 
@@ -363,11 +372,14 @@ def evaluate_world(
         Distance to the goal that counts as arrival, in m.
     period : tuple of float
         Lengths in m after which the world repeats along x and y; 0: it does not.
+    simulated : bool
+        Whether the positions come from a simulation: nothing is measured, and nobody is missing.
 
     Returns
     -------
     WorldMetrics
-        A value for each of `WORLD_METRICS`.
+        A value for each of `WORLD_METRICS`, with doubts about units, jumps, exchanged ids, noise, and bodies that
+        have no positions (``not_scored``).
 
     Raises
     ------
@@ -393,20 +405,25 @@ def evaluate_world(
     if times.size > 0 and times.shape != (places.shape[1],):
         raise ShapeError("person_arrival_time", f"({places.shape[1]},)", times.shape)
     radii = numbers("robot_radius", robot_radius)
+    if not np.isfinite(radii).all():
+        raise InvalidParameterError("robot_radius", "be finite", robot_radius)
     if radii.ndim == 1 and radii.shape != (machines.shape[1],):
         raise ShapeError("robot_radius", f"({machines.shape[1]},)", radii.shape)
+    rules: dict[str, Any] = {"step": number("step", step), "time_limit": number("time_limit", time_limit)}
+    rules |= {
+        "robot_radius": np.full(machines.shape[1], float(radii)) if radii.ndim == 0 else radii,
+        "period": pair("period", period),
+    }
     found = _hrsafety.crowd_world_metrics(
         people=places.reshape(-1, 2),
         robots=machines.reshape(-1, 2),
         person_goals=goals,
         person_arrival_time=times if times.size > 0 else None,
-        robot_radius=np.full(machines.shape[1], float(radii)) if radii.ndim == 0 else radii,
-        step=number("step", step),
-        time_limit=number("time_limit", time_limit),
         person_tolerance=number("person_tolerance", person_tolerance),
-        period=pair("period", period),
+        **rules,
     )
-    return WorldMetrics({name: values[0].item() for name, values in found.items()})
+    values = {name: values[0].item() for name, values in found.items()}
+    return WorldMetrics(values, () if flag("simulated", simulated) else of_world(places, machines, **rules))
 
 
 def _places(name: str, value: npt.ArrayLike) -> Array:
