@@ -2,19 +2,65 @@
 
 from __future__ import annotations
 
+import functools
 import textwrap
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, ParamSpec, TypeVar
+from weakref import WeakSet
 
 from hrsafety.plotting import style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+P = ParamSpec("P")
+R = TypeVar("R")
+
 MOST_WARNINGS = 2  # more are counted
 _LINE = 0.19  # in
 _CHARACTERS_PER_INCH = 12.5  # of the small font
 _EDGE = 0.08  # in
+
+
+def picture(function: Callable[P, R]) -> Callable[P, R]:
+    """Make a function draw with the look of this package, and write the doubts about what it is given below.
+
+    Parameters
+    ----------
+    function : callable
+        Draws; of a figure that it returns the warnings of its arguments are the note, unless it has one already.
+
+    Returns
+    -------
+    callable
+        With the same arguments.
+    """
+
+    @functools.wraps(function)
+    def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
+        from matplotlib.figure import Figure
+
+        drawn = function(*args, **kwargs)
+        if isinstance(drawn, Figure) and drawn not in _noted:
+            add_warnings(drawn, *_carriers((*args, *kwargs.values())))
+        return drawn
+
+    return style.styled(wrapper)
+
+
+_noted: WeakSet[Figure] = WeakSet()
+"""Figures that have their note."""
+
+
+def _carriers(values: Iterable[object]) -> Iterator[object]:
+    """Yield what may carry warnings: the values themselves, and those in sequences and mappings."""
+    for each in values:
+        if hasattr(each, "warnings"):
+            yield each
+        elif isinstance(each, Mapping):
+            yield from _carriers(each.values())
+        elif isinstance(each, (list, tuple)):
+            yield from _carriers(each)
 
 
 def add_warnings(figure: Figure, *results: object) -> None:
@@ -28,6 +74,7 @@ def add_warnings(figure: Figure, *results: object) -> None:
         What is drawn. Each warning of their attribute ``warnings`` is written once; of more than
         two the others are counted.
     """
+    _noted.add(figure)
     words = warning_lines(results, float(figure.get_figwidth()))
     if not words:
         return

@@ -87,7 +87,7 @@ def _drawn(cell: Cell, study: ContactStudy) -> Iterator[Drawing]:
             yield _drawing(f"speed-{index}", "force_over_speed", path, caption, figure)
     yield from _of_governing(cell, study)
     if study.speeds is not None:
-        figure = pictures.speed_over_distance(study.speeds)
+        figure = pictures.speed_over_distance(replace(study.speeds, warnings=()))
         caption = "Allowed speed of the robot over its distance to the person"
         yield _drawing("speed-over-distance", "speed_over_distance", "speed_over_distance", caption, figure)
 

@@ -25,7 +25,7 @@ MOST_RADII = 2.0  # radii of that circle at which an outline is cut off
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 721)
 
 
-@style.styled
+@notes.picture
 def mass_ellipse(skeleton: object, masses: PointMasses, *, title: str | None = None) -> Figure:
     """Draw an arm from the side and from above with the mass of a point by direction.
 
@@ -76,7 +76,6 @@ def mass_ellipse(skeleton: object, masses: PointMasses, *, title: str | None = N
     for axes, (name, plane) in zip(panels, VIEWS.items(), strict=True):
         _draw_view(axes, lines, masses, plane, scale)
         axes.set_title(name)
-    notes.add_warnings(figure, masses)
     return figure
 
 

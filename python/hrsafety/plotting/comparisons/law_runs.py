@@ -32,7 +32,7 @@ BEYOND_MEDIAN = 2.0  # the time axis ends here, in medians of the durations
 BEYOND_REGION = 1.25  # the axis of distances ends here, in reaches of the largest region
 
 
-@style.styled
+@notes.picture
 def comparison_paths(
     runs: Mapping[str, Trajectory], *, regions: bool = False, view: str = "scene", title: str | None = None
 ) -> Figure:
@@ -96,7 +96,7 @@ def comparison_paths(
     return floor.finish(figure, handles, runs=given.values(), named=named)
 
 
-@style.styled
+@notes.picture
 def comparison_distances(
     runs: Mapping[str, Trajectory], *, obstacle: int | None = None, title: str | None = None
 ) -> Figure:
@@ -162,11 +162,10 @@ def comparison_distances(
     axes.set_xlabel("time (s)")
     axes.set_ylabel("distance of the surfaces (m)")
     axes.legend(handles=handles, **style.LEGEND_BESIDE)
-    notes.add_warnings(figure, *given.values())
     return figure
 
 
-@style.styled
+@notes.picture
 def comparison_sequence(
     runs: Mapping[str, Trajectory], times: Sequence[float], *, view: str = "scene", title: str | None = None
 ) -> Figure:

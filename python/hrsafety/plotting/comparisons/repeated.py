@@ -51,7 +51,7 @@ def _checked(runs: RunTable, exact: Trajectory | None) -> _Kept:
     return _Kept(runs.time, runs.position, runs.contact_time)
 
 
-@style.styled
+@notes.picture
 def repeated_paths(
     runs: RunTable, *, exact: Trajectory | None = None, share: float = 0.9, title: str | None = None
 ) -> Figure:
@@ -149,7 +149,7 @@ def _draw_paths(axes: Axes, scene: tuple[Scenario, _Kept], band: Band, share: fl
         axes.plot(*crosses.T, label=f"first contact, {len(rows)} runs", zorder=6.0, **look)
 
 
-@style.styled
+@notes.picture
 def repeated_distances(
     runs: RunTable, *, exact: Trajectory | None = None, share: float = 0.9, title: str | None = None
 ) -> Figure:
@@ -221,5 +221,4 @@ def repeated_distances(
     panels[-1].set_xlabel("time (s)")
     panels[-1].set_xlim(0.0, float(runs.end_time.max()))
     figure.align_ylabels()
-    notes.add_warnings(figure, runs)
     return figure

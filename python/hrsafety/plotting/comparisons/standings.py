@@ -25,7 +25,7 @@ __all__ = ["comparison_standings"]
 ROW_HEIGHT = 0.42
 
 
-@style.styled
+@notes.picture
 def comparison_standings(result: Comparison | CrowdComparison, *, title: str | None = None) -> Figure:
     """Draw the shares of success and of contact of each law with their 95 % intervals.
 
@@ -85,7 +85,6 @@ def comparison_standings(result: Comparison | CrowdComparison, *, title: str | N
         handle("robot moved away", marker="x", markersize=7, color=red),
     ]
     style.legend_below(figure, handles, columns=len(handles))
-    notes.add_warnings(figure, result)
     return figure
 
 

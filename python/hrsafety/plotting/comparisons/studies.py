@@ -37,7 +37,7 @@ LEAST_SHARE_WITH_TEXT = 0.04
 BAR_HEIGHT = 0.62
 
 
-@style.styled
+@notes.picture
 def clearances(
     clearances: Mapping[str, RunTable | npt.ArrayLike],
     *,
@@ -104,7 +104,6 @@ def clearances(
     axes.set_xlabel("least clearance (m)")
     axes.set_ylabel("share of runs")
     figure.legend(loc="outside lower center", ncols=1 if len(groups) > 2 else len(groups))
-    notes.add_warnings(figure, *clearances.values())
     return figure
 
 
@@ -140,7 +139,7 @@ def _steps(values: Array, end: float) -> tuple[Array, Array]:
     return np.concatenate([finite[:1], finite, [end]]), np.concatenate([[0.0], share, share[-1:]])
 
 
-@style.styled
+@notes.picture
 def outcomes(
     outcomes: Mapping[str, RunTable | Sequence[str] | npt.NDArray[np.str_]],
     *,
@@ -202,7 +201,6 @@ def outcomes(
     axes = figure.subplots()
     _draw_bars(axes, bars)
     figure.legend(loc="outside lower center", ncols=3)
-    notes.add_warnings(figure, *outcomes.values())
     return figure
 
 

@@ -23,7 +23,7 @@ MILLI = 1000.0
 LIMIT_LOOK: style.Properties = {"color": style.CONTACT_COLOR, "linewidth": 1.1, "linestyle": (0, (5, 3))}
 
 
-@style.styled
+@notes.picture
 def contact_forces(
     impacts: Mapping[str, ContactImpact], *, limits: Mapping[str, float] | None = None, title: str | None = None
 ) -> Figure:
@@ -68,11 +68,10 @@ def contact_forces(
     _draw_limits(axes, limits)
     axes.set_xlabel("time (ms)")
     _finish(axes)
-    notes.add_warnings(figure, *impacts.values())
     return figure
 
 
-@style.styled
+@notes.picture
 def forces_over_speed(
     speed: npt.ArrayLike,
     forces: Mapping[str, npt.ArrayLike],

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from hrsafety._arguments import instance, vector
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.plotting import style
+from hrsafety.plotting import notes, style
 from hrsafety.standards import SpeedCurve
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ MILLI = 1000.0
 MODES = {"contact": "contact allowed at this speed", "separation": "stop before contact"}
 
 
-@style.styled
+@notes.picture
 def speed_map(
     thickness: npt.ArrayLike,
     strength: npt.ArrayLike,
@@ -95,7 +95,7 @@ def speed_map(
     return figure
 
 
-@style.styled
+@notes.picture
 def speed_over_distance(curve: SpeedCurve, *, title: str | None = None) -> Figure:
     """Draw the speed that is allowed at each distance to a person, v(d).
 
@@ -146,7 +146,7 @@ def speed_over_distance(curve: SpeedCurve, *, title: str | None = None) -> Figur
     return figure
 
 
-@style.styled
+@notes.picture
 def contact_sensitivity(values: Mapping[str, float], *, title: str | None = None) -> Figure:
     """Draw what an allowed speed hangs on, the largest first.
 

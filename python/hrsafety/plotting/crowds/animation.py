@@ -25,7 +25,7 @@ __all__ = ["animate_crowd"]
 DPI = 85
 
 
-@style.styled
+@notes.picture
 def animate_crowd(
     run: CrowdTrajectories,
     path: str | os.PathLike[str],

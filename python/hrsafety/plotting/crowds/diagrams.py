@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from hrsafety._arguments import vector
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.plotting import floor, style
+from hrsafety.plotting import floor, notes, style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -23,7 +23,7 @@ HEIGHT = 4.4  # in
 MARKERS = ("o", "s", "^", "D", "v")
 
 
-@style.styled
+@notes.picture
 def fundamental_diagram(
     density: npt.ArrayLike,
     speeds: Mapping[str, npt.ArrayLike],

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hrsafety.plotting import floor, style
+from hrsafety.plotting import floor, notes, style
 from hrsafety.plotting.crowds import world_scenes
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ Body = tuple[tuple[float, float], float]
 PERSON_COLOR, OTHER_COLOR, ROBOT_COLOR = world_scenes.PEOPLE_COLORS[0], style.RUN_COLORS[4], style.RUN_COLORS[0]
 
 
-@style.styled
+@notes.picture
 def crowd_instant(world: World, *, time: float, robot: Body, people: Sequence[Body], robots: Sequence[Body]) -> Figure:
     """Return a picture of a robot, people, other robots and walls; all of one world have the same view.
 

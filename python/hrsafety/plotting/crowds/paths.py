@@ -9,7 +9,7 @@ import numpy as np
 
 from hrsafety._arguments import number
 from hrsafety.errors import InvalidParameterError
-from hrsafety.plotting import floor, inputs, style
+from hrsafety.plotting import floor, inputs, notes, style
 from hrsafety.plotting.crowds import world_scenes
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ FEW = 12  # people whose paths are drawn as strong as those of robots
 SO_FAR, TO_COME = "-", (0, (1.0, 1.6))
 
 
-@style.styled
+@notes.picture
 def crowd_paths(
     run: CrowdTrajectories,
     *,

@@ -26,7 +26,7 @@ AXES = {(1.0, 0.0): "x (m)", (0.0, 1.0): "y (m)"}
 OTHER_WAY = "position along the direction (m)"
 
 
-@style.styled
+@notes.picture
 def space_time(
     run: CrowdTrajectories,
     *,
@@ -102,7 +102,6 @@ def space_time(
         axes.set_ylim(0.0, period)
     if handles:
         style.legend_below(figure, handles, columns=floor.LEGEND_COLUMNS)
-    notes.add_warnings(figure, run)
     return figure
 
 

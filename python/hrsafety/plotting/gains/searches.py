@@ -39,7 +39,7 @@ LOCAL_COLOR = "#D55E00"
 BAR_HEIGHT = 0.5
 
 
-@style.styled
+@notes.picture
 def search_history(search: GainSearch, *, quantity: str = "mean H", title: str | None = None) -> Figure:
     """Draw how a search closed in: best and worst survivor, and the ranges of the gains by round.
 
@@ -90,11 +90,10 @@ def search_history(search: GainSearch, *, quantity: str = "mean H", title: str |
     for parts, more in zip((handles, texts), figure.axes[1].get_legend_handles_labels(), strict=True):
         parts += more
     figure.legend(handles, texts, loc="outside lower center", ncols=3, columnspacing=1.4)
-    notes.add_warnings(figure, search)
     return figure
 
 
-@style.styled
+@notes.picture
 def pareto_front(
     front: ParetoFront,
     *,
@@ -156,7 +155,6 @@ def pareto_front(
         _draw_points(axes, front, (x, y), knee, others)
     handles, texts = panels[0].get_legend_handles_labels()
     figure.legend(handles, texts, loc="outside lower center", ncols=min(len(handles), 2 + columns), columnspacing=1.4)
-    notes.add_warnings(figure, front)
     return figure
 
 
@@ -178,7 +176,6 @@ def _convergence(search: GainSearch, quantity: str, title: str | None) -> Figure
     axes.set_xlabel("gain sets evaluated")
     axes.set_ylabel(quantity)
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center")
-    notes.add_warnings(figure, search)
     return figure
 
 

@@ -39,7 +39,7 @@ LARGE_SENSITIVITY = 5.0  # %
 ROOM = 0.06  # free share of the axis at both ends
 
 
-@style.styled
+@notes.picture
 def gain_sensitivity(sensitivity: GainSensitivity, *, title: str | None = None) -> Figure:
     r"""Draw the mean performance and the relative sensitivity over the change of each gain.
 
@@ -94,11 +94,10 @@ def gain_sensitivity(sensitivity: GainSensitivity, *, title: str | None = None) 
     figure.legend(*upper.get_legend_handles_labels(), loc="outside lower center", ncols=2, columnspacing=1.4)
     figure.align_ylabels()
     labels.clear_labels(figure, deep)
-    notes.add_warnings(figure, sensitivity)
     return figure
 
 
-@style.styled
+@notes.picture
 def flatness(
     flatness: Flatness,
     *,
@@ -163,7 +162,6 @@ def flatness(
         axes.set_xlim(*_widened(low, high))
     handles, texts = panels[0].get_legend_handles_labels()
     figure.legend(handles, texts, loc="outside lower center", ncols=2, columnspacing=1.4)
-    notes.add_warnings(figure, found)
     return figure
 
 

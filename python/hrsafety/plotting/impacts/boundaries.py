@@ -47,7 +47,7 @@ ACCEPTED, REJECTED = "#00795C", style.CONTACT_COLOR
 DAMPING_LABEL, STIFFNESS_LABEL = "foam damping (N s/m)", "foam stiffness (kN/m)"
 
 
-@style.styled
+@notes.picture
 def foam_boundaries(
     damping: npt.ArrayLike,
     upper: FoamBoundary | None,
@@ -142,7 +142,7 @@ def foam_boundaries(
     return figure
 
 
-@style.styled
+@notes.picture
 def foam_map(
     damping: npt.ArrayLike,
     stiffness: npt.ArrayLike,

@@ -43,7 +43,7 @@ PEAK_LOOK: style.Properties = {"marker": "*", "markersize": 11.0, "linestyle": "
 MEASURED_COLOR = "#D55E00"
 
 
-@style.styled
+@notes.picture
 def impact_histories(
     responses: Response | Sequence[Response],
     *,
@@ -118,7 +118,7 @@ def impact_histories(
     return figure
 
 
-@style.styled
+@notes.picture
 def measured_impact(
     response: ImpactResponse,
     *,
@@ -196,7 +196,7 @@ def measured_impact(
     return figure
 
 
-@style.styled
+@notes.picture
 def impact_study(
     values: npt.ArrayLike,
     curves: Mapping[str, npt.ArrayLike],

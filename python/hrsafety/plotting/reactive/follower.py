@@ -11,7 +11,7 @@ import numpy as np
 from hrsafety._arguments import vector
 from hrsafety._bounds import MOST_INSTANTS
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.plotting import floor, labels, style
+from hrsafety.plotting import floor, labels, notes, style
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -33,7 +33,7 @@ DISTANCES = np.linspace(0.0, 2.0, 201)
 SPEEDS = np.linspace(0.0, 1.0, 201)
 
 
-@style.styled
+@notes.picture
 def follower_runs(
     runs: Mapping[str, FollowerRun], *, times: Sequence[float] | None = None, title: str | None = None
 ) -> Figure:
@@ -194,7 +194,7 @@ def _handles(runs: Sequence[FollowerRun], panels: Iterable[Axes]) -> list[Artist
     return handles
 
 
-@style.styled
+@notes.picture
 def follower_rates(
     rates: Mapping[str, Mapping[str, Share]],
     *,
@@ -283,7 +283,7 @@ def _add_marks(
         axes.plot(*np.array(points).T, label=label, zorder=5, markerfacecolor="white", **look)
 
 
-@style.styled
+@notes.picture
 def impedance_forces(laws: Mapping[str, VirtualImpedance], *, title: str | None = None) -> Figure:
     """Draw the repulsion over distance and over approach speed.
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hrsafety.plotting import movies, style
+from hrsafety.plotting import movies, notes, style
 from hrsafety.plotting.reactive.follower import LEADER_COLOR, ROBOT_COLOR, patch_of, view_of
 from hrsafety.plotting.runs.animation import DPI
 
@@ -25,7 +25,7 @@ __all__ = ["animate_follower"]
 BEAM_COLOR = style.RUN_COLORS[4]
 
 
-@style.styled
+@notes.picture
 def animate_follower(
     run: FollowerRun,
     path: str | os.PathLike[str],

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.plotting import floor, style
+from hrsafety.plotting import floor, notes, style
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -28,7 +28,7 @@ MOST_COLUMNS = 3
 _POINTS = 181
 
 
-@style.styled
+@notes.picture
 def skirt_ring(
     skirt: UltrasonicSkirt, *, directions: Mapping[str, float] | None = None, title: str | None = None
 ) -> Figure:
@@ -125,7 +125,7 @@ def _distance_circles(axes: Axes, skirt: UltrasonicSkirt, size: float) -> list[A
     return handles
 
 
-@style.styled
+@notes.picture
 def skirt_runs(runs: Mapping[str, SkirtRun], *, title: str | None = None) -> Figure:
     """Draw tests of a skirt: path, discs, and the robot where it came nearest to one.
 
@@ -216,7 +216,7 @@ def _run_handles(runs: Sequence[SkirtRun]) -> list[Artist]:
     return handles
 
 
-@style.styled
+@notes.picture
 def skirt_clearances(
     tests: Mapping[str, SkirtTest],
     *,
@@ -277,7 +277,7 @@ def skirt_clearances(
     return figure
 
 
-@style.styled
+@notes.picture
 def skirt_sensor_counts(studies: Sequence[SmallestSkirt], *, title: str | None = None) -> Figure:
     """Draw the share of tests with contact over the number of sensors.
 

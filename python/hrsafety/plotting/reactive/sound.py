@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.plotting import inputs, style
+from hrsafety.plotting import inputs, notes, style
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -28,7 +28,7 @@ SIGMAS = 2.0
 SIGMAS_IN_VIEW = 3.5
 
 
-@style.styled
+@notes.picture
 def sound_burst(
     recording: SoundRecording,
     *,
@@ -93,7 +93,7 @@ def sound_burst(
     return figure
 
 
-@style.styled
+@notes.picture
 def sound_likeness(
     curves: Mapping[str, Likeness],
     *,
@@ -156,7 +156,7 @@ def sound_likeness(
     return figure
 
 
-@style.styled
+@notes.picture
 def sound_fixes(
     fixes: Fixes,
     truth: Sequence[Fix],

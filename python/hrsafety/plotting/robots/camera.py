@@ -11,7 +11,7 @@ import numpy.typing as npt
 from hrsafety._arguments import points as checked_points
 from hrsafety._arguments import vector
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.plotting import inputs, style
+from hrsafety.plotting import inputs, notes, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,7 +28,7 @@ TRUTH: style.Properties = {"color": "#B0B0B0", "linewidth": 4.0, "zorder": 1.5}
 COMPONENTS = ("x", "y")
 
 
-@style.styled
+@notes.picture
 def calibration_errors(study: CalibrationStudy, *, title: str | None = None) -> Figure:
     """Draw where a calibrated camera measures how far off: its picture, and the floor at each height.
 
@@ -117,7 +117,7 @@ def _draw_floor(
     return drawn
 
 
-@style.styled
+@notes.picture
 def velocity_estimates(
     time: npt.ArrayLike,
     velocity: npt.ArrayLike,

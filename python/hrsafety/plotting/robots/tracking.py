@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.trajectory import Trajectory
-from hrsafety.plotting import floor, inputs, style
+from hrsafety.plotting import floor, inputs, notes, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,7 +30,7 @@ REFERENCE_LOOK: style.Properties = {"color": style.PERSON_COLORS[0], "linewidth"
 BOUND_LOOK: style.Properties = {"color": style.CONTACT_COLOR, "linewidth": 1.2, "linestyle": (0, (5, 3))}
 
 
-@style.styled
+@notes.picture
 def tracking_paths(
     runs: Trajectory | Sequence[Trajectory] | Sequence[Sequence[Trajectory]],
     *,
@@ -86,7 +86,7 @@ def tracking_paths(
     return floor.finish(figure, handles, columns=LEGEND_COLUMNS)
 
 
-@style.styled
+@notes.picture
 def tracking_errors(
     runs: Trajectory | Sequence[Trajectory] | Sequence[Sequence[Trajectory]],
     *,

@@ -9,7 +9,7 @@ import numpy as np
 
 from hrsafety._arguments import sequence
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.plotting import inputs, style
+from hrsafety.plotting import inputs, notes, style
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -26,7 +26,7 @@ WANTED_LOOK: style.Properties = {"color": style.NEUTRAL, "linewidth": 3.5, "alph
 THIN = 1.1
 
 
-@style.styled
+@notes.picture
 def wheel_tracking(
     runs: WheelRun | Sequence[WheelRun],
     *,
@@ -85,7 +85,7 @@ def wheel_tracking(
     return figure
 
 
-@style.styled
+@notes.picture
 def wheel_identification(tests: Sequence[OpenLoopTest], fit: WheelFit, *, title: str | None = None) -> Figure:
     """Draw open-loop tests, the response of the wheel that is identified from them, and its line.
 

@@ -27,7 +27,7 @@ SMALLEST_BODY_WITH_ID = 0.15  # m, radius of a body into which an id fits
 ROBOT_COLOR = style.RUN_COLORS[0]
 
 
-@style.styled
+@notes.picture
 def animate(
     trajectory: Trajectory,
     path: str | os.PathLike[str],

@@ -13,7 +13,7 @@ from hrsafety._arguments import callback, instance
 from hrsafety.navigation.obstacles.base import Obstacle
 from hrsafety.navigation.obstacles.moving_rectangle import Box
 from hrsafety.navigation.safety_record import SafetyDecision, SafetyRecord
-from hrsafety.plotting import floor, inputs, movies, shapes, style, walls
+from hrsafety.plotting import floor, inputs, movies, notes, shapes, style, walls
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -29,7 +29,7 @@ PLAN_COLOR = style.RUN_COLORS[2]
 VERDICTS = {"kept": style.RUN_COLORS[1], "changed": style.PERSON_COLORS[1], "braking": style.CONTACT_COLOR}
 
 
-@style.styled
+@notes.picture
 def safety_decision(record: SafetyRecord, time: float, *, title: str | None = None) -> Figure:
     """Draw one decision of the parts around a law.
 
@@ -77,7 +77,7 @@ def safety_decision(record: SafetyRecord, time: float, *, title: str | None = No
     return floor.finish(figure, handles, runs=[shown.trajectory])
 
 
-@style.styled
+@notes.picture
 def animate_safety(
     record: SafetyRecord,
     path: str | os.PathLike[str],

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["energy"]
 
 
-@style.styled
+@notes.picture
 def energy(
     trajectories: Trajectory | Sequence[Trajectory],
     *,
@@ -81,7 +81,6 @@ def energy(
     panels[-1].set_xlabel("time (s)")
     panels[-1].set_xlim(0.0, inputs.time_limit(runs))
     figure.align_ylabels()
-    notes.add_warnings(figure, *runs)
     return figure
 
 

@@ -76,7 +76,7 @@ def checked_field(field: object) -> ForceField:
     return field
 
 
-@style.styled
+@notes.picture
 def force_field(
     field: ForceField,
     scenario: Scenario,
@@ -171,7 +171,6 @@ def force_field(
     style.set_log_ticks(bar, low, high)
     bar.set_label(f"{term} force (N)")
     style.legend_below(figure, _scene_handles(scenario, places, limits), columns=5)
-    notes.add_warnings(figure, scenario)
     return figure
 
 
@@ -235,7 +234,7 @@ def _color_limits(values: Array, high: float) -> tuple[float, float]:
     return (low, high) if low < high else (low / 2.0, low * 2.0)
 
 
-@style.styled
+@notes.picture
 def potential_valley(
     field: ForceField,
     scenario: Scenario,
@@ -314,7 +313,6 @@ def potential_valley(
     bar.set_label(label)
     short = "V (N²)" if term == "potential" else "force (N)"
     surface.text2D(1.0, 0.9, short, transform=surface.transAxes, ha="right")
-    notes.add_warnings(figure, scenario)
     return figure
 
 

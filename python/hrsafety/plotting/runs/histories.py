@@ -27,7 +27,7 @@ EMPTY_LOG_LIMITS = (1.0, 10.0)
 GOAL_LINE: style.Properties = {"color": style.RUN_COLORS[0], "linewidth": 2.0}
 
 
-@style.styled
+@notes.picture
 def distances(
     trajectories: Trajectory | Sequence[Trajectory],
     *,
@@ -91,7 +91,6 @@ def distances(
     panels[0].set_ylim(0.0, max(tops))
     panels[0].set_xlim(0.0, inputs.time_limit(runs))
     panels[-1].set_xlabel("time (s)")
-    notes.add_warnings(figure, *runs)
     return figure
 
 
@@ -172,7 +171,7 @@ def _mark_arrival(axes: Axes, run: Trajectory, gap: float) -> None:
         axes.text(run.arrival_time - gap, 0.97, text, transform=axes.get_xaxis_transform(), zorder=5.0, **look)
 
 
-@style.styled
+@notes.picture
 def lyapunov(
     trajectories: Trajectory | Sequence[Trajectory],
     *,
@@ -242,5 +241,4 @@ def lyapunov(
     if gaps:
         handles.append(Patch(color=style.NEUTRAL, alpha=0.5, linewidth=0.0, label="in a critical region"))
     style.legend_below(figure, handles, columns=4)
-    notes.add_warnings(figure, *runs)
     return figure

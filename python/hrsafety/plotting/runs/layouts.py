@@ -9,7 +9,7 @@ import numpy as np
 
 from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.obstacles.moving_rectangle import Mobile
-from hrsafety.plotting import floor, inputs, shapes, style
+from hrsafety.plotting import floor, inputs, notes, shapes, style
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -26,7 +26,7 @@ SECOND = 1.0
 SLOWEST_WITH_DIRECTION = 0.02  # m/s, below which an arrow would point anywhere
 
 
-@style.styled
+@notes.picture
 def layout(scenario: Scenario, *, regions: bool = True, title: str | None = None) -> Figure:
     """Draw a scenario before any run: start, goal, obstacles, and how they will move.
 

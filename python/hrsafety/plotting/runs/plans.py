@@ -13,7 +13,7 @@ from hrsafety._arguments import points as checked_points
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.maps.guide import Plan
 from hrsafety.navigation.maps.static_map import StaticMap
-from hrsafety.plotting import floor, inputs, style, walls
+from hrsafety.plotting import floor, inputs, notes, style, walls
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,7 +26,7 @@ FINEST = 160  # points of the cost along the longer side
 LEVELS = 24
 
 
-@style.styled
+@notes.picture
 def guide_plan(
     map: StaticMap,
     plan: Plan,

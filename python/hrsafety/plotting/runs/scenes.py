@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hrsafety.plotting import floor, inputs, shapes, style, walls
+from hrsafety.plotting import floor, inputs, notes, shapes, style, walls
 from hrsafety.plotting import labels as placing
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ NUMBER_COLOR = "#6B3E00"
 SAME_PLACE = 0.5  # radii of an obstacle between two places that are drawn once
 
 
-@style.styled
+@notes.picture
 def paths(
     trajectories: Trajectory | Sequence[Trajectory],
     *,

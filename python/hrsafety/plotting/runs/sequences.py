@@ -10,7 +10,7 @@ import numpy as np
 from hrsafety._arguments import count
 from hrsafety._bounds import MOST_INSTANTS
 from hrsafety.errors import InvalidParameterError
-from hrsafety.plotting import floor, inputs, shapes, style, walls
+from hrsafety.plotting import floor, inputs, notes, shapes, style, walls
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -26,7 +26,7 @@ COLUMNS = 3
 ROBOT_COLOR = style.RUN_COLORS[0]
 
 
-@style.styled
+@notes.picture
 def time_sequence(
     trajectory: Trajectory,
     *,

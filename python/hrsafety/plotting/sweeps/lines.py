@@ -23,7 +23,7 @@ MOST_CASES = 6
 PANELS_BESIDE = 3
 
 
-@style.styled
+@notes.picture
 def sweep_lines(result: SweepResult, column: str, *, title: str | None = None) -> Figure:
     """Draw a column of a sweep over its only axis, a line for each case.
 
@@ -72,11 +72,10 @@ def sweep_lines(result: SweepResult, column: str, *, title: str | None = None) -
         figure.legend(loc="outside lower center", ncols=MOST_CASES)
     label_axis(axes, axis, "x")
     axes.set_ylabel(drawn.label)
-    notes.add_warnings(figure, result)
     return figure
 
 
-@style.styled
+@notes.picture
 def sweep_map(result: SweepResult, column: str, *, title: str | None = None) -> Figure:
     """Draw a column of a grid over two axes as colors, a panel for each case.
 
@@ -146,7 +145,6 @@ def sweep_map(result: SweepResult, column: str, *, title: str | None = None) -> 
             axes.xaxis.set_tick_params(labelbottom=True)
             axes.set_xlabel(first.label)
     figure.colorbar(colors, ax=grid, label=drawn.label)
-    notes.add_warnings(figure, result)
     return figure
 
 

@@ -32,7 +32,7 @@ MOST_POINTS = 20_000
 MOST_LINES = 400
 
 
-@style.styled
+@notes.picture
 def sweep_scatter(result: SweepResult, column: str, *, most: int = MOST_POINTS, title: str | None = None) -> Figure:
     """Draw a column of a sweep over each of its axes as points, a panel for each axis.
 
@@ -93,11 +93,10 @@ def sweep_scatter(result: SweepResult, column: str, *, most: int = MOST_POINTS, 
     if len(cases) > 1:
         handles, labels = grid[0, 0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=MOST_CASES, markerscale=18.0 / size)
-    notes.add_warnings(figure, result)
     return figure
 
 
-@style.styled
+@notes.picture
 def sweep_parallel(result: SweepResult, column: str, *, most: int = MOST_LINES, title: str | None = None) -> Figure:
     """Draw rows of a sweep as lines across parallel axes, colored by a column.
 
@@ -168,7 +167,6 @@ def sweep_parallel(result: SweepResult, column: str, *, most: int = MOST_LINES, 
     axes.spines[["left", "bottom"]].set_visible(False)
     of_cases = f", mean of {len(result.cases)} cases" if len(result.cases) > 1 else ""
     figure.colorbar(lines, ax=axes, label=drawn.label + of_cases)
-    notes.add_warnings(figure, result)
     return figure
 
 
