@@ -217,14 +217,15 @@ def crowds(laws: dict[str, nav.Law], obstacles: int) -> nav.Comparison:
 def crowd_table(laws: dict[str, nav.Law], result: nav.Comparison, obstacles: int) -> Iterator[str]:
     """Yield shares and means of every law among random obstacles."""
     timed = traffic(obstacles, TEST[:TIMED])
-    titles = ("success (%)", "contact (%)", "while moving (%)", "T (s)", "clearance (m)", "E (J)", "H", "step (µs)")
-    yield from head("", "runs", *titles)
+    kinds = ("success (%)", "contact (%)", "moving toward (%)", "moving away (%)")
+    yield from head("", "runs", *kinds, "T (s)", "clearance (m)", "E (J)", "H", "step (µs)")
     for name in laws:
         each = result.standing(name)
+        found = (each.success, each.contact, each.toward_contact, each.away_contact)
         yield line(
             name,
             each.success.runs,
-            *(percent(share.count, share.runs) for share in (each.success, each.contact, each.moving_contact)),
+            *(percent(share.count, share.runs) for share in found),
             shown(each.arrival_time, 2),
             shown(each.min_clearance, 3),
             shown(each.energy, 2),
