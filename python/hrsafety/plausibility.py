@@ -9,6 +9,7 @@ and picture shows. Nothing is refused here and nothing is changed.
 from __future__ import annotations
 
 import functools
+import re
 import sys
 import threading
 import warnings
@@ -154,13 +155,21 @@ def telling(find: Callable[..., Iterable[ResultWarning]] | None = None) -> Calla
             carried: Iterable[ResultWarning] = getattr(result, "warnings", ()) if find is None else ()
             if (carried or find) and _is_user(sys._getframe(1).f_globals.get("__name__", "")):
                 found = carried if find is None else find(*args, **kwargs)
-                for message in dict.fromkeys(each.message for each in found if each.code == "implausible"):
+                for message in _kinds(each for each in found if each.code == "implausible"):
                     warnings.warn(message, UnitWarning, stacklevel=2)
             return result
 
         return call  # type: ignore[return-value]  # the same arguments and result
 
     return decorate
+
+
+def _kinds(found: Iterable[ResultWarning]) -> Iterable[str]:
+    """Return the first message of each kind: the others differ by indices only, and the result carries them."""
+    kinds: dict[str, str] = {}
+    for each in found:
+        kinds.setdefault(re.sub(r"\d+", "", each.subject), each.message)
+    return dict.fromkeys(kinds.values())
 
 
 def _is_user(module: object) -> bool:
@@ -272,11 +281,15 @@ RANGES: dict[str, Range] = {
     "arrival_tolerance": Range(1e-4, 5.0, "m", "accurate docking to large vehicles", "mm or cm given for m"),
     "floor_position": Range(-10000.0, 10000.0, "m", "the largest sites", "mm given for m"),
     "map_resolution": Range(0.005, 1.0, "m", "fine to coarse grids of floors", "mm, or cells per meter, given for m"),
+    "region_clearance": Range(0.0, 30.0, "m", "touching to the way of a fast truck", "mm or cm given for m"),
     "region_radius": Range(0.01, 30.0, "m", "a small disc to the way of a fast truck", "mm or cm given for m"),
     "obstacle_size": Range(0.005, 1000.0, "m", "thin poles to long walls", "mm or cm given for m"),
     "person_radius": Range(0.1, 1.0, "m", "a child to a long step with room around it", "mm or cm given for m"),
     "person_speed": Range(
         0.0, 12.5, "m/s", "standing to the fastest sprinter ever timed", "mm/s or km/h given for m/s"
+    ),
+    "pursuer_speed": Range(
+        0.01, 12.5, "m/s", "hardly moving to the fastest sprinter ever timed", "mm/s or km/h given for m/s"
     ),
     "obstacle_speed": Range(0.0, 40.0, "m/s", "standing to road vehicles", "mm/s or km/h given for m/s"),
     "measurement_scale": Range(0.0, 1.0, "m", "exact to coarse radio positioning", "mm or cm given for m"),

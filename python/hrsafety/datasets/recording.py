@@ -17,7 +17,7 @@ from hrsafety._tracks import WINDOW, Ways, smoothed_ways
 from hrsafety.datasets.flow import Flow, flow_of
 from hrsafety.datasets.track_ends import TrackEnds, ends_doubts, lost_doubts, track_ends
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.plausibility import ResultWarning
+from hrsafety.plausibility import ResultWarning, telling
 
 __all__ = ["Recording"]
 
@@ -292,6 +292,7 @@ class Recording:
         seen: npt.NDArray[np.int64] = self._ids[shared > 0.0 if for_some_time else shared == 0.0]
         return seen
 
+    @telling(lambda self, *_, **__: self.warnings)
     def humans(self, start_time: float, *, duration: float, **human_fields: Any) -> tuple[nav.Human, ...]:
         """Return the people in view during a window as obstacles.
 

@@ -18,11 +18,12 @@ from hrsafety._bounds import MOST_SIGHTINGS
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.gym.environments import ActionKind, Frame, turn_rate_of
 from hrsafety.gym.single import RENDER_MODES, CrowdEnv
-from hrsafety.gym.worlds import Task
+from hrsafety.gym.worlds import Task, doubts_of
 from hrsafety.navigation.crowd.agents import CrowdRobot
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.laws.situation import Situation
 from hrsafety.navigation.metrics.between import wrapped
+from hrsafety.plausibility import telling
 
 __all__ = ["CrowdParallelEnv"]
 
@@ -153,6 +154,7 @@ class CrowdParallelEnv(ParallelEnv[str, Any, Action]):  # type: ignore[misc]  # 
         "is_parallelizable": True,
     }
 
+    @telling(doubts_of)
     def __init__(self, world: World | Task, *, render_mode: str | None = None, **options: Any) -> None:
         """Make the environment."""
         if not isinstance(world, (World, Task)):

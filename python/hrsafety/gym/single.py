@@ -14,9 +14,10 @@ from hrsafety._arguments import checked_seed, numbers, word
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.gym.environments import OUTCOMES, RUNNING, TIMED_OUT, Environments, Frame
 from hrsafety.gym.pictures import picture
-from hrsafety.gym.worlds import Task
+from hrsafety.gym.worlds import Task, doubts_of
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.metrics.declared import METRICS
+from hrsafety.plausibility import telling
 
 __all__ = ["CrowdEnv"]
 
@@ -83,6 +84,7 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
 
     metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES), "render_fps": 4}  # noqa: RUF012  # as Gymnasium has it
 
+    @telling(doubts_of)
     def __init__(self, world: World | Task, *, render_mode: str | None = None, **options: Any) -> None:
         """Make the environment."""
         if render_mode is not None:

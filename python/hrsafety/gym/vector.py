@@ -16,9 +16,10 @@ from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.gym.environments import OUTCOMES, RUNNING, TIMED_OUT, Environments, Frame
 from hrsafety.gym.pictures import picture
 from hrsafety.gym.single import RENDER_MODES
-from hrsafety.gym.worlds import Task
+from hrsafety.gym.worlds import Task, doubts_of
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.metrics.declared import METRICS
+from hrsafety.plausibility import telling
 
 __all__ = ["CrowdVectorEnv"]
 
@@ -65,6 +66,7 @@ class CrowdVectorEnv(gymnasium.vector.VectorEnv[Any, npt.NDArray[np.float32], np
     ((64, 31), (64,))
     """
 
+    @telling(doubts_of)
     def __init__(
         self,
         world: World | Task,

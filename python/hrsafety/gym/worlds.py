@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from hrsafety import scenarios
@@ -11,6 +12,7 @@ from hrsafety.navigation.crowd.agents import CrowdRobot
 from hrsafety.navigation.crowd.pedestrians import Pedestrian
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.robots.bodies import HolonomicRobot
+from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Task", "bottleneck", "circle_crossing", "corridor", "crossing"]
 
@@ -56,6 +58,13 @@ class Task:
                 raise InvalidParameterError("area", rule, self.area)
             area = (_corner("area.low", parts[0]), _corner("area.high", parts[1]), flag("area.level", parts[2]))
             object.__setattr__(self, "area", area)
+
+
+def doubts_of(_owner: object, *given: object, **named: object) -> Iterable[ResultWarning]:
+    """Return the doubts about the world that an environment is made of."""
+    made_of = given[0] if given else named.get("world")
+    world = made_of.world if isinstance(made_of, Task) else made_of
+    return world.warnings if isinstance(world, World) else ()
 
 
 def _corner(name: str, value: object) -> Pair:

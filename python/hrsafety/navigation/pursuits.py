@@ -22,7 +22,7 @@ from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.navigation.warnings.shields import ASSUMES_LESS, shield_of
-from hrsafety.plausibility import ResultWarning
+from hrsafety.plausibility import ResultWarning, implausible, telling
 from hrsafety.tables import Columns, Table
 
 __all__ = ["Falsification", "Pursuit", "falsify"]
@@ -148,6 +148,7 @@ class Falsification:
         return wilson(int((self.margin < 0.0).sum()), len(self.margin))
 
 
+@telling()
 def falsify(
     scenario: Scenario,
     law: AnyLaw,
@@ -265,7 +266,11 @@ def falsify(
         **found,
         episodes=runs,
         worst=worst,
-        warnings=(*run_warnings.of_run(pursued, drives, robot, step), *_of_turns(drives, fastest)),
+        warnings=(
+            *implausible({"person_radius": size, "person_speed": fastest}, {"person_speed": "pursuer_speed"}),
+            *run_warnings.of_run(pursued, drives, robot, step),
+            *_of_turns(drives, fastest),
+        ),
     )
 
 

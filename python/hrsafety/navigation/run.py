@@ -18,6 +18,8 @@ from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.robots.bodies import HolonomicRobot
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import Trajectory
+from hrsafety.navigation.warnings.units import of_scenarios
+from hrsafety.plausibility import telling
 
 __all__ = ["Run"]
 
@@ -74,6 +76,7 @@ class Run:
 
     __slots__ = ("_built", "_commanded", "_goal", "_how", "_law", "_native", "_robot", "_scenario", "_step")
 
+    @telling(lambda _, *given, **named: of_scenarios(*given, **named))
     def __init__(
         self,
         scenario: Scenario,

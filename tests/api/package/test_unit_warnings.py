@@ -61,6 +61,26 @@ CALLS: dict[str, tuple[Callable[[], Any], str]] = {
         lambda: impact.metrics_batch(manipulator=ARM, foam=FOAM, head=HEAD, closing_speed=[1250.0, 1.0]),
         "closing_speed is 1250",
     ),
+    "a search for a person": (
+        lambda: nav.falsify(scene(), FIELD, episodes=2, person_radius=4e-4, person_speed=1.6e-3),
+        "person_radius is 0.0004 m",
+    ),
+    "a world that is scored": (
+        lambda: nav.metrics.evaluate_world(
+            1000.0 * PATH[:, None], person_goals=[(6000.0, 0.0)], step=0.1, time_limit=10.0
+        ),
+        "median speed of people is 1000 m/s",
+    ),
+    "a grid": (
+        lambda: nav.StaticMap.from_grid(np.eye(3, dtype=bool), resolution=50.0, yaw=90.0),
+        "resolution is 50 m",
+    ),
+    "clearances": (
+        lambda: nav.simulate(
+            scene(obstacles=[nav.Disc(center=(200.0, 4.0), radius=0.1, active_clearance=80.0)]), FIELD
+        ),
+        r"obstacles\[0\].active_clearance is 80 m",
+    ),
     "gradients": (lambda: impact.gradients(ARM, FOAM, HEAD, closing_speed=1250.0), "closing_speed is 1250 m/s"),
 }
 
@@ -76,6 +96,46 @@ def test_a_doubt_about_units_is_issued_once_at_the_line_of_the_user(name: str) -
     # The result carries what was issued; those of many runs name the run, and count the others.
     carried = " ".join(doubt.message for doubt in result.warnings)
     assert all(str(each.message) in carried for each in caught)
+
+
+def test_one_mistake_in_many_obstacles_is_issued_once() -> None:
+    discs = [nav.Rectangle(center=(50.0, 5.0 + 3.0 * k), length=1.0, width=1.0, heading=90.0) for k in range(30)]
+    crowded = scene(obstacles=discs)
+    with pytest.warns(UnitWarning) as caught:
+        run = nav.simulate(crowded, FIELD)
+    assert len(caught) == 1
+    assert len([each for each in run.warnings if each.code == "implausible"]) == 30
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: nav.Run(DEGREES, FIELD),
+        lambda: nav.Run(scenario=DEGREES),
+        lambda: RECORDED.humans(0.0, duration=100.0),
+        lambda: nav.crowd.prediction_errors("constant_velocity", RECORDED, seen=20.0, foretold=40.0, every=20.0),
+        lambda: nav.simulate_batch([each.scenario for each in scenarios.crossings(RECORDED, runs=1)], FIELD),
+    ],
+)
+def test_what_is_made_of_doubtful_numbers_says_so(call: Callable[[], Any]) -> None:
+    with pytest.warns(UnitWarning) as caught:
+        call()
+    assert {Path(each.filename) for each in caught} == {Path(__file__)}
+
+
+def test_environments_say_what_is_doubtful_in_their_world() -> None:
+    gym = pytest.importorskip("hrsafety.gym")
+    person = nav.crowd.Person(start=(900.0, 0.0), route=[(0.0, 0.0)], radius=250.0)
+    robot = nav.crowd.CrowdRobot(start=(0.0, 0.0), goal=(4.0, 3.0))
+    world = nav.crowd.World(people=[person], robots=[robot], time_limit=2.0)
+    for make in (
+        lambda: gym.CrowdEnv(world),
+        lambda: gym.CrowdEnv(world=world),
+        lambda: gym.CrowdVectorEnv(world, num_envs=2),
+    ):
+        with pytest.warns(UnitWarning, match="radius is 250 m") as caught:
+            make()
+        assert {Path(each.filename) for each in caught} == {Path(__file__)}
 
 
 def test_a_file_of_frames_says_so_when_it_is_read(tmp_path: Path) -> None:

@@ -15,9 +15,10 @@ from hrsafety._bounds import MOST_EVALUATIONS
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.crowd.pedestrians import Pedestrian
-from hrsafety.navigation.crowd.predictions import PredictionErrors, Windows, errors_of
+from hrsafety.navigation.crowd.predictions import PredictionErrors, Windows, errors_of, of_recording
 from hrsafety.navigation.metrics.episode import Recorded
 from hrsafety.navigation.run_arguments import Progress
+from hrsafety.plausibility import telling
 from hrsafety.tables import Columns, Table
 
 __all__ = ["PeopleFit", "fit_people"]
@@ -78,6 +79,7 @@ class PeopleFit(Table):
         }
 
 
+@telling(of_recording)
 def fit_people(
     model: Pedestrian,
     recording: Recorded,

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import Annotated, Literal, NamedTuple, get_args
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Annotated, Any, Literal, NamedTuple, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -20,8 +20,9 @@ from hrsafety.navigation.crowd.simulation import simulate_crowds
 from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.metrics.episode import Recorded
+from hrsafety.plausibility import ResultWarning, telling
 
-__all__ = ["Baseline", "Part", "PredictionErrors", "Windows", "errors_of", "prediction_errors"]
+__all__ = ["Baseline", "Part", "PredictionErrors", "Windows", "errors_of", "of_recording", "prediction_errors"]
 
 Baseline = Literal["constant_velocity", "straight"]
 Part = Literal["first", "second", "all"]
@@ -264,6 +265,13 @@ def _baseline(kind: Baseline, windows: Windows) -> PredictionErrors:
     return _errors(np.array(distances))
 
 
+def of_recording(*given: Any, **named: Any) -> Iterable[ResultWarning]:
+    """Return the doubts about the recording of a call, its second argument."""
+    recording = given[1] if len(given) > 1 else named.get("recording")
+    return getattr(recording, "warnings", ())
+
+
+@telling(of_recording)
 def prediction_errors(
     model: Pedestrian | Baseline,
     recording: Recorded,

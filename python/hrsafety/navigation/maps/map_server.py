@@ -20,7 +20,7 @@ from hrsafety.plausibility import ResultWarning, implausible
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["BETWEEN", "FREE", "OCCUPIED", "UNKNOWN", "ServedMap", "cell_classes", "read_map_server"]
+__all__ = ["BETWEEN", "FREE", "OCCUPIED", "UNKNOWN", "ServedMap", "cell_classes", "doubts_of_place", "read_map_server"]
 
 CELLS_AT_ONCE = 1 << 23
 FREE, UNKNOWN, OCCUPIED, BETWEEN = range(4)
@@ -98,7 +98,7 @@ def read_map_server(
     seen = _histogram(picture)
     kept = _kept(classes, rules, picture.most, fills)
     found = (
-        *_doubts_of_place(resolution, (x, y), yaw),
+        *doubts_of_place(resolution, (x, y), yaw),
         *_doubts_of_cells(picture, rules, classes, freed, kept, seen, fills=fills),
     )
     trusted = ((classes == UNKNOWN) & (kept == FREE)) | (freed & letter)
@@ -232,10 +232,11 @@ def _upwards(picture: Picture, chosen: Bits, *, hidden: bool) -> Bits:
 # ---- doubts ----------------------------------------------------------------------------------------
 
 
-def _doubts_of_place(resolution: float, corner: tuple[float, float], yaw: float) -> Iterator[ResultWarning]:
-    yield from implausible({"resolution": resolution}, {"resolution": "map_resolution"})
-    yield from implausible({"origin": corner}, {"origin": "floor_position"})
-    yield from implausible({"yaw of origin": yaw}, {"yaw of origin": "heading"})
+def doubts_of_place(resolution: float, corner: tuple[float, float], yaw: float) -> tuple[ResultWarning, ...]:
+    """Return doubts about the units of a grid."""
+    values = {"resolution": resolution, "origin": corner, "yaw of origin": yaw}
+    quantities = {"resolution": "map_resolution", "origin": "floor_position", "yaw of origin": "heading"}
+    return implausible(values, quantities)
 
 
 def _doubts_of_cells(

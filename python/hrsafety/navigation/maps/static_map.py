@@ -17,7 +17,7 @@ from hrsafety._records import dataclass
 from hrsafety.errors import ShapeError
 from hrsafety.navigation.maps.barn import barn_discs
 from hrsafety.navigation.maps.distances import occupied_cells
-from hrsafety.navigation.maps.map_server import read_map_server
+from hrsafety.navigation.maps.map_server import doubts_of_place, read_map_server
 from hrsafety.navigation.maps.parts import (
     Cells,
     Wall,
@@ -32,7 +32,7 @@ from hrsafety.navigation.maps.parts import (
     outline,
 )
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
-from hrsafety.plausibility import ResultWarning
+from hrsafety.plausibility import ResultWarning, telling
 
 __all__ = ["StaticMap"]
 
@@ -197,6 +197,7 @@ class StaticMap(Parameters):
         return cls(polygons=boxes, discs=discs)
 
     @classmethod
+    @telling()
     def from_grid(
         cls,
         occupied: npt.ArrayLike,
@@ -224,7 +225,8 @@ class StaticMap(Parameters):
         Returns
         -------
         StaticMap
-            The map; the boundary between occupied and free cells are its walls.
+            The map; the boundary between occupied and free cells are its walls. A resolution outside 0.005 to 1 m
+            and a yaw beyond one turn are ``implausible`` in its warnings.
 
         Raises
         ------
@@ -240,13 +242,15 @@ class StaticMap(Parameters):
         """
         cells = occupied_cells("occupied", occupied)
         rows, columns = cells.shape
-        size = number("resolution", resolution)
+        size, turned = number("resolution", resolution), number("yaw", yaw)
         limits = word("outside", outside, ("free", "unknown")) == "unknown"
         bits = np.packbits(cells).tobytes()
-        grid = Cells(bits, (rows, columns), size, pair("origin", origin), number("yaw", yaw), limits)
-        return cls(grids=[grid])
+        corner = pair("origin", origin)
+        grid = Cells(bits, (rows, columns), size, corner, turned, limits)
+        return cls(grids=[grid], warnings=doubts_of_place(size, corner, turned))
 
     @classmethod
+    @telling()
     def from_map_server(
         cls,
         path: str | PathLike[str],

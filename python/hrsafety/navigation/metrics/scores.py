@@ -336,6 +336,7 @@ def _scored(index: int, given: object) -> Episode:
     return given
 
 
+@telling()
 def evaluate_world(
     people: npt.ArrayLike,
     *,

@@ -235,6 +235,8 @@ def _numbers(obstacle: Obstacle) -> dict[str, tuple[object, str]]:
     own = obstacle.as_given()  # radii that were computed follow from the other numbers
     for name in ("critical_radius", "active_radius"):
         found[name] = (getattr(own, name, None), "region_radius")
+    for name in ("critical_clearance", "active_clearance"):
+        found[name] = (getattr(own, name, None), "region_clearance")
     for place in ("start", "center"):
         found[place] = (getattr(obstacle, place, None), "floor_position")
     if isinstance(obstacle, Box):
