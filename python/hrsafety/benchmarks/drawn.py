@@ -20,7 +20,7 @@ __all__ = ["DRAWN", "among", "crowd", "drifting", "first_of"]
 DRAWN = 2000
 """Episodes of S4 and S5 that one draw gives."""
 LAW_SPEED, ROBOT_SPEED = 1.0, 1.5
-"""In S4 and S5: largest speed of the law, and of the robot with parts around it, in m/s."""
+"""In S4 and S5: largest speed of the law, and of the robot to give way under shield or yielding, in m/s."""
 CROWD = 12
 """People of a crowd."""
 
@@ -59,6 +59,7 @@ def drifting(count: int) -> Draw:
     """
 
     def draw(case: Case, cases: Sequence[int]) -> tuple[Sequence[nav.Scenario], nav.Law]:
+        gives_way = not {"shield", "yielding"}.isdisjoint(case.entry.parts)
         place, velocity = (each[list(cases)] for each in _discs(case.seed, count))
         scenes = nav.Scenarios.from_arrays(
             start=np.zeros((len(cases), 2)),
@@ -68,7 +69,7 @@ def drifting(count: int) -> Draw:
             obstacle_radius=0.3,
             person=False,
             robot=nav.HolonomicRobot(
-                radius=0.3, max_speed=ROBOT_SPEED if case.entry.parts else LAW_SPEED, max_acceleration=10.0
+                radius=0.3, max_speed=ROBOT_SPEED if gives_way else LAW_SPEED, max_acceleration=10.0
             ),
             control_period=0.1,
             time_limit=15.0,

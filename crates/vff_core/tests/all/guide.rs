@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use proptest::prelude::*;
 use vff_core::error::Failure;
 use vff_core::laws::Stop;
-use vff_core::laws::guide::{Guidance, Guide, Plan, Takeover, TakeoverRule};
+use vff_core::laws::guide::{Detour, Guidance, Guide, Plan, Takeover, TakeoverRule};
 use vff_core::world::map::{MapShapes, StaticMap};
 use vff_core::world::shape::PlacedShape;
 
@@ -205,6 +205,45 @@ fn a_plan_around_who_stands_is_taken_when_it_is_complete() {
     assert!(needed > 10, "{needed}");
     assert_eq!(looks(false), Some(needed));
     assert_eq!(looks(true), Some(needed));
+}
+
+#[test]
+fn a_detour_begins_where_the_robot_stands_and_ends_where_the_straight_way_is_free() {
+    let guide = Guide {
+        bounds: Some([[-2.0, -4.0], [8.0, 4.0]]),
+        ..Guide::default()
+    };
+    let ends = [[0.0, 0.0], [6.0, 0.0]];
+    let map = MapShapes::new().map();
+    let plan = guide.plan(&map, 0.3, ends, Stop::never()).unwrap();
+    let mut guidance = Guidance::new(guide, 0.3, plan);
+    let mut detour = Detour::default();
+    // Somebody stands on the way: 2 s long nobody knows, then the robot would have to stand, too.
+    let mut led = |time: f64, [x, y]: [f64; 2], person: Option<[f64; 2]>| {
+        let people = person.map(|place| PlacedShape::disc(place, 0.5));
+        for _ in 0..LOOKS {
+            guidance.observe(time, Point::new(x, y), std::iter::once(people));
+        }
+        let local = detour.observe(time, Point::new(x, y), &guidance);
+        local.map(|local| local.point)
+    };
+    let near = Some([2.0, 0.1]);
+    assert_eq!(led(0.0, [0.0, 0.0], near), None);
+    assert_eq!(led(1.0, [0.1, 0.0], near), None);
+    assert_eq!(led(2.9, [0.15, 0.0], near), None);
+    let around = led(3.0, [0.15, 0.0], near).unwrap();
+    assert!(around.y < -0.2, "{around}");
+    // On the way around the goal is as far away as before, or farther.
+    assert!(led(3.5, [0.1, -0.3], near).is_some());
+    assert!(led(9.0, [1.0, -0.6], near).is_some());
+    assert_eq!(led(9.5, [1.8, -0.95], near), None);
+    // Another wait begins anew, and who stands beyond the look-ahead is in nobody's way.
+    assert_eq!(led(9.6, [0.1, 0.0], near), None);
+    assert!(led(11.6, [0.1, 0.0], near).is_some());
+    assert_eq!(led(11.7, [0.1, 0.0], None), None);
+    let far = Some([5.0, 0.0]);
+    assert_eq!(led(12.0, [0.1, 0.0], far), None);
+    assert_eq!(led(30.0, [0.1, 0.0], far), None);
 }
 
 #[test]

@@ -64,7 +64,7 @@ class SafeNavigation(Law):
         itself; what stands in the scene and lies in the map as a whole is known by the map alone.
     guide : Guide or None
         Plan and local goal for the law. In a map the law is then taken over from where it makes no progress; without
-        one it leads around those who stand, where the robot makes no progress towards the goal.
+        one it leads around those who stand, where the robot is stuck behind them.
     shield : Shield or None
         The shield.
     yielding : Yielding or None

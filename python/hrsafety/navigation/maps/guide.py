@@ -149,8 +149,9 @@ class Guide(Parameters):
     Dijkstra's algorithm on a grid of nodes with 16 neighbors gives the cost to the goal everywhere, once for a map
     and a goal. A link costs its length times ``1 + 2 max(0, 1 - (c - rho)/0.3)^2``, ``c`` the distance of its
     ends from the map. A path with room of the radius of the robot, the margin and 0.71 spacings is always found.
-    Without a map the law has the goal itself; where the robot gets no nearer to it and somebody stands on the straight
-    way, the guide leads around those who stand.
+    Without a map the law has the goal itself, and does what it does alone. Only where the robot has come nearer to it
+    by less than 0.1 m in 2 s, and somebody or something stands on the straight way within the look-ahead, the guide
+    leads around, until the whole straight way is free.
 
     Parameters
     ----------

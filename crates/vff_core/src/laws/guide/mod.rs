@@ -6,6 +6,7 @@
 //! a margin from the map, so a path with `rho + m_p + h/sqrt(2)` of room is always found: rounded
 //! to nodes, every point of it moves by half a diagonal of a cell at most.
 
+mod detour;
 mod guidance;
 mod nodes;
 mod plan;
@@ -19,6 +20,7 @@ use crate::error::{Failure, Given, Result, finite_pair, not_negative, positive};
 use crate::laws::Stop;
 use crate::laws::guide::nodes::Nodes;
 use crate::world::map::StaticMap;
+pub use detour::Detour;
 pub use guidance::Guidance;
 pub use nodes::MOST_NODES;
 pub use plan::{LocalGoal, Plan, View};

@@ -189,6 +189,13 @@ impl Plan {
         self.map.segment_keeps(position, point, least)
     }
 
+    /// Whether a robot sees its straight way to the goal within the look-ahead.
+    pub(super) fn sees_ahead(&self, position: Vector2<f64>) -> bool {
+        let to = self.goal - position;
+        let share = (self.guide.look_ahead / to.norm()).min(1.0);
+        self.sees(position, position + to * share)
+    }
+
     fn seen_clearance(&self, position: Vector2<f64>) -> f64 {
         seen_clearance(&self.map, self.least, position)
     }

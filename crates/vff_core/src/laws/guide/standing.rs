@@ -3,9 +3,9 @@
 use nalgebra::Vector2;
 
 /// A person who moved less than this, in m ...
-const MOVED: f64 = 0.1;
+pub(super) const MOVED: f64 = 0.1;
 /// ... in this time, in s, stands.
-const WINDOW: f64 = 2.0;
+pub(super) const WINDOW: f64 = 2.0;
 
 /// What a person did of late.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::lanes::Vector2;
-use crate::laws::guide::{Guidance, LocalGoal, Takeover};
+use crate::laws::guide::{Detour, Guidance, LocalGoal, Takeover};
 use crate::laws::safe::settings::SafeNavigation;
 use crate::laws::safe::surroundings::Surroundings;
 use crate::laws::shield::{
@@ -31,12 +31,10 @@ pub struct SafeLaw {
     course: Option<Course>,
     yielder: Option<Yielder>,
     guidance: Option<Guidance>,
-    /// What watches the progress of the robot.
+    /// When a guide without a map leads around who stands.
+    detour: Option<Detour>,
+    /// When the robot heads for its (local) goal by itself.
     takeover: Option<Takeover>,
-    /// Whether the robot heads for its (local) goal by itself without progress.
-    takes_over: bool,
-    /// Whether the guide plans in a map.
-    mapped: bool,
     limits: Limits,
     /// Largest speed of the law in m/s.
     preferred: f64,
@@ -100,11 +98,9 @@ impl SafeLaw {
                 .yielding
                 .map(|yielding| Yielder::new(yielding, limits))
                 .transpose()?,
-            takeover: (family.takeover || guidance.is_some() && !mapped)
-                .then(|| Takeover::new(rule)),
-            takes_over: family.takeover,
+            takeover: family.takeover.then(|| Takeover::new(rule)),
+            detour: (guidance.is_some() && !mapped).then(Detour::default),
             guidance,
-            mapped,
             limits,
             preferred: inner.robot.max_speed,
             mass: robot.mass,
@@ -175,11 +171,20 @@ impl SafeLaw {
             off_plan: now.off,
         };
         let turned = self.twist_guard.is_some();
-        if decision.status == Status::Kept && wanted == asked && !turned {
+        let kept = decision.status == Status::Kept && wanted == asked && !turned;
+        if kept || self.lets_through(&heading) {
             return command;
         }
         let change = decision.velocity - robot.velocity;
         Command::plain(change * (self.mass / situation.interval))
+    }
+
+    /// Whether no part has a say in what the law commands: the robot itself keeps to its limits, and does what it does
+    /// under the law alone.
+    fn lets_through(&self, heading: &Heading) -> bool {
+        let parts = self.guard.is_some() || self.yielder.is_some();
+        let law_heads = heading.local.is_some() && !heading.taken_over;
+        !parts && law_heads && self.preferred >= self.limits.max_speed
     }
 
     /// Where the force is not held, it acts for a motion step only.
@@ -204,7 +209,7 @@ impl SafeLaw {
             let people = self.around.standing(situation.bodies);
             again = guidance.observe(time, position, people);
         }
-        let Some(guidance) = self.guidance.as_ref().filter(|_| self.mapped) else {
+        let Some(guidance) = self.guidance.as_ref().filter(|_| self.detour.is_none()) else {
             return self.head_without_map(time, position);
         };
         let found = guidance.local_goal(position);
@@ -227,19 +232,18 @@ impl SafeLaw {
         heading
     }
 
-    /// The goal itself; without progress the way around who stands on the straight way to it.
+    /// The goal itself; where the robot is stuck behind others who stand, the way around them.
     fn head_without_map(&mut self, time: f64, position: Vector2<f64>) -> Heading {
+        let around = self
+            .detour
+            .as_mut()
+            .zip(self.guidance.as_ref())
+            .and_then(|(detour, guidance)| detour.observe(time, position, guidance));
         let cost = (self.goal - position).norm();
         let takeover = self.takeover.as_mut();
-        let stuck = takeover.is_some_and(|takeover| takeover.observe(time, Some(cost)));
-        let around = self.guidance.as_ref().and_then(|guidance| {
-            let blocked = guidance.leads_around() && !guidance.plan().sees(position, self.goal);
-            (stuck && blocked).then(|| guidance.local_goal(position))?
-        });
-        let local = around.map_or(LocalGoal::goal(self.goal), |(_, local)| local);
         Heading {
-            local: Some(local),
-            taken_over: stuck && self.takes_over,
+            local: around.or(Some(LocalGoal::goal(self.goal))),
+            taken_over: takeover.is_some_and(|takeover| takeover.observe(time, Some(cost))),
         }
     }
 

@@ -91,13 +91,13 @@ impl Surroundings {
         }
     }
 
-    /// Those who may stand, by their outlines; `None` for what the map shows already.
+    /// Whoever and whatever may stand, by outlines; `None` for what the map shows already.
     pub fn standing<'a>(
         &'a self,
         bodies: &'a [Body],
     ) -> impl Iterator<Item = Option<PlacedShape>> + Clone + 'a {
         bodies.iter().zip(&self.known).map(|(body, known)| {
-            let counts = body.state.present && known.kind == Kind::Person;
+            let counts = body.state.present && known.kind != Kind::Mapped;
             counts.then(|| PlacedShape {
                 center: body.state.position.into(),
                 shape: body.shape,
