@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Any, ClassVar, Self
 
@@ -108,6 +108,31 @@ class Design(ABC):
         """
         return self._by_axis(self._block(0, min(len(self), MOST_LOOKED_AT)))
 
+    def spread(self, most: int, without: Collection[str] = ()) -> tuple[dict[str, Array], int]:
+        """Return rows spread over the whole design: all of them where they are few.
+
+        Parameters
+        ----------
+        most : int
+            Most rows.
+        without : collection of str
+            Axes that do not matter: a grid is spread over the others alone.
+
+        Returns
+        -------
+        rows : dict of str to ndarray
+            A column for each axis, the first and the last row among them.
+        total : int
+            Of how many.
+        """
+        design = self._without(without)
+        places = np.unique(np.linspace(0, len(design) - 1, min(most, len(design))).round().astype(np.int64))
+        rows = np.concatenate([design._block(place, place + 1) for place in places.tolist()])
+        return design._by_axis(rows), len(design)
+
+    def _without(self, names: Collection[str]) -> Design:  # noqa: ARG002  # only a grid has rows without an axis
+        return self
+
     def _by_axis(self, rows: Array) -> dict[str, Array]:
         return dict(zip(self.names, rows.T, strict=True))
 
@@ -193,6 +218,10 @@ class Grid(Design):
         ends = [axis.levels()[[0, -1]] for axis in self.axes]
         few = 2 ** len(ends) <= MOST_LOOKED_AT
         return self._by_axis(np.array(list(itertools.product(*ends) if few else zip(*ends, strict=True))))
+
+    def _without(self, names: Collection[str]) -> Design:
+        left = [axis for axis in self.axes if axis.name not in names]
+        return Grid(left) if left else self
 
     def _block(self, start: int, stop: int) -> Array:
         places = np.unravel_index(np.arange(start, stop), self.shape)

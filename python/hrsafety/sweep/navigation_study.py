@@ -23,6 +23,7 @@ from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Column, checked_name
+from hrsafety.sweep.designs import MOST_LOOKED_AT, Design
 from hrsafety.sweep.studies import Cases, Found, Study, chosen
 
 __all__ = ["NavigationStudy"]
@@ -54,6 +55,8 @@ SCENE_UNITS: Mapping[str, str] = MappingProxyType(
         "obstacle_speed": "m/s",
     }
 )
+ROWS_NOT_LOOKED_AT = "rows_not_looked_at"
+"""Code of scenes that were not looked at for doubts."""
 _FIRST = (
     Column(name="outcome", kind="word", words=tuple(OUTCOMES)),
     Column(name="end_time", unit="s"),
@@ -253,8 +256,6 @@ class NavigationStudy(Study):
         """Return the warnings of the scenes of these rows, see `Study.doubts`."""
         others = [name for name in rows if name not in self.law.GAIN_UNITS]
         distinct = np.unique(np.stack([rows[name] for name in others], axis=1), axis=0) if others else np.empty((1, 0))
-        if self.scenario is not None:
-            distinct = distinct[[0, -1]]  # a function of the caller may take long
         scenes: list[nav.Scenario] = []
         for row in distinct.tolist():
             # A row that cannot be is an error of the chunk that computes it.
@@ -262,6 +263,24 @@ class NavigationStudy(Study):
                 scenes += self._scenes(dict(zip(others, row, strict=True)), len(self.names or [""]))
         words = [f"scenarios[{name!r}]" for name in self.names] if self.names else ["scenario"]
         return run_warnings.of_runs(scenes, words * (len(scenes) // len(words)), [self.law], None, self.step)
+
+    def judged(self, design: Design) -> tuple[ResultWarning, ...]:
+        """Return the doubts of a design before it runs, see `Study.judged`.
+
+        A function makes any scene of a row: of few rows all are looked at, of more some, and a doubt says so.
+        """
+        if self.scenario is None:
+            return self.doubts(design.looked_at())
+        rows, total = design.spread(MOST_LOOKED_AT, without=self.law.GAIN_UNITS)
+        found = self.doubts(rows)
+        looked_at = len(next(iter(rows.values())))
+        if looked_at == total:
+            return found
+        message = (
+            f"scenes are made by a function, and those of {looked_at} of {total} rows, spread over the design, were "
+            "looked at for doubts: what scenario.warnings says of the others nobody has read"
+        )
+        return (*found, ResultWarning(ROWS_NOT_LOOKED_AT, "scenario", message))
 
     def _batches(self, rows: dict[str, Array], each: int) -> Iterator[_Batch]:
         """Yield calls that cover all rows: those that share everything but the gains run together."""

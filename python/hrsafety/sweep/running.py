@@ -170,7 +170,7 @@ def run(
     least = ROUNDS * most if share is None else share.parts
     plan = planned(design, study, chunk_rows=chunk_rows, least_chunks=least, threads=own)
     wanted = range(len(plan)) if share is None else share.of(len(plan))
-    manifest = new_manifest(plan.settings(__version__), study.doubts(design.looked_at()), store)
+    manifest = new_manifest(plan.settings(__version__), study.judged(design), store)
     with contextlib.nullcontext() if path is None else locked(path, None if share is None else wanted):
         kept = Memory(manifest) if path is None else Folder.prepared(path, manifest, resume=resume, store=store)
         missing = _missing(wanted, kept)

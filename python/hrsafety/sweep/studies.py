@@ -13,6 +13,7 @@ from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Column
+from hrsafety.sweep.designs import Design
 from hrsafety.sweep.identity import described
 
 __all__ = ["Cases", "Found", "Study", "checked_study", "chosen"]
@@ -105,6 +106,21 @@ class Study(ABC):
             The first warning of each kind; none where the study does not know its numbers.
         """
         return ()
+
+    def judged(self, design: Design) -> tuple[ResultWarning, ...]:
+        """Return the doubts of a design before it runs: those of the rows that stand for it, see `doubts`.
+
+        Parameters
+        ----------
+        design : Design
+            Which rows.
+
+        Returns
+        -------
+        tuple of ResultWarning
+            The first warning of each kind.
+        """
+        return self.doubts(design.looked_at())
 
     def settings(self) -> dict[str, Any]:
         """Return everything that the result depends on, as plain data."""
