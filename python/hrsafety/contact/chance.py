@@ -18,7 +18,7 @@ from hrsafety.contact.bodies import (
     touched_area,
 )
 from hrsafety.contact.covering import Covering, Region, covering_of
-from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers, not_checked
+from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers, not_checked, without_drive
 from hrsafety.contact.rows import (
     TOLERANCE,
     applying,
@@ -184,7 +184,7 @@ def probability(
         progress=callback("progress", progress),
     )
     found |= {name: tuple(found[name]) for name in ("interval", "quantiles")}
-    doubts = [*not_checked(missing), *implausible_numbers(pad, str(shared["region"]), values)]
+    doubts = [*not_checked(missing), *without_drive(values), *implausible_numbers(pad, str(shared["region"]), values)]
     if pad is not None:
         depth = _hrsafety.contact_speed(shared, in_order(values))["covering_compression"]
         doubts += flagged(covering_flags(pad, depth, values))

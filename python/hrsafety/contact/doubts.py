@@ -14,7 +14,7 @@ from hrsafety.contact.covering import Covering, shape_flags
 from hrsafety.contact.materials import GibsonAshby, Linear, Rusch, StressTable
 from hrsafety.plausibility import RANGES, ResultWarning, implausible
 
-__all__ = ["Doubts", "counted", "covering_flags", "flagged", "implausible_numbers", "not_checked"]
+__all__ = ["Doubts", "counted", "covering_flags", "flagged", "implausible_numbers", "not_checked", "without_drive"]
 
 Doubts = tuple[ResultWarning, ...]
 
@@ -55,6 +55,13 @@ _FLAGS = {
         "the covering is compressed by more than its thickness, which none can be: give it a backing",
     ),
 }
+
+_WITHOUT_DRIVE = ResultWarning(
+    "drive_not_given",
+    "stop",
+    "a clamped contact is that of a robot without drive: one that is driven on until it has reacted and braked presses "
+    "harder; robot_stiffness and stop describe it",
+)
 
 _LINEAR_STRAIN = 0.5
 """Strain beyond which hardly any foam is linear, a choice of this project."""
@@ -99,6 +106,24 @@ def counted(doubt: ResultWarning, held: npt.NDArray[np.bool_]) -> ResultWarning:
     if held.ndim == 0:
         return doubt
     return replace(doubt, message=f"{int(np.count_nonzero(held))} of {held.size} rows: {doubt.message}")
+
+
+def without_drive(numbers: Mapping[str, Any]) -> Doubts:
+    """Return the doubt about clamped contacts of a robot whose drive is not described: it presses on.
+
+    Parameters
+    ----------
+    numbers : mapping of str to float or ndarray
+        Those of the contact, or of many; NaN or left out where they are not given.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        One with the number of rows, or none.
+    """
+    stiffness, time = (np.asarray(numbers.get(name, np.nan)) for name in ("robot_stiffness", "stop_time"))
+    held = np.isinf(np.asarray(numbers["body_mass"])) & ~((stiffness > 0.0) & ~np.isnan(time))
+    return (counted(_WITHOUT_DRIVE, np.asarray(held)),) if held.any() else ()
 
 
 def _unfinished(pad: Covering, numbers: Mapping[str, Any], held: npt.NDArray[np.bool_]) -> ResultWarning:

@@ -12,7 +12,7 @@ from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.contact.bodies import body_of, contact_width_doubt, larger_than_part, touched_area
 from hrsafety.contact.covering import Covering, Region, covering_of
-from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers, not_checked
+from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers, not_checked, without_drive
 from hrsafety.contact.rows import TOLERANCE, contact_row, in_order, limits_of, missing_limits
 from hrsafety.contact.simulation import known
 from hrsafety.plausibility import ResultWarning, telling
@@ -136,6 +136,7 @@ def thickness(
         warnings=(
             *doubts,
             *not_checked(missing),
+            *without_drive(values),
             *flagged(covering_flags(pad, depth, doubted)),
             *implausible_numbers(pad, str(shared["region"]), doubted),
         ),

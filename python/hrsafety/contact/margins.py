@@ -11,7 +11,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import Array, Pair, instance, positive, sequence
+from hrsafety._arguments import Array, Pair, instance, not_negative, pair, positive, sequence
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.contact.base import Base, DifferentialBase, HolonomicBase
@@ -34,6 +34,10 @@ KNEE_HEIGHT = 0.35
 LOWEST = MappingProxyType({"thigh_knee": KNEE_HEIGHT})
 """Height from which a region counts; what is not here counts from the floor on."""
 
+
+FASTEST, SETTLING, LATEST = 20.0, 1.0, 60.0
+"""Of a contact with a drive: fastest closing speed in m/s that is looked at, time in s after the base stands in which
+loads may still rise, and time in s up to which they are looked at."""
 
 _READ = ("region", "contact", "permitted", "force", "pressure", "spring_constant", "body_mass")
 """What is read of a limit of contact."""
@@ -85,11 +89,13 @@ def contact_speed_limit(
     regions: Sequence[Any],
     *,
     area: float | None = None,
+    robot_stiffness: float = 0.0,
+    stop: tuple[float, float] | None = None,
 ) -> tuple[RegionSpeed, ...]:
     """Return the allowed closing speed of a point of a base along a normal, for each region and class.
 
     The limits are those of adults; no limit set has values of children. Those of clamped contacts hold for a base whose
-    drive pushes no further.
+    drive pushes no further, unless it is described: the doubt ``drive_not_given`` says so.
 
     Parameters
     ----------
@@ -104,6 +110,9 @@ def contact_speed_limit(
         ``body_mass``, such as those of `hrsafety.standards`. Give both classes: transient and clamped.
     area : float or None
         Contact area of a bare contact in m^2.
+    robot_stiffness, stop : float, tuple of two floats or None
+        Drive of the base, as for `simulate`: its stiffness in N/m, and when it begins to brake, in s, at which
+        deceleration in m/s^2. Clamped contacts are simulated with it.
 
     Returns
     -------
@@ -129,8 +138,43 @@ def contact_speed_limit(
     """
     instance("base", base, HolonomicBase, DifferentialBase)
     mass = base.effective_mass(point, normal)
-    found = (_region_speed(mass, covering, each, area) for each in _limits_of(regions))
+    drive = _Drive.of(robot_stiffness, stop)
+    found = (_region_speed(mass, covering, each, area, drive) for each in _limits_of(regions))
     return tuple(each._replace(warnings=(*base.warnings, *each.warnings)) for each in found)
+
+
+class _Drive(NamedTuple):
+    """Drive of a base: stiffness in N/m, when it begins to brake in s, at which deceleration in m/s^2."""
+
+    stiffness: float
+    time: float
+    deceleration: float
+
+    @classmethod
+    def of(cls, robot_stiffness: float, stop: tuple[float, float] | None) -> _Drive | None:
+        """Return a drive; none where it is not described."""
+        stiffness = not_negative("robot_stiffness", robot_stiffness)
+        if stop is None and stiffness == 0.0:
+            return None
+        if stop is None or stiffness == 0.0:
+            name, rule = ("stop", "time and deceleration") if stop is None else ("robot_stiffness", "above 0")
+            rule = f"be given, {rule}: a drive is robot_stiffness and stop"
+            raise InvalidParameterError(name, rule, stop if stop is None else stiffness)
+        time, deceleration = pair("stop", stop)
+        return cls(stiffness, not_negative("stop.time", time), positive("stop.deceleration", deceleration))
+
+    def numbers(self, limit: Any) -> dict[str, float]:
+        """Return the numbers of a clamped contact with it; a free body is hit and left alone."""
+        if math.isfinite(limit.body_mass):
+            return {}
+        # At rest by then, and pressed no further.
+        horizon = min(self.time + FASTEST / self.deceleration + SETTLING, LATEST)
+        return {
+            "robot_stiffness": self.stiffness,
+            "stop_time": self.time,
+            "stop_deceleration": self.deceleration,
+            "horizon": horizon,
+        }
 
 
 def _limits_of(regions: Sequence[Any]) -> list[Any]:
@@ -145,11 +189,18 @@ def _limits_of(regions: Sequence[Any]) -> list[Any]:
 
 
 def _region_speed(
-    mass: float, covering: Covering | Mapping[str, object] | None, limit: Any, area: float | None
+    mass: float,
+    covering: Covering | Mapping[str, object] | None,
+    limit: Any,
+    area: float | None,
+    drive: _Drive | None,
 ) -> RegionSpeed:
     if not limit.permitted:
         return RegionSpeed(limit.region, limit.contact, "not_permitted", mass, 0.0, None)
-    found = allowed_speed(robot_mass=mass, covering=covering, area=area, limits=_known(limit))
+    driven: dict[str, Any] = {} if drive is None else drive.numbers(_known(limit))
+    if driven:
+        driven["stop"] = (driven.pop("stop_time"), driven.pop("stop_deceleration"))
+    found = allowed_speed(robot_mass=mass, covering=covering, area=area, limits=_known(limit), **driven)
     speed = math.nan if found.speed is None else found.speed
     return RegionSpeed(limit.region, limit.contact, found.status, mass, speed, found, found.warnings)
 
@@ -226,16 +277,18 @@ def contact_margins(
     person_radius: float,
     area: float | None = None,
     cover_height: float | None = None,
+    robot_stiffness: float = 0.0,
+    stop: tuple[float, float] | None = None,
 ) -> ContactMargins:
     """Return the margin of the closing speed at every instant of a run, as if the robot touched then.
 
-    Clamped regions hold for a base whose drive pushes no further.
+    Clamped regions hold for a base whose drive pushes no further, and are not checked unless it is described.
 
     Parameters
     ----------
     trajectory : navigation.Trajectory
         The run: its ``time``, ``position``, ``velocity``, ``heading`` and ``obstacle_position``.
-    base, covering, regions, area
+    base, covering, regions, area, robot_stiffness, stop
         As for `contact_speed_limit`. The lowest speed of all regions and classes counts.
     robot_radius, person_radius : float
         Radii in m, for the point of contact and for ``touching``.
@@ -283,7 +336,8 @@ def contact_margins(
         normal = away / distance[:, :, None]
     share = np.einsum("nk,nmk->nm", trajectory.velocity, normal)
     closing = share + _approach(trajectory.time, trajectory.obstacle_position, normal)
-    limits = [_limit_at(trajectory, base, covering, each, normal, reach, area) for each in regions]
+    drive = _Drive.of(robot_stiffness, stop)
+    limits = [_limit_at(trajectory, base, covering, each, normal, reach, (area, drive)) for each in regions]
     limit = np.min([each.speed for each in limits], axis=0)
     known = np.all([each.known for each in limits], axis=0) & (not unsafe_doubts(base.warnings))
     lowest = min(limits, key=lambda each: float(np.min(each.speed, initial=np.inf))).limit
@@ -345,8 +399,15 @@ class _Limits(NamedTuple):
 
 
 def _limit_at(
-    trajectory: Any, base: Base, covering: Any, limit: Any, normal: Array, reach: float, area: float | None
+    trajectory: Any,
+    base: Base,
+    covering: Any,
+    limit: Any,
+    normal: Array,
+    reach: float,
+    how: tuple[float | None, _Drive | None],
 ) -> _Limits:
+    area, drive = how
     shape = normal.shape[:2]
     if not limit.permitted:
         return _Limits(limit, np.zeros(shape), np.ones(shape, dtype=bool), ())
@@ -359,7 +420,8 @@ def _limit_at(
         for place in map(tuple, np.argwhere(np.isfinite(turned)).tolist()):
             along = (math.cos(turned[place]), math.sin(turned[place]))
             masses[place] = base.effective_mass((reach * along[0], reach * along[1]), along)
-    found = allowed_speeds(robot_mass=masses, covering=covering, area=area, limits=_known(limit))
+    driven = {} if drive is None else drive.numbers(_known(limit))
+    found = allowed_speeds(robot_mass=masses, covering=covering, area=area, limits=_known(limit), **driven)
     unlimited = found.status == "unlimited_up_to_20"
     known = np.isfinite(found.speed) | unlimited
     # Some doubts hold for the instants of a flag; every other one holds for all of them.

@@ -15,7 +15,15 @@ from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.contact.bodies import Part, agreeing, body_of, contact_width_doubt, larger_than_part, touched_area
 from hrsafety.contact.covering import Covering, Region, covering_of
-from hrsafety.contact.doubts import Doubts, counted, covering_flags, flagged, implausible_numbers, not_checked
+from hrsafety.contact.doubts import (
+    Doubts,
+    counted,
+    covering_flags,
+    flagged,
+    implausible_numbers,
+    not_checked,
+    without_drive,
+)
 from hrsafety.contact.many import many, words_at
 from hrsafety.contact.rows import HORIZON, TOLERANCE, contact_row, in_order, limits_of, missing_limits, spring_of
 from hrsafety.contact.simulation import arrays_of, known
@@ -60,8 +68,8 @@ class AllowedSpeed:
     covering_compression : float or None
         Compression of the covering at the speed in m.
     warnings : tuple of ResultWarning
-        Why the speed may not be what it seems: limits that are not checked, loads that still rise at the
-        horizon of a simulation, a covering outside its model, implausible numbers.
+        Why the speed may not be what it seems: limits that are not checked, a clamped contact without the drive of the
+        robot, loads that still rise at the horizon of a simulation, a covering outside its model, implausible numbers.
     robot_speed : float or None
         Closing speed less the speed of the person towards the robot, at least 0.
     human_speed : float
@@ -142,7 +150,8 @@ def allowed_speed(
 
     Notes
     -----
-    A clamped contact holds for a robot without drive, unless `robot_stiffness` and `stop` describe one.
+    A clamped contact holds for a robot without drive, unless `robot_stiffness` and `stop` describe one: the doubt
+    ``drive_not_given`` says so.
 
     Examples
     --------
@@ -194,6 +203,7 @@ def allowed_speed(
         covering_compression=known(found["covering_compression"]),
         warnings=(
             *not_checked(missing),
+            *without_drive(values),
             *flagged(flags, pad, values),
             *wide,
             *implausible_numbers(pad, str(shared["region"]), values),
@@ -343,7 +353,7 @@ def allowed_speeds(
         status=found.status,
         **flags,
         not_checked=missing,
-        warnings=(*not_checked(missing), *wide, *found.warnings),
+        warnings=(*not_checked(missing), *without_drive(found.given), *wide, *found.warnings),
     )
 
 

@@ -269,15 +269,22 @@ def test_margins_along_a_run(kind: Any) -> None:
     found = contact.contact_margins(run, regions=regions, **around)
     present = np.isfinite(found.closing_speed)
     assert found.contact == "quasi_static"
-    assert set(found.verdict[present].tolist()) <= {"within_limits", "exceeds"}
+    closing = present & (found.closing_speed > 0.0)
+    # Nothing is said of the drive that presses on.
+    assert {each.code for each in found.warnings if each.code != "implausible"} == {"drive_not_given"}
+    assert set(found.verdict[closing].tolist()) == {"not_checked", "exceeds"}
     exceeds = found.verdict == "exceeds"
     assert (found.margin[exceeds] < 0.0).all()
     if kind is contact.HolonomicBase:
         limit = 130.0 / math.sqrt(4.4 * 60e3)
         assert (found.margin + found.closing_speed)[present] == pytest.approx(limit)
+        driven = contact.contact_margins(run, regions=regions, robot_stiffness=1e4, stop=(0.1, 3.0), **around)
+        assert (driven.margin[present] < found.margin[present]).all()
+        assert set(driven.verdict[closing].tolist()) == {"within_limits", "exceeds"}
+        free = contact.contact_margins(run, regions=regions[:1], **around)
+        assert set(free.verdict[closing].tolist()) == {"within_limits", "exceeds"}
     regions[0].permitted = False
     refused = contact.contact_margins(run, regions=regions, **around)
-    closing = present & (found.closing_speed > 0.0)
     assert closing.any()
     assert (refused.verdict[closing] == "not_permitted").all()
     assert len(found.columns()["margin_m_per_s"]) == found.margin.size

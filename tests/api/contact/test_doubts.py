@@ -170,13 +170,13 @@ def test_a_person_who_walks_away_raises_no_speed(speed: float) -> None:
 def test_limits_that_are_not_checked() -> None:
     bare = contact.allowed_speed(robot_mass=8.0, region=25e3, limits={"force": 140.0, "pressure": 1e6})
     assert bare.not_checked == ("pressure",)
-    assert codes(bare) == {"not_checked"}
+    assert codes(bare) == {"not_checked", "drive_not_given"}
     thin = contact.thickness(speed=0.05, robot_mass=8.0, region=25e3, limits={"force": 280.0}, covering=PAD)
     assert thin.not_checked == ("pressure",)
     rows = contact.allowed_speeds(robot_mass=[8.0, 9.0], region=25e3, covering=PAD)
     assert rows.not_checked == ("force", "pressure")
     # Without a limit the strain governs, and nobody says that the covering is linear up to 0.8.
-    assert codes(rows) == {"not_checked", "linear_beyond_half"}
+    assert codes(rows) == {"not_checked", "linear_beyond_half", "drive_not_given"}
     with pytest.raises(InvalidParameterError, match="on both sides"):
         contact.sensitivity(robot_mass=8.0, region=25e3, limits={"pressure": 1e6})
 

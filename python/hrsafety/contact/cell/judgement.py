@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 from hrsafety.contact.cell.cell import Cell, PlannedContact, pad_of
@@ -37,7 +38,12 @@ class Judged(NamedTuple):
 
 def reasons_of(found: Iterable[ResultWarning]) -> list[str]:
     """Return why limits do not count as kept."""
-    return list(dict.fromkeys(each.message for each in unsafe_doubts(found)))
+    return list(dict.fromkeys(each.message for each in unsafe_doubts(apart_from_drive(found))))
+
+
+def apart_from_drive(found: Iterable[ResultWarning]) -> tuple[ResultWarning, ...]:
+    """Return doubts without that of a clamped contact about the drive, which a cell judges by its own stop."""
+    return tuple(each for each in found if (each.code, each.subject) != ("drive_not_given", "stop"))
 
 
 def common(cell: Cell, planned: PlannedContact) -> dict[str, Any]:
@@ -57,13 +63,14 @@ def strain(cell: Cell, covering: str | None) -> float | None:
 
 def _allowed(cell: Cell, planned: PlannedContact, covering: str | None) -> AllowedSpeed:
     pad = pad_of(cell, planned, covering)
-    return allowed_speed(
+    found = allowed_speed(
         **common(cell, planned),
         covering=pad,
         area=planned.area if pad is None else None,
         max_strain=strain(cell, covering),
         human_speed=cell.human_speed,
     )
+    return replace(found, warnings=apart_from_drive(found.warnings))
 
 
 def judged_of(cell: Cell, planned: PlannedContact) -> Judged:
