@@ -2,35 +2,22 @@
 //! lie between two rays; what is left of the reachable velocities is searched exactly.
 
 mod best;
-mod candidates;
-mod cones;
-mod cover;
 mod free;
 mod lines;
-mod parts;
-mod remaining;
-mod sweep;
 #[cfg(test)]
 pub(crate) mod tests;
-mod view;
-mod worth;
 
 use std::cell::Cell;
 
-use best::{Best, Place, Room};
-use cones::{Cone, ConeBase, LegGroup};
-use lines::{Line, Reachable};
-use view::View;
+use best::{Best, Place, Promising};
+use lines::{Covers, Line, Reachable, where_circles_meet};
 
 use crate::arguments::{Arguments, Named};
 use crate::error::{Failure, Given, Result};
 use crate::lanes::{Planar, Vector2};
 use crate::laws::Situation;
-use crate::laws::outlook::Attention;
 use crate::laws::planning::Planner;
-use crate::laws::planning::outline::Outline;
-use crate::world::geometry::Body;
-use crate::world::obstacle::Shape;
+use crate::laws::planning::outline::{Legs, Outline};
 use crate::world::scenario::Scenario;
 
 type Vector = Vector2<f64>;
@@ -112,6 +99,14 @@ impl Selection {
     }
 }
 
+/// Velocities that one obstacle forbids.
+#[derive(Clone, Copy, Debug)]
+struct Cone {
+    /// As seen where the robot turns into its new velocity.
+    outline: Outline,
+    legs: Option<Legs>,
+}
+
 /// The planner at work in one scenario.
 #[derive(Clone, Debug)]
 pub struct VelocityObstaclePlanner {
@@ -122,21 +117,13 @@ pub struct VelocityObstaclePlanner {
     /// Acceleration in m/s^2 that the robot has in every direction.
     max_acceleration: f64,
     cones: Vec<Cone>,
-    legs: Vec<LegGroup>,
-    /// Outlines that are no discs.
-    edged: Vec<Outline>,
     /// As they are seen now, those that are so near that the way to a new velocity may touch them.
     close: Vec<Outline>,
-    /// Lines from standstill, which follow the two of each cone.
-    ahead: Vec<Line>,
+    lines: Vec<Line>,
     /// Place of the last velocity that was chosen.
     chosen: Place,
     /// The cone that forbade the last velocity.
     blocking: Cell<usize>,
-    /// For decisions with the margin, and without it: what forbids something differs.
-    rooms: [Option<Box<Room>>; 2],
-    /// What it is told of.
-    view: View,
 }
 
 impl VelocityObstaclePlanner {
@@ -151,14 +138,10 @@ impl VelocityObstaclePlanner {
             max_speed: scenario.robot.max_speed,
             max_acceleration: scenario.robot.guaranteed_acceleration(),
             cones: Vec::with_capacity(count),
-            legs: Vec::new(),
-            edged: Vec::new(),
             close: Vec::new(),
-            ahead: Vec::new(),
+            lines: Vec::new(),
             chosen: (0, 0),
             blocking: Cell::new(0),
-            rooms: Default::default(),
-            view: View::default(),
         }
     }
 
@@ -174,7 +157,7 @@ impl VelocityObstaclePlanner {
     #[must_use]
     pub fn best_free(&mut self, situation: &Situation<'_, f64>) -> Option<[f64; 2]> {
         self.look(situation, self.settings.margin);
-        self.select(0, situation).map(|best| best.lane(0))
+        self.select(situation).map(|best| best.lane(0))
     }
 
     fn reachable(&self, situation: &Situation<'_, f64>) -> Reachable {
@@ -186,52 +169,88 @@ impl VelocityObstaclePlanner {
     }
 
     fn look(&mut self, situation: &Situation<'_, f64>, margin: f64) {
+        let robot = &situation.robot;
         let farthest = self.farthest(situation);
         self.cones.clear();
-        self.edged.clear();
         self.close.clear();
-        // The robot changes its velocity over a control period: as if it went on at the old
-        // one for a part of it and had the new one from there.
-        let before = (1.0 - self.settings.ramp) * situation.interval;
         for body in situation.bodies {
-            if body.state.present {
-                self.look_at(body, situation, (margin, farthest, before));
+            if !body.state.present {
+                continue;
             }
+            let now = Outline::new(body, robot.position, self.robot_radius, margin);
+            // The robot changes its velocity over a control period: as if it went on at the old
+            // one for a part of it and had the new one from there.
+            let before = (1.0 - self.settings.ramp) * situation.interval;
+            let outline = now.seen_after((robot.velocity - now.velocity) * before);
+            if !free::is_far(&now, farthest, situation.interval) {
+                self.close.push(now);
+            }
+            let legs = outline.legs();
+            self.cones.push(Cone { outline, legs });
         }
-        cones::draw_legs(&mut self.cones, &mut self.legs);
     }
 
-    #[inline]
-    fn look_at(
-        &mut self,
-        body: &Body,
-        situation: &Situation<'_, f64>,
-        (margin, farthest, before): (f64, f64, f64),
-    ) {
-        let robot = &situation.robot;
-        let tip = Vector::splat(body.state.velocity);
-        let way = (robot.velocity - tip) * before;
-        let Shape::Disc { radius } = body.shape else {
-            let now = Outline::new(body, robot.position, self.robot_radius, margin);
-            let later = now.seen_after(way);
-            self.close.push(now);
-            self.cones.push(Cone {
-                tip,
-                legs: later.legs(),
-                base: ConeBase::Edges(self.edged.len()),
-            });
-            return self.edged.push(later);
-        };
-        let center = Vector::splat(body.state.position) - robot.position;
-        let radius = (self.robot_radius + margin) + radius;
-        if !free::is_far((center, radius), tip, (farthest, situation.interval)) {
-            self.close.push(Outline::disc(center, radius, tip));
+    /// Draws every line on which a rule of selection can have its optimum.
+    fn draw_lines(&mut self, aim: Vector) {
+        let lines = &mut self.lines;
+        lines.clear();
+        for cone in &self.cones {
+            if let Some(legs) = cone.legs {
+                let from = cone.outline.velocity;
+                lines.extend([legs.left, legs.right].map(|along| Line { from, along }));
+            }
         }
-        self.cones.push(Cone {
-            tip,
-            legs: None,
-            base: ConeBase::Disc(center - way, radius),
-        });
+        let mut ahead = |along| {
+            let from = Vector::zeros();
+            lines.push(Line { from, along });
+        };
+        ahead(aim);
+        if let Selection::Fastest { sector } = self.settings.selection {
+            let (sine, cosine) = sector.sin_cos();
+            for side in [sine, -sine] {
+                ahead(aim * cosine + aim.left_normal() * side);
+            }
+        }
+    }
+
+    /// The velocity that reaches the goal soonest, if nothing is in between.
+    fn wanted(&self, situation: &Situation<'_, f64>, aim: Vector) -> Vector {
+        let to_goal = self.goal - situation.robot.position;
+        let soonest = to_goal.dot(&to_goal).sqrt() / situation.interval;
+        aim * self.max_speed.min(soonest)
+    }
+
+    /// Velocities that may be the best without being on a line: what is wanted, what is driven, rest.
+    fn first_candidates(&self, situation: &Situation<'_, f64>, aim: Vector) -> [Vector; 3] {
+        let wanted = self.wanted(situation, aim);
+        [wanted, situation.robot.velocity, Vector::zeros()]
+    }
+
+    /// The farthest reachable velocities toward the goal, and where both limits meet.
+    fn last_candidates(reachable: &Reachable, aim: Vector) -> impl Iterator<Item = Vector> {
+        let farthest = reachable
+            .circles()
+            .map(|(center, radius)| center + aim * radius);
+        let meet = where_circles_meet(reachable).into_iter().flatten();
+        farthest.into_iter().chain(meet)
+    }
+
+    /// Every velocity at which a rule of selection can have its optimum.
+    fn candidates(&self, situation: &Situation<'_, f64>) -> Vec<Vector> {
+        let reachable = self.reachable(situation);
+        let aim = self.direction_to_goal(situation);
+        let wanted = self.wanted(situation, aim);
+        let mut found = self.first_candidates(situation, aim).to_vec();
+        for (index, line) in self.lines.iter().enumerate() {
+            if reachable.chord(line).is_none() {
+                continue;
+            }
+            found.extend(line.own(wanted, &reachable).into_iter().flatten());
+            let crossings = self.lines[..index].iter();
+            found.extend(crossings.filter_map(|other| line.crossing(other)));
+        }
+        found.extend(Self::last_candidates(&reachable, aim));
+        found
     }
 
     fn direction_to_goal(&self, situation: &Situation<'_, f64>) -> Vector {
@@ -247,14 +266,12 @@ impl VelocityObstaclePlanner {
     /// [`Self::candidates`]. Lines come by what they promise: those that promise less than what is
     /// found, and their crossings, are not looked at, nor are those that one obstacle forbids as far as
     /// they promise more.
-    fn select(&mut self, pass: usize, situation: &Situation<'_, f64>) -> Option<Vector> {
+    fn select(&mut self, situation: &Situation<'_, f64>) -> Option<Vector> {
         let reachable = self.reachable(situation);
         let aim = self.direction_to_goal(situation);
         self.draw_lines(aim);
         let wanted = self.wanted(situation, aim);
-        let mut room = self.rooms[pass].take().unwrap_or_default();
-        let mut remaining = std::mem::take(&mut room.remaining);
-        let mut best = Best::new(self, situation, (reachable, aim), room);
+        let mut best = Best::new(self, situation, (reachable, aim));
         for (number, velocity) in self
             .first_candidates(situation, aim)
             .into_iter()
@@ -263,26 +280,65 @@ impl VelocityObstaclePlanner {
             best.offer((0, number), velocity);
         }
         let last = Self::last_candidates(&reachable, aim).enumerate();
-        // What is wanted mostly is one of them, and has been offered.
-        for (number, velocity) in last.filter(|(_, velocity)| *velocity != wanted) {
+        for (number, velocity) in last {
             best.offer((usize::MAX, number), velocity);
         }
         // The lines that gave the best velocity a control period ago mostly do so again.
         if let Some(velocity) = self.candidate(self.chosen, wanted, &reachable) {
             best.offer(self.chosen, velocity);
         }
-        let wide = [best.cap()];
-        best.narrow_down(&wide, &mut remaining, wanted);
-        best.look_along_lines(wanted);
-        let cap = best.cap();
-        let told = self.view.holds(&cap, &reachable);
-        let (chosen, mut room) = best.ended();
-        room.remaining = remaining;
-        self.rooms[pass] = Some(room);
-        self.view.note(cap, told);
-        let (place, velocity) = chosen.filter(|_| told)?;
+        best.narrow();
+        let mut covers = best.covers();
+        let mut open: Vec<Promising> = Vec::new();
+        for line in &best.promising(&self.lines) {
+            if best.is_better_than(line.promise) {
+                break;
+            }
+            if self.is_covered(&best, &mut covers, line) {
+                continue;
+            }
+            let own = line.line.own(wanted, &reachable);
+            for (number, velocity) in own.into_iter().enumerate() {
+                if let Some(velocity) = velocity {
+                    best.offer((1 + line.index, number), velocity);
+                }
+            }
+            for other in &open {
+                let (later, earlier) = if line.index > other.index {
+                    (line, other)
+                } else {
+                    (other, line)
+                };
+                if let Some(velocity) = later.line.crossing(&earlier.line) {
+                    best.offer((1 + later.index, best::OWN + earlier.index), velocity);
+                }
+            }
+            open.push(*line);
+        }
+        let (place, velocity) = best.chosen()?;
         self.chosen = place;
         Some(velocity)
+    }
+
+    /// The velocity at a place, if that is on a line.
+    fn candidate(
+        &self,
+        (line, number): Place,
+        wanted: Vector,
+        reachable: &Reachable,
+    ) -> Option<Vector> {
+        let line = self.lines.get(line.checked_sub(1)?)?;
+        match number.checked_sub(best::OWN) {
+            None => line.own(wanted, reachable)[number],
+            Some(other) => line.crossing(self.lines.get(other)?),
+        }
+    }
+
+    /// Whether one obstacle forbids all velocities of a line that may be better than the best one.
+    fn is_covered(&self, best: &Best<'_>, covers: &mut Covers, line: &Promising) -> bool {
+        let horizon = self.settings.horizon;
+        let part = best.better_part(line);
+        part.is_some_and(|ends| covers.cover(&self.cones, ends, horizon))
     }
 
     /// The reachable velocity with the latest contact, for want of a free one.
@@ -307,17 +363,11 @@ impl VelocityObstaclePlanner {
             if !reachable.holds(velocity) {
                 continue;
             }
-            // One contact that is not later than the latest known one is enough, and what forbids a velocity mostly
-            // forbids its neighbors.
+            // One contact that is not later than the latest known one is enough.
             let mut time = f64::INFINITY;
-            for index in std::iter::once(self.blocking.get()).chain(0..self.cones.len()) {
-                let cone = self.cones.get(index);
-                let Some(cone) = cone.filter(|cone| !cone.is_beside(velocity)) else {
-                    continue;
-                };
-                time = time.min(cone.time_to_contact(velocity, &self.edged));
+            for cone in &self.cones {
+                time = time.min(cone.time_to_contact(velocity));
                 if time <= best.0 {
-                    self.blocking.set(index);
                     break;
                 }
             }
@@ -333,32 +383,13 @@ impl Planner for VelocityObstaclePlanner {
     /// A free velocity by the rule of selection; if there is none with the margin, one without
     /// it, and otherwise the velocity with the latest contact.
     fn desired_velocity(&mut self, situation: &Situation<'_, f64>) -> [f64; 2] {
-        self.view.begin();
-        for (pass, margin) in [self.settings.margin, 0.0].into_iter().enumerate() {
+        for margin in [self.settings.margin, 0.0] {
             self.look(situation, margin);
-            if self.takes_whole_lines() && self.view.lacks_those_behind() {
-                return [0.0; 2];
-            }
-            if let Some(best) = self.select(pass, situation) {
+            if let Some(best) = self.select(situation) {
                 return best.lane(0);
             }
-            if self.overlooks() {
-                return [0.0; 2];
-            }
-        }
-        // Where nothing is free, all crossings are tried.
-        if self.view.lacks_those_behind() {
-            return [0.0; 2];
         }
         self.latest_contact(situation).lane(0)
-    }
-
-    fn attention(&mut self, situation: &Situation<'_, f64>) -> Attention {
-        self.look_out(situation)
-    }
-
-    fn overlooks(&self) -> bool {
-        self.view.misses()
     }
 
     fn aim(&mut self, goal: [f64; 2]) {

@@ -1,11 +1,7 @@
 //! The best velocity so far, and what a line of velocities may still promise.
 
-use super::cover::Covers;
-use super::lines::{BESIDE, Cap, Line, Reachable};
-use super::remaining::Remaining;
-use super::{Selection, Situation, Vector, VelocityObstaclePlanner, cones};
-use crate::lanes::{Lanes, Number, Planar, Real, Truth, Vector2};
-use numeric::order::sort_pairs;
+use super::lines::{Cap, Covers, Line, ON_THE_LIMIT, Reachable};
+use super::{Selection, Situation, Vector, VelocityObstaclePlanner};
 
 /// Numbers of the candidates of a line by itself; its crossings follow.
 pub(super) const OWN: usize = 5;
@@ -13,15 +9,8 @@ pub(super) const OWN: usize = 5;
 /// A promise is worth this much more than it says, relative to it: well above all roundings.
 const SLACK: f64 = 1e-6;
 
-/// Most lines for which it does not pay to ask whether single obstacles forbid them.
-const FEW: usize = 3;
-
-/// Lines that are looked at side by side.
-const GROUP: usize = 4;
-type Group = Lanes<GROUP>;
-
 /// A line that anything reachable lies on.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub(super) struct Promising {
     /// What its velocities are worth at most.
     pub promise: f64,
@@ -39,34 +28,17 @@ pub(super) type Place = (usize, usize);
 /// The best free velocity of those that were offered, in any order: the same as in the order of
 /// their places.
 pub(super) struct Best<'a> {
-    pub(super) planner: &'a VelocityObstaclePlanner,
+    planner: &'a VelocityObstaclePlanner,
     situation: &'a Situation<'a, f64>,
-    pub(super) reachable: Reachable,
-    pub(super) aim: Vector,
+    reachable: Reachable,
+    aim: Vector,
     /// What it is worth by the first number: whatever promises less is not looked at.
     least: f64,
     found: Option<((f64, f64), Place, Vector)>,
-    /// Whether the cones that may forbid any velocity that may be worth enough have been sorted out.
-    narrow: bool,
-    /// Discs that hold all velocities that may be worth enough, once they have been.
-    caps: &'a [Cap],
-    room: Box<Room>,
-}
-
-/// Room for what is sorted out, kept from one control period to the next.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Room {
-    /// The cones that may forbid any velocity that may be worth enough.
-    near: Vec<usize>,
+    /// The cones that may forbid any velocity that may be worth enough, once they have been sorted out.
+    near: Option<Vec<usize>>,
     /// The lines on which there may be any.
     lines: Vec<usize>,
-    covers: Covers,
-    promising: Vec<Promising>,
-    /// Promises and places of those, the most promising first.
-    order: Vec<(f64, usize)>,
-    /// Those that no single obstacle forbids.
-    open: Vec<Promising>,
-    pub remaining: Remaining,
 }
 
 impl<'a> Best<'a> {
@@ -74,7 +46,6 @@ impl<'a> Best<'a> {
         planner: &'a VelocityObstaclePlanner,
         situation: &'a Situation<'a, f64>,
         (reachable, aim): (Reachable, Vector),
-        room: Box<Room>,
     ) -> Self {
         Self {
             planner,
@@ -83,34 +54,26 @@ impl<'a> Best<'a> {
             aim,
             least: f64::NEG_INFINITY,
             found: None,
-            narrow: false,
-            caps: &[],
-            room,
+            near: None,
+            lines: Vec::new(),
         }
     }
 
-    /// The best velocity and its place, and the room.
-    pub fn ended(self) -> (Option<(Place, Vector)>, Box<Room>) {
-        let chosen = self.found.map(|(_, place, velocity)| (place, velocity));
-        (chosen, self.room)
+    /// The best velocity and its place.
+    pub fn chosen(&self) -> Option<(Place, Vector)> {
+        self.found.map(|(_, place, velocity)| (place, velocity))
     }
 
     /// Takes a velocity if it is reachable, better than the one before, and free. Most are far out
     /// of reach, which their squares tell.
     #[inline]
     pub fn offer(&mut self, place: Place, velocity: Vector) {
-        if self.may_be_taken(velocity) {
+        if self.reachable.may_hold(velocity) && self.at_most(velocity) >= self.least {
             self.take(place, velocity);
         }
     }
 
-    /// Whether a velocity is not far out of reach and may be worth enough.
-    #[inline]
-    fn may_be_taken(&self, velocity: Vector) -> bool {
-        self.reachable.may_hold(velocity) && self.at_most(velocity) >= self.least
-    }
-
-    /// The same for a velocity that may be taken.
+    /// The same for a velocity that is not far out of reach and may be worth enough.
     #[inline(never)]
     fn take(&mut self, place: Place, velocity: Vector) {
         if !self.reachable.holds(velocity) {
@@ -128,48 +91,57 @@ impl<'a> Best<'a> {
 
     fn is_free(&self, velocity: Vector) -> bool {
         let (planner, situation) = (self.planner, self.situation);
-        if self.narrow {
-            // Whatever is elsewhere is forbidden, or worth less.
-            let caps = &mut self.caps.iter();
-            caps.any(|cap| cap.may_hold(velocity))
-                && planner.free_of(self.room.near.iter().copied(), situation, velocity)
-        } else {
-            planner.free(situation, velocity)
+        match &self.near {
+            None => planner.free(situation, velocity),
+            Some(near) => planner.free_of(near.iter().copied(), situation, velocity),
         }
     }
 
-    /// Sorts out the cones that can forbid nothing within some discs, which hold all velocities that may be worth
-    /// more than what was found, and the legs on which there is nothing of that kind.
-    pub fn narrow(&mut self, caps: &'a [Cap]) {
-        self.narrow = true;
-        self.caps = caps;
-        let VelocityObstaclePlanner { cones, legs, .. } = self.planner;
-        let Room { near, lines, .. } = &mut *self.room;
-        let whole = self.planner.takes_whole_lines();
-        cones::sort_out((cones, legs), (caps, whole), (near, lines));
-        let ahead = 2 * cones.len();
-        lines.extend(ahead..ahead + self.planner.ahead.len());
+    /// Sorts out the cones that can forbid nothing that may be worth more than what was found, and the
+    /// legs on which there is nothing of that kind.
+    pub fn narrow(&mut self) {
+        let cap = self.cap();
+        let Self { near, lines, .. } = self;
+        let near = near.insert(Vec::new());
+        let mut line = 0;
+        for (index, cone) in self.planner.cones.iter().enumerate() {
+            let Some(legs) = &cone.legs else {
+                near.push(index);
+                continue;
+            };
+            let offset = cap.center - cone.outline.velocity;
+            let reach = cap.reach(offset);
+            let across = [legs.left, legs.right].map(|leg| leg.perp(&offset));
+            // Also where a number is not one.
+            if !(across[0] > reach || across[1] < -reach) {
+                near.push(index);
+            }
+            for side in across {
+                if !(side > reach || side < -reach) {
+                    lines.push(line);
+                }
+                line += 1;
+            }
+        }
+        lines.extend(line..self.planner.lines.len());
     }
 
-    /// Whether no more than a few lines have anything on them that may be worth enough, as far as they were sorted out.
-    pub fn few_lines(&self, few: usize) -> bool {
-        self.narrow && self.room.lines.len() <= few
-    }
-
-    /// What is worth less than this is worth less than what was found, whatever the roundings, where worth is the
-    /// component toward the goal.
-    pub fn floor(&self) -> f64 {
-        self.least - SLACK * (1.0 + self.least.abs())
+    /// The cones of discs that may forbid whole lines.
+    pub fn covers(&self) -> Covers {
+        let near = self.near.as_deref();
+        let chosen = near.filter(|_| self.planner.settings.selection == Selection::ToGoal);
+        Covers::of(&self.planner.cones, chosen.unwrap_or_default())
     }
 
     /// The smallest disc that is known to hold everything reachable that may be worth enough.
-    pub fn cap(&self) -> Cap {
+    fn cap(&self) -> Cap {
         let wide = self.reachable.circles().map(|(center, radius)| {
             let wide = Cap { center, radius };
             if self.planner.settings.selection != Selection::ToGoal {
                 return wide;
             }
-            wide.beyond(self.floor(), self.aim)
+            let least = self.least - SLACK * (1.0 + self.least.abs());
+            wide.beyond(least, self.aim)
         });
         let [one, other] = wide;
         if one.radius < other.radius {
@@ -189,182 +161,28 @@ impl<'a> Best<'a> {
         }
     }
 
-    /// Offers what is on lines by themselves and where they cross, the most promising lines first.
-    pub fn look_along_lines(&mut self, wanted: Vector) {
-        self.sort_out_lines();
-        self.room.open.clear();
-        let least = self.least;
-        for place in 0..self.room.order.len() {
-            let line = self.room.promising[self.room.order[place].1];
-            if self.is_better_than(line.promise) {
-                break;
-            }
-            let many = self.room.lines.len() > FEW;
-            if many && self.least > least && self.is_covered(&line) {
-                continue;
-            }
-            self.offer_own(line.index, &line.line, wanted);
-            self.look_at_crossings(&line);
-            self.room.open.push(line);
-        }
-    }
-
-    /// Offers what is on a line by itself.
-    pub fn offer_own(&mut self, index: usize, line: &Line, wanted: Vector) {
-        let own = line.own(wanted, &self.reachable);
-        for (number, velocity) in own.into_iter().enumerate() {
-            if let Some(velocity) = velocity {
-                self.offer((1 + index, number), velocity);
-            }
-        }
-    }
-
-    /// Offers the crossing of a line with an earlier one.
-    #[inline]
-    pub fn offer_crossing(&mut self, later: (usize, &Line), earlier: (usize, &Line)) {
-        if let Some(velocity) = later.1.crossing(earlier.1)
-            && self.may_be_taken(velocity)
-            && self.planner.meet(later.1, earlier.1, velocity)
-        {
-            self.take((1 + later.0, OWN + earlier.0), velocity);
-        }
-    }
-
-    /// Offers the crossings of a line with those that were looked at before.
-    #[inline]
-    fn look_at_crossings(&mut self, line: &Promising) {
-        for place in 0..self.room.open.len() {
-            let other = &self.room.open[place];
-            // Of two lines the later one is gone along.
-            let (later, earlier) = if line.index > other.index {
-                (line, other)
-            } else {
-                (other, line)
-            };
-            let (later, earlier) = ((later.index, later.line), (earlier.index, earlier.line));
-            self.offer_crossing((later.0, &later.1), (earlier.0, &earlier.1));
-        }
-    }
-
-    /// Lines that anything reachable lies on which may be worth enough and is not forbidden by a single
-    /// obstacle, the most promising first.
-    fn sort_out_lines(&mut self) {
-        let planner = self.planner;
-        self.room.promising.clear();
-        if planner.settings.selection == Selection::ToGoal {
-            self.room.covers.forget();
-        }
-        pulp::Arch::new().dispatch(LineSorting(self));
+    /// Lines that anything reachable lies on which may be worth enough, the most promising first.
+    pub fn promising(&self, lines: &[Line]) -> Vec<Promising> {
+        let promise = |&index: &usize| {
+            let line = &lines[index];
+            let ends = self.reachable.chord(line)?;
+            let promise = self.promise(ends);
+            (!self.is_better_than(promise)).then_some(Promising {
+                promise,
+                index,
+                line: *line,
+                ends,
+            })
+        };
+        let found: Vec<Promising> = self.lines.iter().filter_map(promise).collect();
         // The lines follow each other by their places, so that equal promises are told apart by the order.
-        let Room {
-            promising, order, ..
-        } = &mut *self.room;
-        let promises = promising.iter().enumerate();
-        order.clear();
-        order.extend(promises.map(|(place, line)| (-line.promise, place)));
-        sort_pairs(order);
-    }
-
-    /// The lines of a group, that from some place on among those that may hold anything.
-    #[inline(always)]
-    fn sort_out_group(&mut self, first: usize) {
-        let count = GROUP.min(self.room.lines.len() - first);
-        let chosen = &self.room.lines[first..first + count];
-        let line = |lane: usize| self.planner.line_or_none(chosen[lane.min(count - 1)]);
-        let group: [Line; GROUP] = [line(0), line(1), line(2), line(3)];
-        let number = |of: fn(&Line) -> f64| Group::from_fn(|lane| of(&group[lane]));
-        let from = Vector2::new(number(|line| line.from.x), number(|line| line.from.y));
-        let along = Vector2::new(number(|line| line.along.x), number(|line| line.along.y));
-        let begin = if self.planner.takes_whole_lines() {
-            f64::NEG_INFINITY
-        } else {
-            -BESIDE
-        };
-        let (some, ends) = self.reachable.chords((from, along), begin);
-        let to_goal = self.planner.settings.selection == Selection::ToGoal;
-        let (promises, parts) = if to_goal {
-            self.promises(ends)
-        } else {
-            (Group::splat(f64::INFINITY), ends)
-        };
-        let kept = some & !promises.lt(Group::splat(self.least));
-        let many = to_goal && self.room.lines.len() > FEW;
-        let forever = many && self.planner.settings.horizon == f64::INFINITY;
-        let open = if forever && kept.any() {
-            let line = |lane: usize| chosen[lane.min(count - 1)];
-            kept & !self.room.covers.known(&self.planner.cones, line, parts)
-        } else {
-            kept
-        };
-        for lane in (0..count).filter(|lane| open.lane(*lane)) {
-            let of_lane = |[one, other]: [Vector2<Group>; 2]| -> [Vector; 2] {
-                [one.lane(lane).into(), other.lane(lane).into()]
-            };
-            let (index, ends) = (self.room.lines[first + lane], of_lane(ends));
-            if many
-                && !self.is_found_on(&group[lane])
-                && self.covers(index, of_lane(parts), forever)
-            {
-                continue;
-            }
-            let promise = if to_goal {
-                promises.lane(lane)
-            } else {
-                self.promise(ends)
-            };
-            if !self.is_better_than(promise) {
-                self.room.promising.push(Promising {
-                    promise,
-                    index,
-                    line: group[lane],
-                    ends,
-                });
-            }
-        }
-    }
-
-    /// What the velocities between ends are worth at most where worth is the component toward the goal,
-    /// and the ends of the parts that may be worth as much as what was found, generously.
-    #[inline(always)]
-    fn promises(&self, ends: [Vector2<Group>; 2]) -> (Group, [Vector2<Group>; 2]) {
-        let (aim, number) = (Vector2::splat([self.aim.x, self.aim.y]), Group::splat);
-        let (first, second) = (ends[0].dot(&aim), ends[1].dot(&aim));
-        let exact = first.max(second);
-        let promises = exact + number(SLACK) * (number(1.0) + exact.abs());
-        let least = number(self.least - SLACK * (1.0 + self.least.abs()));
-        let way = ends[1] - ends[0];
-        let share = (least - first) / (second - first);
-        let cut = ends[0] + way * share;
-        let rises = first.lt(least) & least.lt(second);
-        let falls = second.lt(least) & least.lt(first);
-        let parts = [
-            Vector2::select(rises, cut, ends[0]),
-            Vector2::select(falls, cut, ends[1]),
-        ];
-        (promises, parts)
-    }
-
-    /// Whether one obstacle forbids all velocities of a line that may be better than the best one.
-    fn is_covered(&mut self, line: &Promising) -> bool {
-        let part = self.better_part(line);
-        part.is_some_and(|ends| self.covers(line.index, ends, false))
-    }
-
-    /// Whether what was found lies on a line: then no obstacle forbids all of it that may be worth as much.
-    fn is_found_on(&self, line: &Line) -> bool {
-        let across = |velocity: Vector| (velocity - line.from).perp(&line.along).abs();
-        self.found
-            .is_some_and(|(.., velocity)| across(velocity) <= BESIDE)
-    }
-
-    /// Whether one obstacle forbids a part of a line.
-    #[inline(always)]
-    fn covers(&mut self, line: usize, ends: [Vector; 2], asked: bool) -> bool {
-        let VelocityObstaclePlanner {
-            cones, settings, ..
-        } = self.planner;
-        let Room { near, covers, .. } = &mut *self.room;
-        covers.cover((cones, near), (line, ends, asked), settings.horizon)
+        let mut order: Vec<(f64, usize)> = found
+            .iter()
+            .enumerate()
+            .map(|(place, line)| (line.promise, place))
+            .collect();
+        order.sort_unstable_by(|one, other| other.0.total_cmp(&one.0).then(one.1.cmp(&other.1)));
+        order.into_iter().map(|(_, place)| found[place]).collect()
     }
 
     /// What the velocities between two are worth at most.
@@ -383,7 +201,7 @@ impl<'a> Best<'a> {
 
     /// Ends of the part of a line that may be worth as much as what was found, generously; `None` where
     /// worth is no component of the velocity.
-    fn better_part(&self, line: &Promising) -> Option<[Vector; 2]> {
+    pub fn better_part(&self, line: &Promising) -> Option<[Vector; 2]> {
         if self.planner.settings.selection != Selection::ToGoal {
             return None;
         }
@@ -402,21 +220,58 @@ impl<'a> Best<'a> {
     }
 
     /// Whether what was found is worth more than a promise.
-    fn is_better_than(&self, promise: f64) -> bool {
+    pub fn is_better_than(&self, promise: f64) -> bool {
         self.found.is_some_and(|(known, ..)| known.0 > promise)
     }
 }
 
-/// Sorts out the lines, compiled for the instructions of the processor; its bits are the same for all.
-struct LineSorting<'b, 'a>(&'b mut Best<'a>);
+/// What velocities are worth.
+impl VelocityObstaclePlanner {
+    /// Speeds that differ by roundings have the same rank.
+    fn rank(&self, speed: f64) -> f64 {
+        (speed / (self.max_speed * ON_THE_LIMIT)).round()
+    }
 
-impl pulp::NullaryFnOnce for LineSorting<'_, '_> {
-    type Output = ();
+    /// Time to the goal at full speed after a control period at a velocity, in s.
+    fn time_left(&self, situation: &Situation<'_, f64>, velocity: Vector) -> f64 {
+        let left = self.goal - situation.robot.position - velocity * situation.interval;
+        left.dot(&left).sqrt() / self.max_speed
+    }
 
-    #[inline(always)]
-    fn call(self) {
-        for first in (0..self.0.room.lines.len()).step_by(GROUP) {
-            self.0.sort_out_group(first);
+    /// The least such time of all velocities with no larger component toward the goal.
+    fn least_time_left(&self, situation: &Situation<'_, f64>, forward: f64) -> f64 {
+        let to_goal = self.goal - situation.robot.position;
+        let left = to_goal.dot(&to_goal).sqrt() - forward * situation.interval;
+        left.max(0.0) / self.max_speed
+    }
+
+    /// What a rule prefers: larger is better, then by the second number.
+    pub(super) fn worth(
+        &self,
+        situation: &Situation<'_, f64>,
+        aim: Vector,
+        velocity: Vector,
+    ) -> (f64, f64) {
+        let forward = velocity.dot(&aim);
+        let speed = velocity.dot(&velocity).sqrt();
+        match self.settings.selection {
+            Selection::ToGoal => (forward, speed),
+            Selection::Fastest { sector } => {
+                let within = forward >= speed * (sector.cos() - ON_THE_LIMIT);
+                let rank = self.rank(speed);
+                (
+                    if within {
+                        rank
+                    } else {
+                        rank - 2.0 / ON_THE_LIMIT
+                    },
+                    forward,
+                )
+            }
+            Selection::TimeAndRisk { risk } => {
+                let time = self.time_left(situation, velocity);
+                (-(time + risk / self.time_to_contact(velocity)), forward)
+            }
         }
     }
 }

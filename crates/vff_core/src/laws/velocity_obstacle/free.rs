@@ -1,10 +1,9 @@
 //! Whether a velocity is free: no contact within the horizon, and none on the way to it.
 
-use super::cones::find_near;
-use super::{Cone, ConeBase, Vector, VelocityObstaclePlanner};
+use super::{Cone, Vector, VelocityObstaclePlanner};
 use crate::lanes::Planar;
 use crate::laws::Situation;
-use crate::laws::planning::outline::{Outline, entry};
+use crate::laws::planning::outline::Outline;
 
 /// Instants of a control period at which the way to a new velocity is checked.
 const INSTANTS: u32 = 6;
@@ -12,51 +11,31 @@ const INSTANTS: u32 = 6;
 /// Room for rounding in bounds, relative and in m: well above all roundings.
 const ROOM: f64 = 1e-6;
 
-/// Whether a disc, given by center and radius, is farther away than it and the robot, which goes no farther than given, come in
+/// Whether an obstacle is farther away than it and the robot, which goes no farther than given, come in
 /// a period: without a root, and where in doubt it is not.
-#[inline]
-pub(super) fn is_far(
-    (center, radius): (Vector, f64),
-    velocity: Vector,
-    (farthest, period): (f64, f64),
-) -> bool {
-    let [x, y] = velocity.lane(0);
-    let reach = radius + farthest + (x.abs() + y.abs()) * period;
+pub(super) fn is_far(now: &Outline, farthest: f64, period: f64) -> bool {
+    let Some(center) = now.center() else {
+        return false;
+    };
+    let [x, y] = now.velocity.lane(0);
+    let reach = now.radius + farthest + (x.abs() + y.abs()) * period;
     center.dot(&center) > reach * reach * (1.0 + ROOM) + ROOM
 }
 
 impl Cone {
-    /// Whether a velocity leads far beside it, as most do: without a root.
-    #[inline(always)]
-    pub(super) fn is_beside(&self, velocity: Vector) -> bool {
-        let legs = self.legs.as_ref();
-        legs.is_some_and(|legs| !legs.may_hold(velocity - self.tip))
-    }
-
-    pub(super) fn time_to_contact(&self, velocity: Vector, edged: &[Outline]) -> f64 {
-        let relative = velocity - self.tip;
-        if let Some(legs) = &self.legs
-            && !legs.hold(relative)
-        {
-            return f64::INFINITY;
-        }
-        match self.base {
-            ConeBase::Disc(center, radius) if self.legs.is_some() => {
-                entry(center, radius, relative)
-            }
-            ConeBase::Disc(center, radius) => {
-                Outline::disc(center, radius, self.tip).time_to_contact(relative)
-            }
-            ConeBase::Edges(place) => edged[place].time_to_contact(relative),
+    pub(super) fn time_to_contact(&self, velocity: Vector) -> f64 {
+        let relative = velocity - self.outline.velocity;
+        match self.legs {
+            // Most are far beside, which takes no root.
+            Some(legs) if !legs.may_hold(relative) || !legs.hold(relative) => f64::INFINITY,
+            _ => self.outline.time_to_contact(relative),
         }
     }
 }
 
 impl VelocityObstaclePlanner {
     pub(super) fn time_to_contact(&self, velocity: Vector) -> f64 {
-        let times = self.cones.iter();
-        let times = times.filter(|cone| !cone.is_beside(velocity));
-        let times = times.map(|cone| cone.time_to_contact(velocity, &self.edged));
+        let times = self.cones.iter().map(|cone| cone.time_to_contact(velocity));
         times.fold(f64::INFINITY, f64::min)
     }
 
@@ -69,9 +48,7 @@ impl VelocityObstaclePlanner {
 
     /// Whether a reachable velocity is free.
     pub(super) fn free(&self, situation: &Situation<'_, f64>, velocity: Vector) -> bool {
-        self.is_late(situation, velocity, || {
-            find_near(&self.legs, velocity, |index| self.forbids(index, velocity))
-        })
+        self.free_of(0..self.cones.len(), situation, velocity)
     }
 
     /// The same for a velocity that only some cones may forbid.
@@ -82,39 +59,16 @@ impl VelocityObstaclePlanner {
         situation: &Situation<'_, f64>,
         velocity: Vector,
     ) -> bool {
-        self.is_late(situation, velocity, || {
-            cones.find(|index| self.forbids(*index, velocity))
-        })
-    }
-
-    /// Whether a cone forbids a velocity.
-    #[inline]
-    fn forbids(&self, index: usize, velocity: Vector) -> bool {
-        let Some(cone) = self
-            .cones
-            .get(index)
-            .filter(|cone| !cone.is_beside(velocity))
-        else {
-            return false;
+        let late = |cone: &Cone| {
+            let time = cone.time_to_contact(velocity);
+            time == f64::INFINITY || time > self.settings.horizon
         };
-        let time = cone.time_to_contact(velocity, &self.edged);
-        let late = time == f64::INFINITY || time > self.settings.horizon;
-        !late
-    }
-
-    /// Whether nothing forbids a velocity, given how to find a cone that does.
-    #[inline]
-    fn is_late(
-        &self,
-        situation: &Situation<'_, f64>,
-        velocity: Vector,
-        find: impl FnOnce() -> Option<usize>,
-    ) -> bool {
         // What forbids a velocity mostly forbids its neighbors.
-        if self.forbids(self.blocking.get(), velocity) {
+        let known = self.cones.get(self.blocking.get());
+        if known.is_some_and(|cone| !late(cone)) {
             return false;
         }
-        if let Some(blocking) = find() {
+        if let Some(blocking) = cones.find(|index| !late(&self.cones[*index])) {
             self.blocking.set(blocking);
             return false;
         }
@@ -124,9 +78,6 @@ impl VelocityObstaclePlanner {
     /// Whether the way to a new velocity itself touches an obstacle, or comes closer to one whose
     /// margin is broken already.
     fn touches_on_the_way(&self, situation: &Situation<'_, f64>, velocity: Vector) -> bool {
-        if self.close.is_empty() {
-            return false;
-        }
         let robot = &situation.robot;
         let change = velocity - robot.velocity;
         let period = situation.interval;

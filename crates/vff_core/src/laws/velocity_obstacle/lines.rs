@@ -1,9 +1,8 @@
-//! Lines of velocities on which a rule of selection can have its optimum: legs of cones and
-//! directions to the goal, with what is reachable on each.
+//! Lines of velocities on which a rule of selection can have its optimum: legs of cones and directions to the
+//! goal, their reachable parts, and the parts of them that one obstacle forbids.
 
-use crate::lanes::{Mask, Planar, Real, Vector2};
-
-type Vector = Vector2<f64>;
+use super::{Cone, Vector};
+use crate::lanes::Planar;
 
 /// A velocity beyond a limit by less than this share of it is on the limit.
 pub(super) const ON_THE_LIMIT: f64 = 1e-9;
@@ -12,7 +11,7 @@ pub(super) const ON_THE_LIMIT: f64 = 1e-9;
 const FAR_BEYOND: f64 = 1.0 + 1e-8;
 
 /// The same where a line that nothing reachable lies on is left out: well above all roundings.
-pub(super) const BESIDE: f64 = 1e-7;
+const BESIDE: f64 = 1e-7;
 
 /// Discs whose common part the robot can reach by the next sample.
 #[derive(Clone, Copy, Debug)]
@@ -44,36 +43,24 @@ impl Reachable {
         near(velocity, self.max_speed) & near(velocity - self.velocity, self.change)
     }
 
-    /// Ends of the part of a whole line that is reachable, generously; `None` without one.
+    /// Ends of the part of a line that is reachable, generously; `None` without one.
     pub fn chord(&self, line: &Line) -> Option<[Vector; 2]> {
-        let (some, ends) = self.chords((line.from, line.along), f64::NEG_INFINITY);
-        some.then_some(ends)
-    }
-
-    /// The same for lines side by side, each along a direction of length 1 from so far ahead of a velocity on:
-    /// which of them have such a part, and its ends.
-    #[inline(always)]
-    pub fn chords<R: Real>(
-        &self,
-        (from, along): (Vector2<R>, Vector2<R>),
-        begin: f64,
-    ) -> (R::Mask, [Vector2<R>; 2]) {
-        let (mut low, mut high) = (R::splat(begin), R::splat(f64::INFINITY));
-        let mut beside = R::Mask::none();
-        let circles = self.circles();
-        for (center, radius) in &circles {
-            let offset = from - Vector2::splat([center.x, center.y]);
-            let foot = -offset.dot(&along);
-            let across = offset.perp(&along);
-            let wide = R::splat(radius * (1.0 + BESIDE) + BESIDE);
+        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+        for (center, radius) in self.circles() {
+            let offset = line.from - center;
+            let foot = -offset.dot(&line.along);
+            let across = offset.perp(&line.along);
+            let wide = radius * (1.0 + BESIDE) + BESIDE;
             let square = wide * wide - across * across;
-            // A line where a number is not one is kept.
-            beside = beside | square.lt(R::zero());
+            // Also where a number is not one: such a line is kept.
+            if square < 0.0 {
+                return None;
+            }
             let half = square.sqrt();
-            (low, high) = ((foot - half).max(low), (foot + half).min(high));
+            (low, high) = (low.max(foot - half), high.min(foot + half));
         }
-        let ends = [from + along * low, from + along * high];
-        (!beside & low.le(high), ends)
+        let at = |share: f64| line.from + line.along * share;
+        (low <= high).then(|| [at(low), at(high)])
     }
 }
 
@@ -99,20 +86,12 @@ impl Cap {
         }
     }
 
-    /// Whether a velocity is in it, generously.
+    /// How far its center, given from a point of a line, is from that where it is beside it whatever the
+    /// roundings.
     #[inline]
-    pub fn may_hold(&self, velocity: Vector) -> bool {
-        let offset = velocity - self.center;
-        let wide = self.radius * (1.0 + 0.5 * BESIDE) + 0.5 * BESIDE;
-        offset.dot(&offset) <= wide * wide
-    }
-
-    /// How far its center is from lines through some velocities where it is beside them whatever the roundings.
-    #[inline(always)]
-    pub fn reach<R: Real>(&self, from: Vector2<R>) -> R {
-        let offset = Vector2::splat([self.center.x, self.center.y]) - from;
-        let size = R::splat(1.0) + offset.x.abs() + offset.y.abs();
-        R::splat(self.radius * (1.0 + BESIDE)) + size * R::splat(BESIDE)
+    pub fn reach(&self, offset: Vector) -> f64 {
+        let room = BESIDE * (1.0 + offset.x.abs() + offset.y.abs());
+        self.radius * (1.0 + BESIDE) + room
     }
 }
 
@@ -148,12 +127,6 @@ impl Line {
         [foot - half, foot + half].map(|share| (share >= 0.0).then(|| from + along * share))
     }
 
-    /// Whether a velocity on it is not behind the point that it begins at, up to roundings.
-    #[inline]
-    pub fn is_ahead(&self, velocity: Vector) -> bool {
-        (velocity - self.from).dot(&self.along) >= -ON_THE_LIMIT
-    }
-
     /// Where it crosses the whole line of another one.
     #[inline]
     pub fn crossing(&self, other: &Self) -> Option<Vector> {
@@ -182,4 +155,99 @@ pub(super) fn where_circles_meet(reachable: &Reachable) -> [Option<Vector>; 2] {
     }
     let half = across.sqrt();
     [half, -half].map(|side| Some(center * share + center.left_normal() * side))
+}
+
+/// How far within a cone a velocity is at least, relative to 1 m/s and the magnitudes: well above all
+/// roundings.
+const WITHIN: f64 = 1e-6;
+
+/// Share of the horizon within which the contact is at least.
+const SOON: f64 = 0.9;
+
+/// Most discs that are looked at: the nearest ones have the widest cones, and others mostly forbid no
+/// whole line.
+const MOST: usize = 24;
+
+/// The cone of a disc.
+#[derive(Clone, Copy, Debug)]
+struct Cover {
+    left: Vector,
+    right: Vector,
+    /// How far its tip is beside lines through zero along its legs, and 1 m/s more than the magnitude of
+    /// that.
+    beside: [f64; 2],
+    size: f64,
+    /// Its place among all cones.
+    index: usize,
+}
+
+/// Cones of the nearest discs that are not touched.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Covers {
+    discs: Vec<Cover>,
+}
+
+impl Covers {
+    /// Of some cones.
+    pub fn of(cones: &[Cone], chosen: &[usize]) -> Self {
+        let distance = |index: &usize| {
+            let center = cones[*index].outline.center()?;
+            Some((center.dot(&center), *index))
+        };
+        let mut discs: Vec<(f64, usize)> = chosen.iter().filter_map(distance).collect();
+        if discs.len() > MOST {
+            discs.select_nth_unstable_by(MOST, |one, other| one.0.total_cmp(&other.0));
+            discs.truncate(MOST);
+        }
+        let cover = |&(_, index): &(f64, usize)| Cover::of(&cones[index], index);
+        Self {
+            discs: discs.iter().filter_map(cover).collect(),
+        }
+    }
+
+    /// Whether one of the discs forbids everything between two velocities, and what is as near to that
+    /// as roundings are: what a disc forbids is convex.
+    pub fn cover(&mut self, cones: &[Cone], ends: [Vector; 2], horizon: f64) -> bool {
+        let size = ends.map(|end| end.x.abs() + end.y.abs());
+        let size = size[0].max(size[1]);
+        let forbids = |disc: &Cover| {
+            disc.holds(ends, size)
+                && (horizon == f64::INFINITY || {
+                    let soon =
+                        |end: &Vector| cones[disc.index].time_to_contact(*end) <= SOON * horizon;
+                    ends.iter().all(soon)
+                })
+        };
+        let Some(found) = self.discs.iter().position(forbids) else {
+            return false;
+        };
+        // It mostly forbids the next line, too.
+        self.discs.swap(0, found);
+        true
+    }
+}
+
+impl Cover {
+    fn of(cone: &Cone, index: usize) -> Option<Self> {
+        let (legs, tip) = (cone.legs?, cone.outline.velocity);
+        Some(Self {
+            left: legs.left,
+            right: legs.right,
+            beside: [legs.left.perp(&tip), legs.right.perp(&tip)],
+            size: 1.0 + tip.x.abs() + tip.y.abs(),
+            index,
+        })
+    }
+
+    /// Without a branch for each end, which nothing foretells.
+    #[inline]
+    fn holds(&self, [first, second]: [Vector; 2], size: f64) -> bool {
+        let within = WITHIN * (self.size + size);
+        let [left, right] = self.beside;
+        let (left, right) = (left - within, right + within);
+        (self.left.perp(&first) < left)
+            & (self.left.perp(&second) < left)
+            & (self.right.perp(&first) > right)
+            & (self.right.perp(&second) > right)
+    }
 }
