@@ -12,7 +12,7 @@ use crate::laws::trace::Trace;
 use crate::laws::{Situation, Stop, force_toward};
 use crate::robots::drives::{MotorDrive, Order, PointMass, Reading};
 use crate::run::as_built::{AsBuilt, robot_under};
-use crate::run::{Interrupted, Request, Steering};
+use crate::run::{BoxedLaw, Interrupted, Request};
 use crate::world::geometry::RobotState;
 use crate::world::scenario::{Rules, Scenario};
 
@@ -29,7 +29,7 @@ enum Chassis {
 
 /// What drives a robot by itself: apart from it, for robots that are told what to do have none.
 struct Pilot {
-    law: Box<dyn Steering>,
+    law: BoxedLaw,
     /// What the law sees.
     sight: Sight,
 }

@@ -36,7 +36,6 @@ pub mod guide;
 pub mod impedance;
 mod khatib;
 mod masoud;
-pub mod outlook;
 pub mod pairwise;
 pub mod planning;
 pub mod reciprocal;
@@ -58,7 +57,6 @@ pub use masoud::Masoud;
 
 use crate::error::Result;
 use crate::lanes::{Planar, Real, Vector2, Wide};
-use crate::laws::outlook::Attention;
 use crate::laws::trace::Trace;
 use crate::world::geometry::{Body, RobotState};
 use crate::world::map::StaticMap;
@@ -179,19 +177,6 @@ pub trait Law<R: Real, B: Wide<R> = f64> {
     /// by their places in the list.
     fn felt_within(&self, _obstacle: &PlacedObstacle) -> f64 {
         f64::INFINITY
-    }
-
-    /// Which obstacles it must be told of in a situation, if it feels any from anywhere; those that the
-    /// situation has count for nothing.
-    fn attention(&mut self, _situation: &Situation<'_, R, B>) -> Attention {
-        Attention::All
-    }
-
-    /// Whether the last command counts for nothing, since obstacles may matter that it was not told of: it
-    /// must be asked again which ones those are. Never of a law that was told of all, to which it must come after
-    /// a few questions at most.
-    fn overlooks(&self) -> bool {
-        false
     }
 
     /// Heads for another goal from now on, in m: a local one on the way to that of the scenario.

@@ -5,7 +5,7 @@ mod best;
 mod free;
 mod lines;
 #[cfg(test)]
-pub(crate) mod tests;
+mod tests;
 
 use std::cell::Cell;
 

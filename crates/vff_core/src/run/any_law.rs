@@ -4,7 +4,6 @@ use std::marker::PhantomData;
 use std::sync::Arc;
 
 use crate::error::{Failure, Result};
-use crate::laws::outlook::Attention;
 use crate::laws::trace::Trace;
 use crate::laws::{Command, FieldTerms, Law, LawFamily, Situation};
 use crate::run::Interrupted;
@@ -85,85 +84,28 @@ impl AnyLaw {
     }
 }
 
-/// A law of any kind at work on one robot.
-pub(crate) trait Steering: Send {
-    /// Whether a command takes so long that the caller is asked at each of them whether to stop.
-    fn thinks(&self) -> bool;
-    /// Distance in m beyond which an obstacle changes no command.
-    fn felt_within(&self, obstacle: &PlacedObstacle) -> f64;
-    /// Which obstacles it must be told of in a situation.
-    fn attention(&mut self, situation: &Situation<'_, f64>) -> Attention;
-    /// Whether the last command counts for nothing, since obstacles may matter that it was not told of.
-    fn overlooks(&self) -> bool;
-    /// Force for the time until the next sample.
-    fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64>;
-    /// Heads for another goal from now on, in m.
-    fn aim(&mut self, goal: [f64; 2]);
-    /// What parts around the law did in the last control period, if there are any.
-    fn trace(&self) -> Option<Trace>;
-}
-
-impl<L: Law<f64> + Send> Steering for L {
-    fn thinks(&self) -> bool {
-        Law::thinks(self)
-    }
-
-    fn felt_within(&self, obstacle: &PlacedObstacle) -> f64 {
-        Law::felt_within(self, obstacle)
-    }
-
-    fn attention(&mut self, situation: &Situation<'_, f64>) -> Attention {
-        Law::attention(self, situation)
-    }
-
-    fn overlooks(&self) -> bool {
-        Law::overlooks(self)
-    }
-
-    fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
-        Law::command(self, situation)
-    }
-
-    fn aim(&mut self, goal: [f64; 2]) {
-        Law::aim(self, goal);
-    }
-
-    fn trace(&self) -> Option<Trace> {
-        Law::trace(self)
-    }
-}
-
-/// A law behind a pointer, for the loop of runs one after the other, which is compiled once and not
-/// once for each law.
-struct BoxedLaw(Box<dyn Steering>);
+/// A law of any kind at work on one robot: loops of runs one after the other are compiled once, not once for each law.
+pub(crate) type BoxedLaw = Box<dyn Law<f64> + Send>;
 
 impl Law<f64> for BoxedLaw {
     fn thinks(&self) -> bool {
-        self.0.thinks()
+        (**self).thinks()
     }
 
     fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
-        self.0.command(situation)
+        (**self).command(situation)
     }
 
     fn felt_within(&self, obstacle: &PlacedObstacle) -> f64 {
-        self.0.felt_within(obstacle)
-    }
-
-    fn attention(&mut self, situation: &Situation<'_, f64>) -> Attention {
-        self.0.attention(situation)
-    }
-
-    fn overlooks(&self) -> bool {
-        self.0.overlooks()
+        (**self).felt_within(obstacle)
     }
 
     fn aim(&mut self, goal: [f64; 2]) {
-        self.0.aim(goal);
+        (**self).aim(goal);
     }
 
     fn trace(&self) -> Option<Trace> {
-        self.0.trace()
+        (**self).trace()
     }
 }
 
@@ -195,16 +137,11 @@ pub(crate) trait ErasedLaw: Send + Sync {
     /// What it knows to stand, beside the obstacles of a scenario.
     fn map(&self) -> Option<&StaticMap>;
     /// It at work in a scenario, with its own gains, to be asked once a control period.
-    fn steering(&self, scenario: &Scenario) -> Result<Box<dyn Steering>> {
+    fn steering(&self, scenario: &Scenario) -> Result<BoxedLaw> {
         self.steering_with(&self.gains(), scenario, true)
     }
     /// The same with other gains; `record`: the Lyapunov function is wanted too.
-    fn steering_with(
-        &self,
-        gains: &[f64],
-        scenario: &Scenario,
-        record: bool,
-    ) -> Result<Box<dyn Steering>>;
+    fn steering_with(&self, gains: &[f64], scenario: &Scenario, record: bool) -> Result<BoxedLaw>;
 }
 
 impl dyn ErasedLaw + '_ {
@@ -223,7 +160,7 @@ impl dyn ErasedLaw + '_ {
         let mut team = Vec::with_capacity(group.points.len() / known.dimension);
         for gains in group.points.chunks_exact(known.dimension) {
             team.push(Member {
-                law: BoxedLaw(self.steering_with(gains, group.scenario, record)?),
+                law: self.steering_with(gains, group.scenario, record)?,
                 recorder: C::default(),
             });
         }
@@ -248,7 +185,7 @@ impl dyn ErasedLaw + '_ {
         interrupted: Interrupted<'_>,
     ) -> Result<(RunSummary, Trajectory)> {
         let mut team = [Member {
-            law: BoxedLaw(self.steering(scenario)?),
+            law: self.steering(scenario)?,
             recorder: TrajectoryRecorder::keeping(options.kept, scenario),
         }];
         let mut summary = None;
@@ -343,12 +280,7 @@ impl<F: LawFamily + Send, K: Kernels<F>> ErasedLaw for Driver<F, K> {
         self.0.map()
     }
 
-    fn steering_with(
-        &self,
-        gains: &[f64],
-        scenario: &Scenario,
-        record: bool,
-    ) -> Result<Box<dyn Steering>> {
+    fn steering_with(&self, gains: &[f64], scenario: &Scenario, record: bool) -> Result<BoxedLaw> {
         Ok(if record {
             Box::new(self.0.with_gains::<f64, true>(gains, scenario)?)
         } else {

@@ -9,7 +9,7 @@ use crate::lanes::Vector2;
 use crate::laws::shield::{Course, Deviation, Limits, Status};
 use crate::laws::{Situation, Stop};
 use crate::robots::differential::Twist;
-use crate::run::any_law::{AnyLaw, Steering};
+use crate::run::any_law::{AnyLaw, BoxedLaw};
 use crate::run::as_built::sight::hidden;
 use crate::sensing::lidar::{Lidar, Scans};
 use crate::world::frame::Frame;
@@ -111,7 +111,7 @@ pub struct Order {
 /// A law on a robot, with what it remembers.
 pub struct Controller {
     scenario: Scenario,
-    law: Box<dyn Steering>,
+    law: BoxedLaw,
     scans: Option<Scans>,
     /// Obstacles as last known, then points of the lidar.
     bodies: Vec<Body>,

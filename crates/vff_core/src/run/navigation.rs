@@ -11,7 +11,7 @@ use crate::laws::trace::Trace;
 use crate::laws::{Command, Situation, Stop, force_toward};
 use crate::robots::drives::{Fix, MotorDrive, Order, Reading};
 use crate::run::Interrupted;
-use crate::run::any_law::{AnyLaw, Steering};
+use crate::run::any_law::{AnyLaw, BoxedLaw};
 use crate::run::as_built::AsBuilt;
 use crate::run::as_built::history::{AsBuiltTrajectory, Everything, Listener};
 use crate::run::as_built::sight::{SensedState, Sight};
@@ -85,7 +85,7 @@ impl Known {
 /// A robot under a law, or told what to do, in a scenario, and what is kept of its run.
 pub struct Navigation<L = Everything> {
     scenario: Arc<Scenario>,
-    law: Option<Box<dyn Steering>>,
+    law: Option<BoxedLaw>,
     robot: Box<dyn MotorDrive>,
     listener: L,
     stop_on_contact: bool,

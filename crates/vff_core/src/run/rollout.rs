@@ -2,12 +2,12 @@
 
 use crate::error::{Failure, Result};
 use crate::lanes::{Real, Truth, Vector2};
-use crate::laws::{Command, Law, Situation, Stop};
+use crate::laws::{Law, Situation, Stop};
 use crate::run::Interrupted;
 use crate::run::options::{Clock, Integrator, Options};
 use crate::run::plan::Plan;
 use crate::run::record::Recorder;
-use crate::run::runs::{Dormant, Relevant, Runs};
+use crate::run::runs::{Dormant, Runs};
 use crate::run::scene::{Scene, World, bodies_at};
 use crate::run::walls::Maps;
 use crate::sensing::sampled::{Measured, SampledScene};
@@ -107,11 +107,13 @@ pub(crate) fn run_team<R: Real, L: Law<R>, C: Recorder<R>>(
                 }
                 let known = sensor.as_ref().map(|_| &*seen);
                 let known = known.unwrap_or(&scene.frames[0]);
-                let relevant = dormant.as_mut().and_then(Dormant::relevant);
+                let everything = dormant
+                    .as_mut()
+                    .and_then(|dormant| dormant.everything(first));
                 sample(
                     runs,
                     member,
-                    (known, relevant),
+                    everything.unwrap_or(known),
                     measured,
                     &Block::of(&scene, Stop(interrupted), span),
                 )
@@ -159,7 +161,7 @@ fn hand_over<R: Real, L, C: Recorder<R>>(
     scenario: &Scenario,
     groups: &mut [Runs<&Scenario, R>],
     team: &mut [Member<L, C>],
-    (time, dormant): (f64, Option<Dormant>),
+    (time, dormant): (f64, Option<Dormant<'_>>),
     keep: &mut impl FnMut(usize, &Runs<&Scenario, R>, usize, &C),
 ) -> Result<()> {
     if let Some(mut dormant) = dormant {
@@ -214,13 +216,12 @@ impl<'a> Block<'a> {
     }
 }
 
-/// A sample of the force for the runs of a group. The law is told of the known obstacles, or of those that are
-/// relevant to it where not all of them are looked at.
+/// A sample of the force for the runs of a group, whose law is told of the known obstacles.
 #[inline(always)]
 fn sample<R: Real, L: Law<R>, C: Recorder<R>>(
     runs: &mut Runs<&Scenario, R>,
     member: &mut Member<L, C>,
-    (known, relevant): (&[Body], Option<&mut Relevant>),
+    known: &[Body],
     measured: Option<Measured>,
     block: &Block<'_>,
 ) -> Result<()> {
@@ -240,13 +241,7 @@ fn sample<R: Real, L: Law<R>, C: Recorder<R>>(
         interval: clock.interval,
         stop: block.stop,
     };
-    let command = match relevant {
-        // Not in lanes: a kernel that is built for the question is slower where it is never asked.
-        Some(relevant) if R::WIDTH == 1 => {
-            command_of_relevant(&mut member.law, &situation, (runs.scenario, relevant))
-        }
-        _ => member.law.command(&situation),
-    };
+    let command = member.law.command(&situation);
     runs.check_force(command.force, time)?;
     if C::EVERY_STEP {
         runs.command = command;
@@ -259,26 +254,6 @@ fn sample<R: Real, L: Law<R>, C: Recorder<R>>(
     Ok(())
 }
 
-/// Command of a law that is told of the obstacles that are relevant to it.
-#[inline(never)]
-fn command_of_relevant<R: Real, L: Law<R>>(
-    law: &mut L,
-    situation: &Situation<'_, R>,
-    (scenario, relevant): (&Scenario, &mut Relevant),
-) -> Command<R> {
-    loop {
-        let attention = law.attention(situation);
-        let bodies = relevant.at(scenario, situation.time, attention);
-        let command = law.command(&Situation {
-            bodies,
-            ..*situation
-        });
-        if !law.overlooks() {
-            return command;
-        }
-    }
-}
-
 /// Steps of a group under the held force.
 #[inline(always)]
 fn run_block<R: Real, L: Law<R>, C: Recorder<R>>(
@@ -286,7 +261,7 @@ fn run_block<R: Real, L: Law<R>, C: Recorder<R>>(
     member: &mut Member<L, C>,
     block: &Block<'_>,
     options: &Options,
-    mut dormant: Option<&mut Dormant>,
+    mut dormant: Option<&mut Dormant<'_>>,
 ) {
     let clock = runs.clock;
     for step in 0..block.steps {

@@ -35,11 +35,14 @@ impl<S: Deref<Target = Scenario> + Clone, R: Real> World<R> for S {
     }
 
     fn reaches(&self, _count: usize) -> Vec<f64> {
-        self.obstacles.reaches()
+        self.obstacles
+            .iter()
+            .map(|placed| placed.contact_distance)
+            .collect()
     }
 
     fn speed_bounds(&self, _count: usize) -> Vec<f64> {
-        self.obstacles.speed_bounds()
+        self.obstacles.iter().map(PlacedObstacle::fastest).collect()
     }
 
     fn stands_from(&self) -> f64 {

@@ -90,15 +90,6 @@ impl Motion {
         }
     }
 
-    /// The only piece of a body that is always present and moves straight on, or stands.
-    #[inline]
-    pub(crate) fn straight(&self) -> Option<&Piece> {
-        let first = &self.first;
-        let always = self.presence == (f64::NEG_INFINITY, f64::INFINITY);
-        let on = self.later.is_empty() && first.acceleration == [0.0; 2];
-        (on && always).then_some(first)
-    }
-
     /// All pieces in their order.
     fn pieces(&self) -> impl Iterator<Item = &Piece> {
         std::iter::once(&self.first).chain(&self.later)

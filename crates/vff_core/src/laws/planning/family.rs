@@ -5,7 +5,6 @@ use crate::arguments::{Arguments, Named};
 use crate::error::{Failure, Given, Result, not_negative, positive};
 use crate::lanes::{Lanes, Real, Vector2};
 use crate::laws::field_d_star::{FieldDStar, FieldDStarPlanner};
-use crate::laws::outlook::Attention;
 use crate::laws::planning::{Planner, ScenePlanner};
 use crate::laws::reciprocal::{ReciprocalAvoidance, ReciprocalPlanner};
 use crate::laws::tree::{RapidlyExploringRandomTree, TreePlanner};
@@ -73,17 +72,6 @@ impl<R: Real, P: Planner> Law<R> for LanePlanners<P> {
         let each = self.planners.iter();
         let felt = each.map(|planner| planner.felt_within(obstacle));
         felt.fold(0.0, f64::max)
-    }
-
-    fn attention(&mut self, situation: &Situation<'_, R>) -> Attention {
-        match self.planners.as_mut_slice() {
-            [planner] => planner.attention(&situation.of_lane(0)),
-            _ => Attention::All,
-        }
-    }
-
-    fn overlooks(&self) -> bool {
-        self.planners.iter().any(Planner::overlooks)
     }
 
     fn aim(&mut self, goal: [f64; 2]) {

@@ -10,7 +10,6 @@ pub mod path;
 
 use crate::lanes::{Real, Vector2, Wide};
 use crate::laws::Situation;
-use crate::laws::outlook::Attention;
 use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// A planner at work in one scenario; it owns its state between control steps.
@@ -23,18 +22,6 @@ pub trait Planner: Send + 'static {
     /// none, and for planners that remember obstacles by their places in the list.
     fn felt_within(&self, _obstacle: &PlacedObstacle) -> f64 {
         f64::INFINITY
-    }
-
-    /// Which obstacles it must be told of in a situation, if it feels any from anywhere; those that the
-    /// situation has count for nothing.
-    fn attention(&mut self, _situation: &Situation<'_, f64>) -> Attention {
-        Attention::All
-    }
-
-    /// Whether the last velocity counts for nothing, since obstacles may matter that it was not told of: it
-    /// must be asked again which ones those are.
-    fn overlooks(&self) -> bool {
-        false
     }
 
     /// Heads for another goal from now on, in m; planners of a whole way keep theirs.

@@ -14,7 +14,7 @@ use crate::laws::yielding::{Outlook, Yielder};
 use crate::laws::{Command, Situation};
 use crate::robots::differential::{DifferentialLimits, Twist};
 use crate::robots::drives::velocity_of;
-use crate::run::Steering;
+use crate::run::BoxedLaw;
 use crate::world::geometry::RobotState;
 use crate::world::scenario::Scenario;
 
@@ -23,7 +23,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// A law with its parts.
 pub struct SafeLaw {
-    law: Box<dyn Steering>,
+    law: BoxedLaw,
     guard: Option<Guard>,
     /// The shield of a robot with two wheels.
     twist_guard: Option<TwistGuard>,

@@ -10,10 +10,10 @@ use crate::world::scenario::{PlacedObstacle, Rules};
 const INTERVAL: f64 = 0.06;
 
 /// Numbers between two bounds, the same in every run.
-pub(crate) struct Draws(pub(crate) u64);
+struct Draws(pub(crate) u64);
 
 impl Draws {
-    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
+    fn between(&mut self, low: f64, high: f64) -> f64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;
@@ -43,29 +43,6 @@ fn crowd(draws: &mut Draws, count: usize) -> Scenario {
     let obstacles = obstacles.collect();
     let robot = HolonomicRobot::default();
     Scenario::new(robot, [0.0; 2], [14.0, 0.0], obstacles, Rules::default()).unwrap()
-}
-
-/// Discs that move straight on around a robot, farther away than given and within a square.
-pub(crate) fn crowd_around(
-    draws: &mut Draws,
-    count: usize,
-    [clear, spread, fast]: [f64; 3],
-    max_acceleration: f64,
-) -> Scenario {
-    let mut obstacles = Vec::new();
-    while obstacles.len() < count {
-        let mut pair = |size: f64| [draws.between(-size, size), draws.between(-size, size)];
-        let (start, velocity) = (pair(spread), pair(fast));
-        if start[0].hypot(start[1]) > clear {
-            let motion = Motion::moving(start, velocity, [0.0; 2], None).unwrap();
-            obstacles.push(Obstacle::disc(0.1, motion, Limits::default()).unwrap());
-        }
-    }
-    let robot = HolonomicRobot {
-        max_acceleration,
-        ..HolonomicRobot::default()
-    };
-    Scenario::new(robot, [0.0; 2], [9.0, 1.0], obstacles, Rules::default()).unwrap()
 }
 
 /// The best of all candidates, one after the other.

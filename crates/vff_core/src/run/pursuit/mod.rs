@@ -16,7 +16,7 @@ use crate::lanes::Planar;
 use crate::laws::{Situation, Stop};
 use crate::robots::drives::{MotorDrive, Reading};
 use crate::run::Interrupted;
-use crate::run::any_law::{AnyLaw, Steering};
+use crate::run::any_law::{AnyLaw, BoxedLaw};
 use crate::run::as_built::sight::{SensedState, Sight};
 use crate::run::as_built::{AsBuilt, clock_of, robot_under};
 use crate::run::episode::{Episode, Parts};
@@ -159,7 +159,7 @@ struct PursuitParts<'a> {
     /// How long a force acts, in s.
     interval: f64,
     robot: Box<dyn MotorDrive>,
-    law: Box<dyn Steering>,
+    law: BoxedLaw,
     tracked: Tracked,
     maps: Maps,
     sight: Sight,

@@ -1,91 +1,130 @@
-//! Obstacles that are too far away to be felt or touched for a while: they are not looked at before
-//! they may be, and their least distances are found afterwards from the path of the robot. A law that
-//! feels obstacles from anywhere is told of those that it asks for; else they are left alone as well.
+//! Obstacles that are too far away to be felt or touched for a while: they are not looked at before they may be, and
+//! their least distances are found afterwards from the path of the robot. A law that feels obstacles from anywhere is
+//! told of all of them.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use super::Runs;
-use super::at_ends::AtEnds;
-use super::bounds::{Bounds, FEWEST_PERIODS, FirstLook, without_alarm};
-use super::path::{Passage, Path};
-use super::relevant::Relevant;
-use crate::lanes::{Planar, Real, Truth};
+use super::{BOUND_MARGIN, Runs};
+use crate::lanes::{Planar, Real, Truth, Vector2};
 use crate::run::options::Clock;
-use crate::run::scene::{Scene, body_at};
+use crate::run::scene::{Scene, bodies_at, body_at};
+use crate::world::geometry::Body;
 use crate::world::scenario::{PlacedObstacle, Scenario};
 
-/// Fewest dormant obstacles for which it pays to look at the mean velocities of the robot.
-const FEWEST_FOR_MEANS: usize = 32;
+/// Fewest obstacles for which it pays to tell the far ones from the near ones.
+const FEWEST_OBSTACLES: usize = 16;
+
+/// Fewest control periods for which it pays to leave an obstacle alone.
+const FEWEST_PERIODS: usize = 8;
 
 /// Most positions of the robot that are kept.
 const LONGEST_PATH: usize = 1 << 14;
 
+/// Most motion steps that are looked at one by one.
+const FEW_STEPS: usize = 4;
+
 /// Mark of an obstacle that is looked at.
 const AWAKE: usize = usize::MAX;
 
+/// Room for rounding: as a share of a way, and of the largest numbers that distances are made of.
+const SHARE: f64 = 1e-9;
+const ROUNDING: f64 = 1e-12;
+
 /// The dormant obstacles of one run.
-#[derive(Clone, Debug)]
-pub(crate) struct Dormant {
+pub(crate) struct Dormant<'a> {
+    scenario: &'a Scenario,
     clock: Clock,
-    bounds: Bounds,
+    bounds: Vec<Bound>,
     /// First motion step whose distance to each obstacle is not counted yet, at least the second.
     since: Vec<usize>,
-    /// Steps at which dormant obstacles are looked at, with their indices; none for those that sleep to
-    /// the end.
+    /// Steps at which dormant obstacles are looked at, with their indices; none for those that sleep to the end.
     alarms: BinaryHeap<Reverse<(usize, usize)>>,
     path: Path,
-    /// What a law is told of that feels some obstacles from anywhere.
-    relevant: Option<Relevant>,
+    /// All obstacles, for a law that feels some of them from anywhere.
+    everything: Option<Scene<&'a Scenario>>,
 }
 
-impl Dormant {
+/// Places of the robot after motion steps.
+struct Path {
+    /// Step of the first place.
+    first: usize,
+    /// Each in m, and how long the way to it was in m.
+    places: Vec<(Vector2<f64>, f64)>,
+}
+
+/// Bounds of the distance to an obstacle.
+struct Bound {
+    /// Distance in m beyond which it is neither felt nor touched, with room for rounding.
+    felt: f64,
+    /// Room for rounding in a distance, in m.
+    margin: f64,
+    /// Most by which the distance changes in a motion step, in m; of that what the obstacle itself moves.
+    stride: f64,
+    own: f64,
+}
+
+impl Bound {
+    fn of(placed: &PlacedObstacle, felt: f64, scenario: &Scenario, clock: &Clock) -> Self {
+        let [x, y] = scenario.start;
+        let (own, time) = (scenario.robot.max_speed, scenario.rules.time_limit);
+        // No number that is added up is larger than this.
+        let robot = x.abs() + y.abs() + own * time;
+        let largest = robot + placed.size() + placed.fastest() * time;
+        let margin = BOUND_MARGIN + largest * ROUNDING;
+        let stride = |speed: f64| speed * clock.step * (1.0 + SHARE) + robot * (2.0 * f64::EPSILON);
+        Self {
+            felt: felt.max(placed.contact_distance) + margin,
+            margin,
+            stride: stride(own + placed.fastest()),
+            own: stride(placed.fastest()),
+        }
+    }
+}
+
+impl<'a> Dormant<'a> {
     /// Whether a scenario has so many obstacles that it pays.
     pub fn pays(scenario: &Scenario) -> bool {
-        !scenario.obstacles.groups().is_empty()
+        scenario.obstacle_count() >= FEWEST_OBSTACLES
     }
 
     /// Robots that have not seen the obstacles yet look at them, for a law that feels each within a distance in m;
     /// the scene at the start, without those that are far away.
-    pub fn begin<'a, R: Real>(
+    pub fn begin<R: Real>(
         runs: &mut Runs<&'a Scenario, R>,
         steps: usize,
         felt_within: impl Fn(&PlacedObstacle) -> f64,
     ) -> (Self, Scene<&'a Scenario>) {
-        let scenario = runs.scenario;
-        let count = scenario.obstacle_count();
-        let finite = |felt: &f64| *felt < f64::INFINITY;
-        let mut felt = Vec::with_capacity(count);
-        felt.extend(
-            scenario
-                .obstacles
-                .iter()
-                .map(felt_within)
-                .take_while(finite),
-        );
-        let told_all = felt.len() < count;
+        let (scenario, clock) = (runs.scenario, runs.clock);
+        let obstacles = &scenario.obstacles;
+        let mut felt: Vec<f64> = obstacles.iter().map(felt_within).collect();
+        let told_all = felt.contains(&f64::INFINITY);
         if told_all {
-            felt.clear();
+            felt.fill(0.0);
         }
-        let first = FirstLook::at(scenario, &runs.clock, &felt);
+        let bounds = obstacles.iter().zip(felt);
         let mut dormant = Self {
-            clock: runs.clock,
-            bounds: first.bounds,
-            since: vec![1; count],
+            scenario,
+            clock,
+            bounds: bounds
+                .map(|(placed, felt)| Bound::of(placed, felt, scenario, &clock))
+                .collect(),
+            since: vec![AWAKE; obstacles.len()],
             alarms: BinaryHeap::new(),
-            path: Path::from(scenario.start),
-            relevant: told_all.then(|| Relevant::new(scenario)),
+            path: Path {
+                first: 0,
+                places: vec![(scenario.start.into(), 0.0)],
+            },
+            everything: told_all.then(|| Scene::new(scenario, 0, false)),
         };
-        let distances = first.least.into_iter();
-        runs.min_distance_squared = distances.map(R::splat).collect();
         let mut scene = Scene::of(scenario, Vec::new(), (steps, false));
-        for index in first.near {
-            let body = body_at(&scenario.obstacles[index], 0.0, &mut 0);
-            runs.watch(index, &body, 0.0, runs.running, None);
+        for (index, body) in bodies_at(scenario, 0.0).iter().enumerate() {
+            runs.watch(index, body, 0.0, runs.running, None);
             let distance = runs.min_distance_squared[index].lane(0).sqrt();
-            if !dormant.sleeps(index, 0, distance) {
-                dormant.since[index] = AWAKE;
-                scene.insert(scene.told.len(), index, &body);
+            if dormant.sleeps(index, 0, distance) {
+                dormant.since[index] = 1;
+            } else {
+                scene.insert(scene.told.len(), index, body);
             }
         }
         runs.watched.truncate(scene.told.len());
@@ -93,13 +132,15 @@ impl Dormant {
         (dormant, scene)
     }
 
-    /// What the law is told of, where that is not what is looked at.
-    pub fn relevant(&mut self) -> Option<&mut Relevant> {
-        self.relevant.as_mut()
+    /// All obstacles at the sample of a step, where the law is told of more than is looked at.
+    pub fn everything(&mut self, step: usize) -> Option<&[Body]> {
+        let scene = self.everything.as_mut()?;
+        scene.begin(&self.clock, step);
+        Some(&scene.frames[0])
     }
 
-    /// At the sample of a step, for which the scene has begun: wakes obstacles that may be felt soon, and
-    /// leaves those alone that are far away.
+    /// At the sample of a step, for which the scene has begun: wakes obstacles that may be felt soon, and leaves
+    /// those alone that are far away.
     pub fn sample<R: Real>(
         &mut self,
         scene: &mut Scene<&Scenario>,
@@ -116,10 +157,14 @@ impl Dormant {
         let mut slot = 0;
         while slot < scene.told.len() {
             let index = scene.told[slot];
-            let offset = scene.frames[0][slot].offset(runs.position);
-            let squared = offset.distance_squared.lane(0);
-            let far = squared > self.bounds.alone(index);
-            if far && self.sleeps(index, step, squared.sqrt()) {
+            let squared = scene.frames[0][slot]
+                .offset(runs.position)
+                .distance_squared
+                .lane(0);
+            let bound = &self.bounds[index];
+            let periods = (FEWEST_PERIODS + 1) * self.clock.steps_per_sample;
+            let alone = bound.felt + periods as f64 * bound.stride;
+            if squared > alone * alone && self.sleeps(index, step, squared.sqrt()) {
                 self.since[index] = step + 1;
                 scene.remove(slot);
                 runs.fall_asleep(slot);
@@ -137,16 +182,12 @@ impl Dormant {
         runs: &mut Runs<&Scenario, R>,
         step: usize,
     ) {
-        let body = body_at(
-            &runs.scenario.obstacles[index],
-            self.clock.time(step),
-            &mut 0,
-        );
+        let time = self.clock.time(step);
+        let body = body_at(&self.scenario.obstacles[index], time, &mut 0);
         let squared = body.offset(runs.position).distance_squared.lane(0);
         if self.sleeps(index, step, squared.sqrt()) {
             return;
         }
-        self.path.measure();
         self.count(index, runs);
         self.since[index] = AWAKE;
         let slot = scene.told.partition_point(|other| *other < index);
@@ -155,18 +196,12 @@ impl Dormant {
     }
 
     /// Whether an obstacle at a distance in m is left alone from a step on; sets its alarm.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
     fn sleeps(&mut self, index: usize, step: usize, distance: f64) -> bool {
-        let Clock {
-            steps_per_sample: period,
-            steps: end,
-            ..
-        } = self.clock;
+        let (period, end) = (self.clock.steps_per_sample, self.clock.steps);
+        let bound = &self.bounds[index];
         // All steps until then are within the bound, and so is the sample then.
-        let until = step.saturating_add(self.bounds.steps(index, distance));
-        // Most need no alarm.
-        if until >= without_alarm(&self.clock, step) {
-            return true;
-        }
+        let until = step.saturating_add(((distance - bound.felt) / bound.stride) as usize);
         let alarm = until / period * period;
         if alarm < step + FEWEST_PERIODS * period {
             return false;
@@ -183,60 +218,107 @@ impl Dormant {
         if !runs.running.any() {
             return;
         }
-        self.path.push(runs.position.lane(0));
-        if self.path.len() >= LONGEST_PATH {
+        self.path.push(Vector2::from(runs.position.lane(0)));
+        if self.path.places.len() >= LONGEST_PATH {
             self.count_all(runs);
-            self.path.forget();
+            self.path.first = self.path.last();
+            self.path.places = self.path.places.split_off(LONGEST_PATH - 1);
         }
     }
 
     /// Counts all steps so far.
     #[inline(never)]
     pub fn count_all<R: Real>(&mut self, runs: &mut Runs<&Scenario, R>) {
-        let asleep = self.since.iter().filter(|since| **since != AWAKE).count();
-        if asleep > 0 {
-            self.path.measure();
-        }
-        if asleep >= FEWEST_FOR_MEANS {
-            AtEnds {
-                path: &self.path,
-                clock: &self.clock,
-                means: &self.path.means(),
-                groups: runs.scenario.obstacles.groups(),
-                bounds: &self.bounds,
-                since: &mut self.since,
-                least: &mut runs.min_distance_squared,
-            }
-            .find();
-        }
+        let last = self.path.last();
         for index in 0..self.since.len() {
-            let since = self.since[index];
-            if since != AWAKE && since <= self.path.last() {
+            if self.since[index] <= last {
                 self.count(index, runs);
-                self.since[index] = self.path.last() + 1;
+                self.since[index] = last + 1;
             }
         }
     }
 
-    /// Counts the steps so far in which an obstacle was dormant: the least of the distances that a look
-    /// at each of them would have found. The path has been measured.
+    /// Counts the steps so far in which an obstacle was dormant: the least of the distances that a look at each of
+    /// them would have found.
     fn count<R: Real>(&mut self, index: usize, runs: &mut Runs<&Scenario, R>) {
         let (first, last) = (self.since[index] - 1, self.path.last());
         if first >= last {
             return;
         }
-        let [stride, margin] = self.bounds.stride_and_margin(index);
         let least = runs.min_distance_squared[index].lane(0);
         let mut passage = Passage {
             path: &self.path,
-            placed: &runs.scenario.obstacles[index],
+            placed: &self.scenario.obstacles[index],
             clock: &self.clock,
-            stride,
-            margin,
+            bound: &self.bounds[index],
+            cursor: 0,
             nearest: least.sqrt(),
             least,
         };
-        passage.look(first, last);
+        // What comes nearer is nearest at last.
+        let ends = [last, first].map(|step| (step, passage.distance(step)));
+        passage.between(ends[1], ends[0]);
         runs.min_distance_squared[index] = R::splat(passage.least);
+    }
+}
+
+impl Path {
+    fn push(&mut self, place: Vector2<f64>) {
+        if let Some((last, way)) = self.places.last() {
+            let way = way + (place - last).norm();
+            self.places.push((place, way));
+        }
+    }
+
+    /// Step of the last place.
+    fn last(&self) -> usize {
+        self.first + self.places.len() - 1
+    }
+}
+
+/// A part of the path past an obstacle, of which the least distance is wanted.
+struct Passage<'a> {
+    path: &'a Path,
+    placed: &'a PlacedObstacle,
+    clock: &'a Clock,
+    bound: &'a Bound,
+    cursor: usize,
+    /// Least distance so far in m, and its square.
+    nearest: f64,
+    least: f64,
+}
+
+impl Passage<'_> {
+    /// Distance after a motion step in m.
+    fn distance(&mut self, step: usize) -> f64 {
+        let body = body_at(self.placed, self.clock.time(step), &mut self.cursor);
+        let (place, _) = self.path.places[step - self.path.first];
+        let squared = body.offset(place).distance_squared;
+        let distance = squared.sqrt();
+        if squared < self.least {
+            (self.least, self.nearest) = (squared, distance);
+        }
+        distance
+    }
+
+    /// Looks at all steps between two, of known distances in m, of which any may be nearer than the nearest one.
+    fn between(&mut self, (first, from): (usize, f64), (last, to): (usize, f64)) {
+        let steps = last - first;
+        let [begin, end] = [first, last].map(|step| self.path.places[step - self.path.first].1);
+        let change = (end - begin) * (1.0 + SHARE) + steps as f64 * self.bound.own;
+        let low = 0.5 * (from + to - change);
+        if steps <= 1 || low > self.nearest + self.bound.margin {
+            return;
+        }
+        if steps <= FEW_STEPS {
+            for step in first + 1..last {
+                self.distance(step);
+            }
+            return;
+        }
+        let middle = first + steps / 2;
+        let middle = (middle, self.distance(middle));
+        self.between((first, from), middle);
+        self.between(middle, (last, to));
     }
 }

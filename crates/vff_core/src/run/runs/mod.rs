@@ -1,18 +1,12 @@
 //! State of the robots of one lane group, and what is counted of their runs.
 
 mod account;
-mod at_ends;
-mod bounds;
 mod dormant;
 mod ends;
-mod means;
-mod path;
-mod relevant;
 mod totals;
 mod touch;
 
 pub(crate) use dormant::Dormant;
-pub(crate) use relevant::Relevant;
 
 use crate::lanes::{Mask, Planar, Real, Vector2, Zero};
 use crate::laws::Command;

@@ -1,9 +1,7 @@
 //! A scenario: robot, start, goal, obstacles and the rules of a run.
 
-mod obstacles;
 mod placed;
 
-pub(crate) use obstacles::{GROUP, Group, ObstacleGroup, Obstacles};
 pub use placed::PlacedObstacle;
 use placed::{place, place_all};
 
@@ -59,7 +57,7 @@ pub struct Scenario {
     pub(crate) differential: Option<DifferentialDriveRobot>,
     pub(crate) start: [f64; 2],
     pub(crate) goal: [f64; 2],
-    pub(crate) obstacles: Obstacles,
+    pub(crate) obstacles: Vec<PlacedObstacle>,
     pub(crate) rules: Rules,
     pub(crate) measurement: Option<Measurement>,
     pub(crate) seed: u64,
@@ -210,7 +208,7 @@ impl Scenario {
             differential,
             start,
             goal,
-            obstacles: placed.collect::<Result<Vec<_>>>()?.into(),
+            obstacles: placed.collect::<Result<_>>()?,
             rules,
             measurement,
             seed: 0,
@@ -228,7 +226,7 @@ impl Scenario {
         if measurement != self.measurement {
             let (robot, rules) = (self.limits(), self.rules);
             let sensing = Sensing::by(measurement);
-            let obstacles = self.obstacles.into_vec().into_iter();
+            let obstacles = self.obstacles.into_iter();
             let obstacles = obstacles.map(|placed| placed.obstacle);
             let ends = [self.start, self.goal];
             (self.obstacles, self.blocked) = place_all(&robot, ends, obstacles, &rules, &sensing)?;
@@ -278,7 +276,7 @@ impl Scenario {
             differential: self.differential,
             start: self.start,
             goal: self.goal,
-            obstacles: Obstacles::default(),
+            obstacles: Vec::new(),
             rules: self.rules,
             measurement: None,
             seed: 0,
@@ -319,7 +317,9 @@ impl Scenario {
     /// Instant from which no obstacle moves any more, in s; infinite if there is none.
     #[must_use]
     pub fn stands_from(&self) -> f64 {
-        self.obstacles.stand_from()
+        self.obstacles.iter().fold(0.0, |time, placed| {
+            time.max(placed.obstacle.motion.stands_from())
+        })
     }
 
     /// Control period in s.

@@ -1,8 +1,6 @@
 //! Obstacles with their regions, and the rules that regions and the ends of a way keep to.
 
-use super::Obstacles;
 use crate::error::{Failure, Given, Result};
-use crate::world::motion::Piece;
 use crate::world::obstacle::{Obstacle, Regions, Shape};
 use crate::world::region::{self, RobotLimits, Sensing};
 use crate::world::scenario::Rules;
@@ -26,15 +24,6 @@ pub struct PlacedObstacle {
 }
 
 impl PlacedObstacle {
-    /// Motion of a disc that is always present and moves straight on, or stands.
-    #[inline]
-    pub(crate) fn straight_disc(&self) -> Option<&Piece> {
-        match self.obstacle.shape {
-            Shape::Disc { .. } => self.obstacle.motion.straight(),
-            Shape::Rectangle { .. } => None,
-        }
-    }
-
     /// Largest speed at any time in m/s, infinite if there is none.
     #[inline]
     pub(crate) fn fastest(&self) -> f64 {
@@ -42,7 +31,7 @@ impl PlacedObstacle {
     }
 
     /// No number of its contour at the start is larger, in m; infinite if it comes or goes.
-    pub(super) fn size(&self) -> f64 {
+    pub(crate) fn size(&self) -> f64 {
         let Obstacle { shape, motion, .. } = &self.obstacle;
         if motion.presence() != (f64::NEG_INFINITY, f64::INFINITY) {
             return f64::INFINITY;
@@ -62,7 +51,7 @@ pub(super) fn place_all(
     obstacles: impl IntoIterator<Item = Obstacle, IntoIter: ExactSizeIterator>,
     rules: &Rules,
     sensing: &Sensing,
-) -> Result<(Obstacles, Option<Box<Failure>>)> {
+) -> Result<(Vec<PlacedObstacle>, Option<Box<Failure>>)> {
     let obstacles = obstacles.into_iter();
     // A result of a collection would forget how many there are.
     let mut all = Vec::with_capacity(obstacles.len());
@@ -77,7 +66,7 @@ pub(super) fn place_all(
         check_start(placed, index, start)?;
         blocked = blocked.or_else(|| goal_in_region(placed, index, goal).map(Box::new));
     }
-    Ok((all.into(), blocked))
+    Ok((all, blocked))
 }
 
 /// An obstacle with its regions: those that are given, and the others as computed.
