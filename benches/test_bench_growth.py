@@ -78,19 +78,6 @@ def test_growth(benchmark: Any, law: str) -> None:
     benchmark.extra_info["far_over_none"] = round(away / none, 1)
 
 
-@pytest.mark.benchmark(group="a control period among a thousand far obstacles, one core")
-@pytest.mark.parametrize("away", [60.0, 200.0, 500.0])
-def test_far(benchmark: Any, away: float) -> None:
-    """What a velocity obstacle without horizon makes of far obstacles depends on where they stand: twelve scenes."""
-    own = LAWS["velocity obstacle"]
-    scenes = [scene(1000, far=True, away=away, seed=seed) for seed in range(12)]
-    benchmark.pedantic(nav.simulate_batch, (scenes, own), {"threads": 1}, rounds=ROUNDS, iterations=1)
-    none, *times = periods(own, [scene(0), *scenes])
-    ratios = sorted(round(each / none, 1) for each in times)
-    benchmark.extra_info["far_over_none"] = ratios
-    benchmark.extra_info["median"] = round(statistics.median(times) / none, 1)
-
-
 @pytest.mark.benchmark(group="a control period deep in a crowd, one core")
 def test_before_a_door(benchmark: Any) -> None:
     """A hundred people leave a room, and a velocity obstacle finds hardly a velocity that is free."""

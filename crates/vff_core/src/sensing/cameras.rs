@@ -75,7 +75,7 @@ impl ObstacleCamera {
         let sensors = (1..).zip(&scenario.obstacles).map(of_body);
         Ok(Self {
             sensors: sensors.collect::<Result<_>>()?,
-            obstacles: scenario.obstacles.to_vec(),
+            obstacles: scenario.obstacles.clone(),
         })
     }
 }

@@ -40,7 +40,7 @@ impl NoisyPositions {
             mark_distance,
             last_measured: None,
             past: Past::new(scenario, step).map(|past| [past.clone(), past]),
-            obstacles: of_obstacles.then(|| scenario.obstacles.to_vec()),
+            obstacles: of_obstacles.then(|| scenario.obstacles.clone()),
             measured: bodies.to_vec(),
         })
     }

@@ -58,7 +58,7 @@ impl Sight {
         let tells = sensors.iter().any(|sensor| sensor.obstacles().is_some());
         let seen: Vec<Body> = obstacles.iter().map(hidden).collect();
         let known = tells.then(|| Scenario {
-            obstacles: obstacles.into(),
+            obstacles,
             ..scenario.clone()
         });
         Ok(Self {
