@@ -86,7 +86,6 @@ __all__ = [
     "cast_rays",
     "cell_distances",
     "check_takeover",
-    "codes_there",
     "collision_feet",
     "collision_points",
     "contact_column",
@@ -114,7 +113,6 @@ __all__ = [
     "effective_two_joints",
     "environment_words",
     "evaluate",
-    "fill_words",
     "fit_open_loop",
     "fit_static",
     "fix_deviations",
@@ -156,7 +154,6 @@ __all__ = [
     "nearest_inertia",
     "parallel_ray_bearings",
     "pd_gains",
-    "positive_ends",
     "printed_ranges",
     "record_burst",
     "recorded_metrics",
@@ -2142,14 +2139,6 @@ def guard_distance(
 
 def contact_names() -> list[str]: ...
 def contact_words() -> tuple[list[str], list[str], list[str]]: ...
-def codes_there(codes: npt.NDArray[np.uint8], threads: int | None) -> list[bool]: ...
-def positive_ends(values: _Array, threads: int | None) -> tuple[float, float]: ...
-def fill_words(
-    letters: npt.NDArray[np.uint32],
-    codes: npt.NDArray[np.uint8],
-    words: npt.NDArray[np.uint32],
-    threads: int | None,
-) -> None: ...
 def contact_rows(
     kind: str,
     shared: dict[str, Any],

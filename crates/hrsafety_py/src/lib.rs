@@ -5,7 +5,6 @@
 #![allow(clippy::needless_pass_by_value)]
 
 mod arrays;
-mod columns;
 mod contact;
 mod crowd;
 mod errors;
@@ -42,8 +41,6 @@ mod _hrsafety {
         module.add("CONTACT_SPEED", vff_core::run::CONTACT_SPEED)
     }
 
-    #[pymodule_export]
-    use crate::columns::{codes_there, fill_words, positive_ends};
     #[pymodule_export]
     use crate::contact::arm::{Arm, bare_forces, nearest_inertia, urdf_joint_names};
     #[pymodule_export]

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety import _hrsafety
 from hrsafety.contact.covering import Covering, shape_flags
 from hrsafety.contact.materials import GibsonAshby, Linear, Rusch, StressTable
 from hrsafety.plausibility import RANGES, ResultWarning, implausible
@@ -165,9 +164,7 @@ def covering_flags(pad: Covering | None, depth: Any, numbers: Mapping[str, Any])
         return {**flags, "beyond_thickness": deep > whole}
 
 
-def implausible_numbers(
-    pad: Covering | None, region: str, numbers: Mapping[str, Any], threads: int | None = 1
-) -> Doubts:
+def implausible_numbers(pad: Covering | None, region: str, numbers: Mapping[str, Any]) -> Doubts:
     """Return a warning for every number of a contact that is hardly what was meant."""
     values = {name: numbers[name] for name in _QUANTITIES if not (name == "stiffness" and region == "power")}
     quantities = dict(_QUANTITIES)
@@ -185,7 +182,7 @@ def implausible_numbers(
         if isinstance(law, StressTable):
             values["stress"], quantities["stress"] = float(np.max(law.stress)), "covering_stress"
             values["strain"], quantities["strain"] = float(np.max(law.strain)), "covering_strain"
-    judged = {name: _judged(value, quantities.get(name, name), threads) for name, value in values.items()}
+    judged = {name: _judged(value, quantities.get(name, name)) for name, value in values.items()}
     return tuple(
         replace(each, safe_side=_careful(each.subject, judged[each.subject], quantities))
         for each in implausible(judged, quantities)
@@ -200,13 +197,13 @@ def _careful(name: str, value: Any, quantities: Mapping[str, str]) -> bool:
     return name in CAREFUL_BELOW and not np.any(np.asarray(value) > most)
 
 
-def _judged(value: Any, quantity: str, threads: int | None) -> Any:
+def _judged(value: Any, quantity: str) -> Any:
     """Return what of a number can be implausible: not what is 0, below 0, infinite or not given."""
     given = np.asarray(value, dtype=np.float64)
     if given.ndim:
-        least, most = _hrsafety.positive_ends(np.ascontiguousarray(given).reshape(-1), threads)
+        least, most = RANGES[quantity][:2]
         # Most arrays are plausible, and long.
-        if least >= RANGES[quantity][0] and most <= RANGES[quantity][1]:
+        if not np.any((given > 0.0) & (given < least) | (given > most) & np.isfinite(given)):
             return None
     return np.where((given > 0.0) & np.isfinite(given), given, np.nan)
 

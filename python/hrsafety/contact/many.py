@@ -81,7 +81,7 @@ def many(
     codes, words = found.pop("status_code"), WORDS[kind]
     flags = covering_flags(covering, found[_DEPTHS[kind]], given)
     flags = {name: np.broadcast_to(each, shape) for name, each in flags.items()}
-    there = _hrsafety.codes_there(codes.reshape(-1), count)
+    there = (np.bincount(codes.reshape(-1), minlength=256) > 0).tolist()
     told = {"invalid": codes >= len(words)} if any(there[len(words) :]) else {}
     for name in ("unfinished", "beyond_data"):
         if name in words and there[words.index(name)]:
@@ -89,24 +89,20 @@ def many(
     flags["rising"] = found.pop("rising")
     return Many(
         numbers=found,
-        status=_status(words, codes, there, covering, count),
+        status=_status(words, codes, there, covering),
         flags=flags,
-        warnings=(*flagged(told | flags, covering, given), *implausible_numbers(covering, region, given, count)),
+        warnings=(*flagged(told | flags, covering, given), *implausible_numbers(covering, region, given)),
         given=given,
     )
 
 
-def words_at(words: Sequence[str], codes: npt.NDArray[np.uint8], *, threads: int | None) -> npt.NDArray[np.str_]:
+def words_at(words: Sequence[str], codes: npt.NDArray[np.uint8]) -> npt.NDArray[np.str_]:
     """Return the words at codes; the last one stands for every code beyond it."""
-    flat, width = codes.reshape(-1), max(1, *map(len, words))
-    letters = np.asarray(words, dtype=f"U{width}").view(np.uint32).reshape(len(words), width)
-    found = np.empty(flat.size, dtype=f"U{width}")
-    _hrsafety.fill_words(found.view(np.uint32).reshape(flat.size, width), flat, letters, threads)
-    return found.reshape(codes.shape)
+    return np.asarray(words).take(codes, mode="clip")
 
 
 def _status(
-    words: list[str], codes: npt.NDArray[np.uint8], there: list[bool], covering: Covering | None, threads: int | None
+    words: list[str], codes: npt.NDArray[np.uint8], there: list[bool], covering: Covering | None
 ) -> npt.NDArray[np.str_]:
     """Return the words of statuses; invalid rows name the number as the caller does."""
     names = list(NAMES)
@@ -116,4 +112,4 @@ def _status(
     all_words = [*words, *(f"invalid_{name}" for name in names), "invalid_covering"]
     # Only as wide as the words that are there: the longest one takes many times the room of its code.
     used = [*there[: len(all_words) - 1], any(there[len(all_words) - 1 :])]
-    return words_at([word if use else "" for word, use in zip(all_words, used, strict=True)], codes, threads=threads)
+    return words_at([word if use else "" for word, use in zip(all_words, used, strict=True)], codes)

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, not_negative, positive, thread_count
+from hrsafety._arguments import Array, not_negative, positive
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.contact.bodies import Part, agreeing, body_of, contact_width_doubt, larger_than_part, touched_area
@@ -346,7 +346,7 @@ def allowed_speeds(
         widest = float(np.nanmax(touched_area(pad, numbers["covering_compression"], found.given)))
         wide = (counted(contact_width_doubt(widest, part), np.broadcast_to(larger, found.status.shape)),)
     codes = numbers.pop("governs_code")
-    governs = words_at(_GOVERNS, codes, threads=thread_count(threads))[()]
+    governs = words_at(_GOVERNS, codes)
     return AllowedSpeeds(
         **numbers,
         governs=governs,

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from hrsafety import contact
-from hrsafety.contact.many import words_at
 from hrsafety.errors import InvalidParameterError
 
 LOADS = ("release_time", "peak_force", "peak_force_time", "peak_covering_compression", "peak_pressure", "rebound_speed")
@@ -56,18 +55,6 @@ def test_rows_of_different_laws_beside_bad_ones_are_as_alone() -> None:
     for row, exponent in enumerate(exponents):
         alone = contact.batch(p=[exponent], **given)
         np.testing.assert_array_equal(alone.peak_force[0], rows.peak_force[row])
-
-
-@pytest.mark.parametrize("threads", [None, 1, 2])
-def test_words_of_many_rows(threads: int | None) -> None:
-    words = ("force", "pressure", "strain", "nothing")
-    draw = np.random.default_rng(2)
-    some = np.repeat(draw.integers(0, 6, 9_001), draw.integers(1, 9, 9_001)).astype(np.uint8)
-    for codes in (some, np.zeros(70_001, dtype=np.uint8), np.empty(0, dtype=np.uint8), some[:6].reshape(2, 3)):
-        expected = np.take(np.asarray(words), codes, mode="clip")
-        found = words_at(words, codes, threads=threads)
-        assert found.dtype == expected.dtype
-        np.testing.assert_array_equal(found, expected)
 
 
 def test_implausible_numbers_of_many_rows_are_counted() -> None:
