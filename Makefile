@@ -6,6 +6,9 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 PYTEST := $(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
 
+# Cargo shares the cores by itself; it would warn of a job server that it cannot reach.
+unexport MAKEFLAGS MFLAGS
+
 # As maturin does: the binding crate is loaded by an interpreter, not linked with one.
 export PYO3_BUILD_EXTENSION_MODULE = 1
 
