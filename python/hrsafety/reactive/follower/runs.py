@@ -154,7 +154,8 @@ class FollowerRun(Table):
     shift : ndarray of shape (n, obstacles, 2)
         Obstacles from their first places, in m.
     contact_obstacle : int or None
-        Index of the obstacle that was touched.
+        Index of the obstacle that was touched, also on the straight way between two periods: `clearance` shows the ends
+        of it only.
     contact_bearing : float or None
         Direction of the touch from the front, counterclockwise, in rad.
     source_distance : float

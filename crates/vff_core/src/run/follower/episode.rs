@@ -183,7 +183,7 @@ impl Follower {
         let drive = VirtualVelocity::new(settings.drive, settings.velocity, step);
         let parts = FollowerParts {
             place: Place {
-                around: Surroundings::of(&scene, self.horizon),
+                around: Surroundings::of(&scene, settings.drive.body_radius, self.horizon),
                 scene,
                 bodies: bodies.clone(),
                 source: Vector2::zeros(),

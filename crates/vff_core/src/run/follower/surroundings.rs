@@ -3,8 +3,9 @@
 use nalgebra::Vector2;
 
 use crate::run::follower::scene::FollowerScene;
+use crate::run::way::Way;
 use crate::world::frame::Frame;
-use crate::world::shape::{PlacedShape, SLACK};
+use crate::world::shape::{PlacedShape, SLACK, Shape};
 
 /// A touch of an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,14 +41,23 @@ pub(super) struct Surroundings {
     /// within the horizon.
     pub least: f64,
     nearest: usize,
+    /// From the center to the nearest one where it was touched, in m, if that was between two looks.
+    passed: Option<Vector2<f64>>,
+    /// Where the robot was at the last look, in m, and when, in s.
+    last: Option<(Vector2<f64>, f64)>,
+    /// Radius of the body in m.
+    body: f64,
     /// No sensor can see anything that is farther from the center, in m.
     horizon: f64,
 }
 
 impl Surroundings {
-    /// The obstacles of a scene at its start, for sensors up to a horizon in m.
-    pub fn of(scene: &FollowerScene, horizon: f64) -> Self {
+    /// The obstacles of a scene at its start, around a body of a radius in m with sensors up to a horizon in m.
+    pub fn of(scene: &FollowerScene, body: f64, horizon: f64) -> Self {
         Self {
+            passed: None,
+            last: None,
+            body,
             shapes: scene
                 .obstacles
                 .iter()
@@ -76,6 +86,9 @@ impl Surroundings {
 
     /// Puts the obstacles where they are; returns the place of the source in m. Who is beyond the
     /// horizon, and farther than the square root of `least_before`, in m^2, is only known to be so.
+    ///
+    /// Since the last look the robot and the obstacles have moved straight: who was touched on the way is the
+    /// nearest one, with the least distance of the way.
     #[inline]
     pub fn look(
         &mut self,
@@ -85,7 +98,9 @@ impl Surroundings {
         least_before: f64,
     ) -> Vector2<f64> {
         self.near.clear();
-        self.least = f64::INFINITY;
+        (self.least, self.passed) = (f64::INFINITY, None);
+        let (from, since) = self.last.unwrap_or((pose.position, time));
+        self.last = Some((pose.position, time));
         let horizon = self.horizon * self.horizon;
         // No root where the horizon is farther anyway: a step takes less than 100 ns.
         let heeded = if SLACK * SLACK * least_before > horizon {
@@ -95,23 +110,41 @@ impl Surroundings {
         };
         let tracks = self.tracks.iter_mut().zip(&mut self.shapes);
         for (index, (obstacle, (track, shape))) in scene.obstacles.iter().zip(tracks).enumerate() {
+            let mut way = Way {
+                shape: shape.shape,
+                from: from - shape.center,
+                to: Vector2::zeros(),
+            };
             if !track.stands {
                 shape.center = obstacle.motion.at(time, &mut track.cursor).position.into();
                 track.stands = time >= track.stands_from;
+                if obstacle.motion.jumps([since, time]) {
+                    way.from = pose.position - shape.center;
+                }
             }
             let away = shape.center - pose.position;
-            let within = heeded + track.extent;
+            way.to = -away;
+            // At least as long as the way.
+            let stride = (way.to - way.from).abs().sum();
+            let within = heeded + track.extent + stride;
             if away.dot(&away) > within * within {
                 continue;
             }
             let to = shape.nearest(pose.position);
             let square = to.dot(&to);
             if square < self.least {
-                self.least = square;
-                self.nearest = index;
+                (self.least, self.nearest, self.passed) = (square, index, None);
             }
             if square <= horizon {
                 self.near.push(*shape);
+            }
+            let may_touch = self.body + stride;
+            if square < may_touch * may_touch
+                && stride > 0.0
+                && let Some((passed, to)) = touch_between(&way, self.body)
+                && passed < self.least
+            {
+                (self.least, self.nearest, self.passed) = (passed, index, Some(to));
             }
         }
         let leader = &scene.leader;
@@ -133,10 +166,27 @@ impl Surroundings {
     pub fn contact(&self, pose: &Frame) -> Touch {
         let nearest = self.shapes.get(self.nearest);
         let to = nearest.map_or(Vector2::zeros(), |shape| shape.nearest(pose.position));
-        let to = pose.inward(to);
+        let to = pose.inward(self.passed.unwrap_or(to));
         Touch {
             obstacle: self.nearest,
             bearing: to.y.atan2(to.x),
         }
     }
+}
+
+/// A touch of a body of a radius in m on the way past an obstacle, unless they touch where the way ends: the least
+/// squared distance in m^2, and the direction of the obstacle where it is first touched.
+#[cold]
+fn touch_between(way: &Way, body: f64) -> Option<(f64, Vector2<f64>)> {
+    let radius = match way.shape {
+        Shape::Disc { radius } => radius,
+        Shape::Rectangle { .. } => 0.0,
+    };
+    let reach = radius + body;
+    if way.offset(1.0).norm() < reach {
+        return None;
+    }
+    let met = way.contact(reach, false)?;
+    let least = (met.least - radius).max(0.0);
+    Some((least * least, -way.offset(met.shares[0])))
 }
