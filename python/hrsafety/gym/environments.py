@@ -115,6 +115,7 @@ class Environments:
         self.states = np.zeros(self.count, dtype=np.uint8)
         self.started = np.zeros(self.count, dtype=np.bool_)
         self.clearances = np.full(self.count, np.inf)
+        self.wall_rescues = np.zeros(self.count, dtype=np.int64)
 
     def _arrays(self) -> dict[str, npt.NDArray[Any]]:
         if self.copy:
@@ -127,6 +128,7 @@ class Environments:
             "states": self.states,
             "started": self.started,
             "clearances": self.clearances,
+            "wall_rescues": self.wall_rescues,
             "metrics": self.scores,
         }
 

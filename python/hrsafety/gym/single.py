@@ -110,7 +110,7 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
         observation : ndarray or dict
             What the robot sees.
         info : dict
-            Outcome and clearance.
+            As of `step`.
         """
         if options is not None and not isinstance(options, Mapping):
             raise InvalidParameterError("options", "be a mapping or None", options)
@@ -138,7 +138,8 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
         terminated, truncated : bool
             Whether the robot has arrived or touched somebody; whether the time is over.
         info : dict
-            ``outcome``, ``clearance`` in m, and ``metrics`` at the end.
+            ``outcome``, ``clearance`` in m, ``wall_rescues``: how often in the episode people were set back at a wall
+            that their model would have led them through, and ``metrics`` at the end.
         """
         given = numbers("action", action)
         if given.shape != (2,):
@@ -157,7 +158,11 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
         return {name: rows[0] for name, rows in found.items()} if isinstance(found, dict) else found[0]
 
     def _info(self) -> dict[str, Any]:
-        return {"outcome": str(OUTCOMES[self._all.states[0]]), "clearance": float(self._all.clearances[0])}
+        return {
+            "outcome": str(OUTCOMES[self._all.states[0]]),
+            "clearance": float(self._all.clearances[0]),
+            "wall_rescues": int(self._all.wall_rescues[0]),
+        }
 
     def render(self) -> Frame | None:
         """Return a picture of the world, if pictures are asked for.

@@ -113,7 +113,7 @@ class CrowdVectorEnv(gymnasium.vector.VectorEnv[Any, npt.NDArray[np.float32], np
         observations : ndarray or dict
             What the robots see.
         infos : dict
-            Outcomes and clearances.
+            As of `step`.
         """
         mask = self._mask(options)
         super().reset(seed=seed if isinstance(seed, int) else None)
@@ -168,7 +168,7 @@ class CrowdVectorEnv(gymnasium.vector.VectorEnv[Any, npt.NDArray[np.float32], np
         terminated, truncated : ndarray of bool, shape (n,)
             Whether a robot has arrived or touched somebody; whether its time is over.
         infos : dict
-            ``outcome``, ``clearance`` in m, ``metrics`` of those that have ended.
+            ``outcome``, ``clearance`` in m, ``wall_rescues`` of the episode, ``metrics`` of those that have ended.
         """
         self._all.step(actions)
         states = self._all.states
@@ -179,13 +179,15 @@ class CrowdVectorEnv(gymnasium.vector.VectorEnv[Any, npt.NDArray[np.float32], np
         return self._all.shown(self._all.observations, self._all.seen[:, 0])
 
     def _infos(self, those: Flags) -> dict[str, Any]:
-        """Return outcomes and clearances of those at the start of an episode."""
+        """Return what is told of those at the start of an episode."""
         outcomes = np.where(those, OUTCOMES[RUNNING], None)
         return {
             "outcome": outcomes,
             "_outcome": those,
             "clearance": np.where(those, self._all.clearances, 0.0),
             "_clearance": those.copy(),
+            "wall_rescues": np.where(those, self._all.wall_rescues, 0),
+            "_wall_rescues": those.copy(),
         }
 
     def _step_infos(self, ended: Flags) -> dict[str, Any]:
@@ -195,6 +197,8 @@ class CrowdVectorEnv(gymnasium.vector.VectorEnv[Any, npt.NDArray[np.float32], np
             "_outcome": everybody,
             "clearance": self._all.clearances.copy(),
             "_clearance": everybody.copy(),
+            "wall_rescues": self._all.wall_rescues.copy(),
+            "_wall_rescues": everybody.copy(),
         }
         if not ended.any():
             return infos
@@ -206,9 +210,11 @@ class CrowdVectorEnv(gymnasium.vector.VectorEnv[Any, npt.NDArray[np.float32], np
             "_outcome": ended.copy(),
             "clearance": np.where(ended, infos["clearance"], 0.0),
             "_clearance": ended.copy(),
+            "wall_rescues": np.where(ended, infos["wall_rescues"], 0),
+            "_wall_rescues": ended.copy(),
         }
         infos["outcome"] = np.where(ended, OUTCOMES[RUNNING], infos["outcome"])
-        infos["clearance"][ended] = np.inf
+        infos["clearance"][ended], infos["wall_rescues"][ended] = np.inf, 0
         infos |= {"final_obs": self._final(ended), "_final_obs": ended.copy()}
         return infos | {"final_info": final | metrics, "_final_info": ended.copy()}
 

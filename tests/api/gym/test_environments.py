@@ -105,10 +105,45 @@ def test_an_observation_holds_what_it_says() -> None:
     np.testing.assert_allclose(people[0], [1.0, 1.0, 0.0, 0.0, np.sqrt(2.0) - 0.6], rtol=1e-6)
     np.testing.assert_array_equal(people[1], 0.0)
     np.testing.assert_array_equal(lidar, 10.0)
-    assert info == {"outcome": "running", "clearance": np.inf}
+    assert info == {"outcome": "running", "clearance": np.inf, "wall_rescues": 0}
     observation, *_ = env.step([1.0, 0.0])
     np.testing.assert_allclose(observation[:6], [1.75, 0.0, 1.0, 0.0, 1.0, 0.05], atol=1e-6)
     np.testing.assert_allclose(observation[6:10], [0.75, 1.0, -1.0, 0.0], atol=1e-6)
+
+
+def through_a_wall(**options: Any) -> nav.crowd.World:
+    """Return somebody whose model leads through a wall, far from a robot."""
+    walker = nav.crowd.Person(start=(0, 0), route=[(6, 0)], model=nav.crowd.Moussaid(), desired_speed=1.34)
+    robot = nav.crowd.CrowdRobot(start=(0, 40), goal=(9, 40), robot=nav.HolonomicRobot(max_speed=1.0))
+    return nav.crowd.World(people=[walker], robots=[robot], walls=[[(3, -5), (3, 5)]], time_limit=8.0, **options)
+
+
+def test_info_counts_who_was_set_back_at_a_wall() -> None:
+    env, ended = gym.CrowdEnv(through_a_wall()), False
+    _, info = env.reset(seed=0)
+    counts = [info["wall_rescues"]]
+    while not ended:
+        *_, terminated, truncated, info = env.step([0.0, 0.0])
+        counts.append(info["wall_rescues"])
+        ended = terminated or truncated
+    alone = replace(through_a_wall(), robots=[])
+    assert counts[0] == 0
+    assert counts == sorted(counts)
+    assert counts[-1] == nav.crowd.simulate_crowd(alone).wall_rescues > 0
+    assert env.reset()[1]["wall_rescues"] == 0
+
+
+def test_many_environments_count_those_of_the_episode_that_has_ended() -> None:
+    envs = gym.CrowdVectorEnv(through_a_wall(), num_envs=2, autoreset_mode="SameStep")
+    _, infos = envs.reset(seed=0)
+    while "final_info" not in infos:
+        before = infos["wall_rescues"]
+        *_, infos = envs.step(np.zeros((2, 2)))
+    last = infos["final_info"]["wall_rescues"]
+    assert (last >= before).all()
+    assert (before > 0).all()
+    assert (infos["wall_rescues"] == 0).all()
+    assert infos["_wall_rescues"].all()
 
 
 def test_axes_of_the_goal_turn_all_vectors() -> None:

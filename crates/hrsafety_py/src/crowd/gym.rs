@@ -45,6 +45,7 @@ pub struct Arrays<'py> {
     states: PyReadwriteArray1<'py, u8>,
     started: PyReadwriteArray1<'py, bool>,
     clearances: PyReadwriteArray1<'py, f64>,
+    wall_rescues: PyReadwriteArray1<'py, i64>,
     metrics: PyReadwriteArray2<'py, f64>,
 }
 
@@ -58,6 +59,7 @@ impl Arrays<'_> {
             states: self.states.as_slice_mut()?,
             started: self.started.as_slice_mut()?,
             clearances: self.clearances.as_slice_mut()?,
+            wall_rescues: self.wall_rescues.as_slice_mut()?,
             metrics: self
                 .metrics
                 .as_slice_mut()?

@@ -46,6 +46,8 @@ pub struct Outputs<'a> {
     pub started: &'a mut [bool],
     /// Least gaps within the step, in m.
     pub clearances: &'a mut [f64],
+    /// How often people were set back at walls in the episode, that has ended where one has.
+    pub wall_rescues: &'a mut [i64],
     /// Metrics of episodes that have ended.
     pub metrics: &'a mut [[f64; METRICS]],
 }
@@ -206,11 +208,15 @@ fn each_block(
         .zip(outputs.final_observations.chunks_exact_mut(size))
         .zip(outputs.seen.iter_mut().zip(outputs.rewards))
         .zip(outputs.states.iter_mut().zip(outputs.started))
-        .zip(outputs.clearances.iter_mut().zip(outputs.metrics))
+        .zip(outputs.clearances.iter_mut().zip(outputs.wall_rescues))
+        .zip(outputs.metrics)
         .map(
             |(
-                ((((environment, observation), last), (seen, reward)), (state, started)),
-                (gap, row),
+                (
+                    ((((environment, observation), last), (seen, reward)), (state, started)),
+                    (gap, rescues),
+                ),
+                row,
             )| Row {
                 environment,
                 observation,
@@ -220,6 +226,7 @@ fn each_block(
                 state,
                 started,
                 clearance: gap,
+                wall_rescues: rescues,
                 metrics: row,
             },
         )

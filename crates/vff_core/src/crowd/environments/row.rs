@@ -18,6 +18,7 @@ pub(super) struct Row<'a> {
     pub state: &'a mut u8,
     pub started: &'a mut bool,
     pub clearance: &'a mut f64,
+    pub wall_rescues: &'a mut i64,
     pub metrics: &'a mut [f64; METRICS],
 }
 
@@ -26,6 +27,12 @@ impl Row<'_> {
         let seen = self.environment.observe(settings, shared, self.observation);
         self.seen[0] = count(seen);
         *self.state = self.environment.state().code();
+        *self.wall_rescues = self.rescues();
+    }
+
+    fn rescues(&self) -> i64 {
+        let rescues = self.environment.simulation().wall_rescues();
+        rescues.try_into().unwrap_or(i64::MAX)
     }
 
     /// Starts the next episode where one has ended in the step before; else tells the robot what to do. Whether
@@ -51,6 +58,7 @@ impl Row<'_> {
     /// Writes what the step has brought.
     pub fn end(&mut self, settings: &Settings, shared: &mut Shared) -> Result<()> {
         let step = self.environment.end(settings);
+        let rescues = self.rescues();
         (*self.reward, *self.clearance) = (step.reward, step.clearance);
         if step.state != State::Running {
             if let Some(found) = self.environment.metrics(settings) {
@@ -65,7 +73,7 @@ impl Row<'_> {
             }
         }
         self.show(settings, shared);
-        *self.state = step.state.code();
+        (*self.state, *self.wall_rescues) = (step.state.code(), rescues);
         Ok(())
     }
 }
