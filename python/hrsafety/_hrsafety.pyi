@@ -1032,7 +1032,7 @@ def hic(time: _Array, acceleration_g: _Array, window: float, interpolate: bool) 
 
 def signal_shape(
     time: _Array, values: _Array, rest: float, window: tuple[float, float]
-) -> tuple[float, float, float, float, float, float, float, int, int, float]:
+) -> tuple[float, float, float, float, float, float, float, int, int, float, _Triple]:
     """Return features of a signal, and the area of the push around a window."""
 
 def moving_average(time: _Array, acceleration_g: _Array, width: float) -> _Triple:

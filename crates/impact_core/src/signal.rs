@@ -11,6 +11,7 @@ mod push;
 mod recorded;
 pub(crate) mod search;
 mod shape;
+mod tops;
 mod windows;
 
 pub use closed_form::{hic_half_sine, hic_square, hic_triangle};

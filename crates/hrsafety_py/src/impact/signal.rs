@@ -60,7 +60,19 @@ pub fn hic(
 }
 
 /// Features of a signal in the order of the stub.
-type Features = (f64, f64, f64, f64, f64, f64, f64, usize, usize, f64);
+type Features = (
+    f64,
+    f64,
+    f64,
+    f64,
+    f64,
+    f64,
+    f64,
+    usize,
+    usize,
+    f64,
+    (f64, f64, f64),
+);
 
 /// Features of a signal, see `signal::Shape`, with the rest looked for over `rest` seconds, and the
 /// area of the push around a window.
@@ -88,6 +100,7 @@ pub fn signal_shape(
         found.rest_samples,
         found.flat,
         area,
+        (found.level, found.after, found.straight),
     ))
 }
 

@@ -2,22 +2,29 @@
 
 use std::ops::Range;
 
+use super::tops::{FLAT, ROUNDING, flat_top, noisy_flat_top};
 use super::{CHECK, check_finite};
 use crate::error::{Result, proceed};
 use numeric::threads::Interrupted;
 
 /// Samples from which a rest is told, at least, if the peak leaves no time for a longer one.
 const SHORTEST_REST: usize = 5;
-/// Equal neighboring samples that make a flat top.
-const FLAT: usize = 3;
-/// Digits below a top within which its levels are counted.
-const FARTHEST: f64 = 200.0;
-/// Digits of the smallest difference between levels, at most.
-const MOST_DIGITS: u8 = 5;
-/// Samples on either side of a flat top from which the smallest step is found.
-const NEIGHBORS: usize = 2048;
-/// Share of the largest value by which equal samples may differ.
-const ROUNDING: f64 = 1e-12;
+/// The slope of a rest counts from so many times its standard error on.
+const SLOPE_ERRORS: f64 = 8.0;
+/// Time at the end of a record over which its level is looked at, in s.
+const END: f64 = 0.05;
+/// Root mean square about the level at the end, as a share of the largest absolute value, at most.
+const END_NOISE: f64 = 0.01;
+/// Samples of that level, at least.
+const END_SAMPLES: usize = 20;
+/// A signal is looked at for straight lines where it is above this share of its largest value.
+const PULSE: f64 = 0.05;
+/// Slopes that differ by less than this share of the largest value per step are equal.
+const EQUAL_SLOPES: f64 = 1e-6;
+/// Ends of straight lines of one length, at least: a triangle has three.
+const FEWEST_ENDS: usize = 4;
+/// Samples for each straight line, at least.
+const SAMPLES_OF_LINE: usize = 3;
 
 /// Features of a signal. Peak and width are those of the largest value; a signal that is negative
 /// throughout has none.
@@ -41,6 +48,12 @@ pub struct Shape {
     pub noise: f64,
     /// Samples from which both are told.
     pub rest_samples: usize,
+    /// That level at the peak, along the slope of these samples where noise alone does not make it; else the same.
+    pub level: f64,
+    /// Median of the end of the record if it is after the push and quiet; else NaN.
+    pub after: f64,
+    /// Length of the straight lines, all of one length, of which the push is made, in s; else 0.
+    pub straight: f64,
     /// Equal neighboring samples at the largest value, 0 if they are no flat top.
     pub flat: usize,
 }
@@ -65,6 +78,9 @@ pub fn shape_until(
         rest: f64::NAN,
         noise: f64::NAN,
         rest_samples: 0,
+        level: f64::NAN,
+        after: f64::NAN,
+        straight: 0.0,
         flat: 0,
     };
     let (mut lowest, mut highest) = (0, 0);
@@ -86,13 +102,42 @@ pub fn shape_until(
     }
     if found.most > 0.0 {
         (found.width, found.step) = half_width(time, value, highest, interrupted)?;
-        found.flat = flat_top(value, found.most, interrupted)?;
+        found.straight = straight_lines(time, value, highest, interrupted)?;
     }
     let (peak, sign) = if -found.least > found.most {
         (lowest, -1.0)
     } else {
         (highest, 1.0)
     };
+    let quiet = quiet_part(time, value, peak, sign, rest, interrupted)?;
+    if !quiet.is_empty() {
+        (found.rest, found.noise) = level_of(&value[quiet.clone()]);
+        found.rest_samples = quiet.len();
+        let (times, values) = (&time[quiet.clone()], &value[quiet]);
+        let slope = slope_of(times, values);
+        found.level =
+            found.rest + slope * (time[peak] - f64::midpoint(times[0], times[times.len() - 1]));
+    }
+    if found.most > 0.0 {
+        found.flat = flat_top(value, found.most, interrupted)?;
+        if found.flat == 0 {
+            found.flat = noisy_flat_top(value, found.most, found.noise, interrupted)?;
+        }
+    }
+    found.after = level_at_end(time, value, peak, sign);
+    Ok(found)
+}
+
+/// The quietest samples before the signal last rises through half of its largest absolute value; none if there are none.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // bounded by the number of samples
+fn quiet_part(
+    time: &[f64],
+    value: &[f64],
+    peak: usize,
+    sign: f64,
+    rest: f64,
+    interrupted: Interrupted<'_>,
+) -> Result<Range<usize>> {
     let half = 0.5 * sign * value[peak];
     // The push itself is no rest, however slowly it rises: it begins at the last zero before the peak, or, of
     // signals that are never zero, at half of the peak at the latest.
@@ -101,31 +146,150 @@ pub fn shape_until(
     let rising = last(half, peak).map_or(0, |place| place + 1);
     let mean_step = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
     let wanted = (rest / mean_step).round().max(SHORTEST_REST as f64);
-    let quiet = match last(0.0, rising) {
-        Some(zero) if wanted > (zero + 1) as f64 => {
-            // The quieter half of what there is.
-            let samples = zero.div_ceil(2).max(SHORTEST_REST).min(zero + 1);
-            quietest(&value[..=zero], samples, interrupted)?
-        }
-        Some(zero) => quietest(&value[..=zero], wanted as usize, interrupted)?,
-        None if wanted <= rising as f64 => {
-            quietest(&value[..rising], wanted as usize, interrupted)?
-        }
-        None => 0..0,
+    let Some(zero) = last(0.0, rising) else {
+        return if wanted <= rising as f64 {
+            quietest(&value[..rising], wanted as usize, interrupted)
+        } else {
+            Ok(0..0)
+        };
     };
-    let mut rested = value[quiet].to_vec();
-    if !rested.is_empty() {
-        let middle = rested.len() / 2;
-        let (_, median, _) = rested.select_nth_unstable_by(middle, f64::total_cmp);
-        found.rest = *median;
-        let squares: f64 = rested
-            .iter()
-            .map(|value| (value - found.rest).powi(2))
-            .sum();
-        found.noise = (squares / rested.len() as f64).sqrt();
-        found.rest_samples = rested.len();
+    let before = |from: usize| {
+        let there = zero + 1 - from;
+        let samples = if wanted > there as f64 {
+            // The quieter half of what there is.
+            there.div_ceil(2).max(SHORTEST_REST).min(there)
+        } else {
+            wanted as usize
+        };
+        let found = quietest(&value[from..=zero], samples, interrupted)?;
+        Ok(from + found.start..from + found.end)
+    };
+    // Equal samples before a jump to another level were put before the record.
+    let padded = value[..=zero]
+        .iter()
+        .take_while(|next| (**next - value[0]).abs() <= ROUNDING * half.abs())
+        .count();
+    if padded >= SHORTEST_REST && zero + 1 >= padded + FLAT {
+        let recorded = before(padded)?;
+        let (level, _) = level_of(&value[recorded.clone()]);
+        let (jump, away) = (value[padded] - value[0], level - value[0]);
+        // Away from the peak: towards it rises the push itself.
+        if sign * away < 0.0 && jump / away >= 0.5 {
+            return Ok(recorded);
+        }
     }
-    Ok(found)
+    before(0)
+}
+
+/// Median of samples and the root mean square about it.
+fn level_of(value: &[f64]) -> (f64, f64) {
+    let mut sorted = value.to_vec();
+    let middle = sorted.len() / 2;
+    let (_, median, _) = sorted.select_nth_unstable_by(middle, f64::total_cmp);
+    let median = *median;
+    let squares: f64 = value.iter().map(|value| (value - median).powi(2)).sum();
+    (median, (squares / value.len() as f64).sqrt())
+}
+
+/// Slope of samples, 0 where noise alone may make it.
+fn slope_of(time: &[f64], value: &[f64]) -> f64 {
+    let samples = time.len() as f64;
+    if time.len() < SHORTEST_REST {
+        return 0.0;
+    }
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / samples;
+    let (center, level) = (mean(time), mean(value));
+    let pairs = || {
+        time.iter()
+            .zip(value)
+            .map(|(time, value)| (time - center, value - level))
+    };
+    let spread: f64 = pairs().map(|(time, _)| time * time).sum();
+    let slope = pairs().map(|(time, value)| time * value).sum::<f64>() / spread;
+    let left: f64 = pairs()
+        .map(|(time, value)| (value - slope * time).powi(2))
+        .sum();
+    let error = (left / ((samples - 2.0) * spread)).sqrt();
+    if slope.abs() > SLOPE_ERRORS * error {
+        slope
+    } else {
+        0.0
+    }
+}
+
+/// Median of the end of a record, if that is after the push and quiet; else NaN.
+fn level_at_end(time: &[f64], value: &[f64], peak: usize, sign: f64) -> f64 {
+    let from = time.partition_point(|now| *now < time[time.len() - 1] - END);
+    let height = sign * value[peak];
+    let fallen = value[peak..]
+        .iter()
+        .position(|value| sign * value <= 0.5 * height);
+    let after_push = fallen.is_some_and(|place| peak + place < from);
+    if !after_push || value.len() < from + END_SAMPLES {
+        return f64::NAN;
+    }
+    let (level, noise) = level_of(&value[from..]);
+    if noise <= END_NOISE * height {
+        level
+    } else {
+        f64::NAN
+    }
+}
+
+/// Length of the straight lines, all of one length, of which the push around a peak is made, in s; 0 if it is not.
+fn straight_lines(
+    time: &[f64],
+    value: &[f64],
+    peak: usize,
+    interrupted: Interrupted<'_>,
+) -> Result<f64> {
+    let least = PULSE * value[peak];
+    let (mut first, mut last) = (peak, peak);
+    while first > 0 && value[first] > least {
+        first -= 1;
+    }
+    while last + 1 < value.len() && value[last] > least {
+        last += 1;
+    }
+    let slope = |cell: usize| (value[cell + 1] - value[cell]) / (time[cell + 1] - time[cell]);
+    // Two samples next to each other at which the slope changes are one end of a line that lies between them.
+    let (mut ends, mut single): (Vec<f64>, _) = (Vec::new(), None);
+    for place in first.max(1)..last {
+        if place % CHECK == 0 {
+            proceed(interrupted)?;
+        }
+        let longer = (time[place + 1] - time[place]).max(time[place] - time[place - 1]);
+        if (slope(place) - slope(place - 1)).abs() * longer <= EQUAL_SLOPES * value[peak] {
+            continue;
+        }
+        match ends.last_mut() {
+            Some(end) if single == Some(place - 1) => {
+                *end = f64::midpoint(*end, time[place]);
+                single = None;
+            }
+            _ => {
+                ends.push(time[place]);
+                single = Some(place);
+            }
+        }
+        // Not even the fewest samples for each line are left.
+        if ends.len() > FEWEST_ENDS && SAMPLES_OF_LINE * ends.len() > last - first {
+            return Ok(0.0);
+        }
+    }
+    if ends.len() < FEWEST_ENDS || SAMPLES_OF_LINE * ends.len() > last - first {
+        return Ok(0.0);
+    }
+    let lengths = || ends.windows(2).map(|pair| pair[1] - pair[0]);
+    let (shortest, longest) = lengths().fold((f64::INFINITY, 0.0_f64), |(low, high), length| {
+        (low.min(length), high.max(length))
+    });
+    let step = (time[last] - time[first]) / (last - first) as f64;
+    Ok(if longest - shortest <= 1.5 * step {
+        longest
+    } else {
+        0.0
+    })
 }
 
 /// Time above half of the peak, with straight lines between samples, and the longest step in it.
@@ -166,72 +330,6 @@ fn half_width(
         last += 1;
     }
     Ok((end - begin, step))
-}
-
-/// Samples of the longest flat top at the largest value, entered and left inside the record.
-fn flat_top(value: &[f64], most: f64, interrupted: Interrupted<'_>) -> Result<usize> {
-    let level = most * (1.0 - ROUNDING);
-    let (mut longest, mut begun) = (0..0, None);
-    for start in (0..value.len()).step_by(CHECK) {
-        proceed(interrupted)?;
-        let part = &value[start..value.len().min(start + CHECK)];
-        for (place, &value) in part.iter().enumerate() {
-            if value >= level {
-                begun.get_or_insert(start + place);
-            } else if let Some(first) = begun.take() {
-                let run: Range<usize> = first..start + place;
-                if first > 0 && run.len() > longest.len() {
-                    longest = run;
-                }
-            }
-        }
-    }
-    if longest.len() < FLAT {
-        return Ok(0);
-    }
-    // Levels below the top, each once.
-    let around = longest.start.saturating_sub(NEIGHBORS)..value.len().min(longest.end + NEIGHBORS);
-    let mut below: Vec<f64> = value[around].iter().map(|value| most - value).collect();
-    below.sort_unstable_by(f64::total_cmp);
-    below.dedup_by(|next, kept| *next - *kept <= ROUNDING * most);
-    let smallest = below.windows(2).map(|pair| pair[1] - pair[0]);
-    let smallest = smallest.fold(f64::INFINITY, f64::min);
-    // A smooth top that is rounded to a digit is a parabola, which hides less than a digit in these samples.
-    let length = longest.len();
-    let samples = length as f64;
-    let hidden = 4.0 * samples * (2.0 * samples + 1.0) / (samples - 1.0).powi(2) + 1.0;
-    let [left, right] = [
-        longest.start.saturating_sub(length),
-        (longest.end + length - 1).min(value.len() - 1),
-    ];
-    let fall = most - value[left].max(value[right]);
-    // Where no two levels are one digit apart the smallest difference is some digits.
-    let digit = (1..=MOST_DIGITS)
-        .map(|digits| smallest / f64::from(digits))
-        .find(|digit| multiples(&below[1..], *digit));
-    let jumps = digit.is_none_or(|digit| fall >= hidden * digit);
-    Ok(if jumps && fall > hidden * ROUNDING * most {
-        length
-    } else {
-        0
-    })
-}
-
-/// Whether rising numbers are multiples of a digit, as far as that can be told.
-fn multiples(numbers: &[f64], smallest: f64) -> bool {
-    let (mut digit, mut whole, mut all) = (smallest, 0, 0);
-    for &number in numbers
-        .iter()
-        .take_while(|number| **number < FARTHEST * smallest)
-    {
-        let nearest = (number / digit).round();
-        all += 1;
-        if (number / digit - nearest).abs() < 0.05 && nearest > 0.0 {
-            whole += 1;
-            digit = number / nearest;
-        }
-    }
-    10 * whole >= 9 * all
 }
 
 /// The samples next to each other that vary least; the first of several.
@@ -315,8 +413,70 @@ mod tests {
             .map(|index| (60.0 * (f64::from(index) * 0.008).sin()).round())
             .collect();
         assert_eq!(shape(&rounded).flat, 0);
-        // Neither at the ends of a record, nor a rectangle, whose two values have but one step.
+        // The ends of a record are none. A rectangle is one: no head is that fast.
         assert_eq!(shape(&[40.0, 40.0, 40.0, 20.0, 19.0]).flat, 0);
-        assert_eq!(shape(&[0.0, 40.0, 40.0, 40.0, 0.0]).flat, 0);
+        assert_eq!(shape(&[0.0, 40.0, 40.0, 40.0, 0.0]).flat, 3);
+    }
+    #[test]
+    fn a_flat_top_with_noise_is_one() {
+        let noise = |index: u32| 0.2 * f64::from((index * 7919) % 13) / 13.0 - 0.1;
+        let record = |top: f64| -> Vec<f64> {
+            let pulse = |index: u32| 60.0 * (f64::from(index.saturating_sub(50)) * 0.02).sin();
+            let value = |index| {
+                if index < 207 {
+                    pulse(index).max(0.0).min(top)
+                } else {
+                    0.0
+                }
+            };
+            (0..300).map(|index| value(index) + noise(index)).collect()
+        };
+        assert!(shape(&record(50.0)).flat > 30);
+        assert_eq!(shape(&record(100.0)).flat, 0);
+    }
+
+    #[test]
+    fn a_slope_of_the_rest_is_followed_to_the_peak() {
+        let mut value: Vec<f64> = (0..20).map(|index| -0.1 * f64::from(index)).collect();
+        value.extend([10.0, 40.0, 10.0, -2.0]);
+        let found = shape(&value);
+        assert_eq!(found.rest_samples, 10);
+        assert!((found.level - -2.1).abs() < 0.1, "{}", found.level);
+        let flat = shape(&[0.0, -0.1, 0.1, 0.0, -0.1, 0.1, 40.0, 0.0]);
+        assert_eq!(flat.level.to_bits(), flat.rest.to_bits());
+    }
+
+    #[test]
+    fn zeros_put_before_a_record_are_no_rest() {
+        let mut value = vec![0.0; 30];
+        value.extend([-5.0, -5.1, -4.9, -5.0, -5.1, -4.9, 20.0, 50.0, 20.0, -5.0]);
+        assert!((shape(&value).rest - -5.0).abs() < 0.2);
+    }
+
+    #[test]
+    fn straight_lines_between_samples_are_told_from_samples() {
+        let coarse = [0.0, 0.0, 30.0, 55.0, 40.0, 10.0, 0.0, 0.0];
+        let fine: Vec<f64> = (0..70)
+            .map(|index| {
+                let (cell, share) = (index / 10, f64::from(index as u32 % 10) / 10.0);
+                coarse[cell] + share * (coarse[cell + 1] - coarse[cell])
+            })
+            .collect();
+        assert!((shape(&fine).straight - 0.01).abs() < 1e-12);
+        let smooth: Vec<f64> = (0..70)
+            .map(|index| 9.0 * (f64::from(index) * 0.045).sin())
+            .collect();
+        assert_eq!(shape(&smooth).straight, 0.0);
+        assert_eq!(shape(&coarse).straight, 0.0);
+    }
+
+    #[test]
+    fn the_level_at_the_end_is_told_if_it_is_quiet() {
+        let mut value = vec![0.0; 20];
+        value.extend([20.0, 50.0, 20.0]);
+        value.extend([-5.0; 60]);
+        assert_eq!(shape(&value).after, -5.0);
+        value.extend([-5.0, 5.0].repeat(30));
+        assert!(shape(&value).after.is_nan());
     }
 }

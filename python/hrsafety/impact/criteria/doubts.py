@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import NamedTuple, Self
 
+import numpy as np
+
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array
 from hrsafety.plausibility import ResultWarning, issue, unsafe_doubts
@@ -18,6 +20,12 @@ FORCE_REST = 0.02
 
 # A rest away from zero by this share of the peak: HIC goes with the power 2.5 of the acceleration.
 _OFFSET = 0.02
+# The same where it makes loads smaller: 1 % of the peak takes 3 % of the HIC of a half sine.
+_LOWERED = 0.01
+# Medians of noise stay within this many times its rms over the square root of the samples.
+_MEDIAN_ERRORS = 5.0
+# A level after the push that is lower than before it by this share of the peak: the channel has drifted.
+_DRIFT = 0.05
 # The same where less than five samples tell it.
 _OFFSET_OF_FEW = 0.05
 _FEW = 5
@@ -48,6 +56,9 @@ class SignalShape(NamedTuple):
         Equal neighboring samples at the largest value; 0 if they are no flat top.
     area : float
         Of the push around the window, in the unit of the signal times s.
+    levels : tuple of float
+        The rest extended to the peak along its slope; the level at the end of the record, NaN unless that is quiet and
+        after the push; and the length of the straight lines of which the push is made, in s, 0 if it is not.
     """
 
     least: float
@@ -60,6 +71,7 @@ class SignalShape(NamedTuple):
     rest_samples: int
     flat: int
     area: float
+    levels: tuple[float, float, float]
 
     @classmethod
     def of(cls, time: Array, values: Array, window: tuple[float, float], rest: float = REST) -> Self:
@@ -72,22 +84,44 @@ class SignalShape(NamedTuple):
         return max(self.most, -self.least)
 
     @property
+    def sampled(self) -> float:
+        """Longest time between true samples of the peak, in s."""
+        return max(self.step, self.levels[2])
+
+    @property
     def is_sound(self) -> bool:
         """Whether nothing is doubtful: nearly always, and quickly told."""
+        level, after, _ = self.levels
         return (
             self.most > 0.0
             and -self.least <= self.most
             and self.flat == 0
-            and self.width >= _SAMPLES_OF_WIDTH * self.step
-            and not abs(self.rest) > _OFFSET * self.most
+            and self.width >= _SAMPLES_OF_WIDTH * self.sampled
+            and not abs(self.rest) > _LOWERED * self.most
+            and not level < -_LOWERED * self.most
+            and not after < -_LOWERED * self.most
         )
 
 
-def cut_off(name: str, unit: str, values: Array, shape: SignalShape) -> Iterator[ResultWarning]:
-    """Give the doubt that a record does not hold the whole push."""
+def cut_off(
+    name: str, unit: str, time: Array, values: Array, shape: SignalShape, start: float | None = None
+) -> Iterator[ResultWarning]:
+    """Give the doubt that a record, or what of it is judged, does not hold the whole push.
+
+    A first contact that is told may be a step up, but what comes before it may not be as high already.
+    """
     least = _INSIDE * shape.most
-    if values[0] > least > 0.0:
-        yield ResultWarning("starts_inside", name, _cut(name, unit, "begins", values[0], shape))
+    if start is None:
+        if values[0] > least > 0.0:
+            yield ResultWarning("starts_inside", name, _cut(name, unit, "begins", values[0], shape))
+    else:
+        before = values[: np.searchsorted(time, start, side="right")]
+        if before[-1] > least > 0.0:
+            message = (
+                f"{name} is at {before[-1]:g} {unit} already before start ({start:g} s), more than half of its largest "
+                f"value of {shape.most:g} {unit}: the first contact is earlier"
+            )
+            yield ResultWarning("starts_inside", "start", message)
     if values[-1] > least > 0.0:
         yield ResultWarning("ends_inside", name, _cut(name, unit, "ends", values[-1], shape))
 
@@ -117,11 +151,13 @@ def measurement_doubts(name: str, unit: str, shape: SignalShape) -> Iterator[Res
             "and the true loads are larger; measure with a larger range"
         )
         yield ResultWarning("saturated", name, message)
-    if shape.width < _SAMPLES_OF_WIDTH * shape.step:
+    if shape.width < _SAMPLES_OF_WIDTH * shape.sampled:
+        steps = f"time has steps of {shape.step:g} s where {name} is"
+        if shape.sampled > shape.step:
+            steps = f"{name} is made of straight lines of {shape.sampled:g} s between its true samples, and is"
         message = (
-            f"time has steps of {shape.step:g} s where {name} is above half of its peak for {shape.width:g} s: with "
-            f"less than {_SAMPLES_OF_WIDTH:g} steps the peak and the criteria are too low; sample faster, or filter "
-            "single peaks of noise"
+            f"{steps} above half of its peak for {shape.width:g} s: with less than {_SAMPLES_OF_WIDTH:g} steps "
+            "the peak and the criteria are too low; sample faster, or filter single peaks of noise"
         )
         yield ResultWarning("coarse_sampling", "time", message)
 
@@ -144,20 +180,33 @@ def mirrored_doubt(
 
 
 def _offset(name: str, unit: str, shape: SignalShape) -> Iterator[ResultWarning]:
-    peak = shape.peak
-    share = _OFFSET if shape.rest_samples >= _FEW else _OFFSET_OF_FEW
+    peak, positive = shape.peak, shape.most == shape.peak
+    level, after, _ = shape.levels
+    few = _OFFSET_OF_FEW if shape.rest_samples < _FEW else 0.0
+    lowest = min(shape.rest, level)
+    # What is subtracted from a positive pulse makes every load smaller.
+    error = _MEDIAN_ERRORS * shape.noise / max(shape.rest_samples, 1) ** 0.5
+    if positive and lowest < -max(max(_LOWERED, few) * peak, error):
+        where = f"rests at {shape.rest:g} {unit} before its peak of {peak:g} {unit}"
+        if level < shape.rest:
+            where = f"drifts to {level:g} {unit} at its peak of {peak:g} {unit}"
+        yield _offset_doubt(name, where)
     # A rise that begins at zero has a median of 1.7 times its rms about it.
-    if not abs(shape.rest) > max(share * peak, 2.0 * shape.noise):
-        return
-    # What is added to a positive pulse makes every load larger; a level that wanders may be the foot of the pulse.
-    safe = shape.rest > 0.0 and shape.most == peak
-    if safe and shape.noise > _OFFSET * peak:
-        return
+    elif abs(shape.rest) > max(max(_OFFSET, few) * peak, 2.0 * shape.noise):
+        safe = shape.rest > 0.0 and positive
+        # A level that wanders may be the foot of the pulse.
+        if not safe or shape.noise <= _OFFSET * peak:
+            yield _offset_doubt(name, f"rests at {shape.rest:g} {unit} before its peak of {peak:g} {unit}", safe)
+    elif positive and after < (0.0 if shape.rest != shape.rest else shape.rest) - _DRIFT * peak:
+        yield _offset_doubt(name, f"stays at {after:g} {unit} after its peak of {peak:g} {unit}")
+
+
+def _offset_doubt(name: str, where: str, safe: bool = False) -> ResultWarning:
     message = (
-        f"{name} rests at {shape.rest:g} {unit} before its peak of {peak:g} {unit}: an offset of the channel, or "
-        "gravity, which every criterion contains; subtract the mean of a part at rest"
+        f"{name} {where}: an offset or a drift of the channel, or gravity, which every criterion contains; subtract "
+        "the mean of a part at rest"
     )
-    yield ResultWarning("offset", name, message, safe_side=safe)
+    return ResultWarning("offset", name, message, safe_side=safe)
 
 
 def issued(found: tuple[ResultWarning, ...], stacklevel: int = 3) -> tuple[ResultWarning, ...]:

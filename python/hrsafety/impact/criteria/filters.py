@@ -176,7 +176,12 @@ def _sampling_rate(time: Array) -> float:
     steps = np.diff(time)
     step = (time[-1] - time[0]) / (len(time) - 1)
     if not (steps > 0.0).all():
-        raise InvalidParameterError("time", "rise from sample to sample", float(time[1:][steps <= 0.0][0]))
+        raise InvalidParameterError(
+            "time",
+            "rise from sample to sample",
+            float(time[1:][steps <= 0.0][0]),
+            "times that were rounded to one another are numpy.arange(n) / rate",
+        )
     if np.abs(steps - step).max() > _UNEVEN * step:
         # Rounded times stay near an even grid, however many there are; a clock that wanders, or a gap, does not.
         count = np.arange(len(time)) - 0.5 * (len(time) - 1)

@@ -180,8 +180,7 @@ def _outside(found: ImpactMetrics, whole: dict[str, float]) -> Iterator[ResultWa
 def _measured(record: _Record, found: ImpactMetrics) -> Iterator[ResultWarning]:
     """Give what is doubtful about how the signals were measured."""
     time, signal, shape = record.time, record.acceleration_g, record.shape
-    if record.start is None:
-        yield from cut_off("acceleration_g", "g", signal, shape)
+    yield from cut_off("acceleration_g", "g", time, signal, shape, record.start)
     yield from measurement_doubts("acceleration_g", "g", shape)
     yield from hic_doubts(time, signal, shape, max(found.hic15, 0.0), INJURY_WINDOW, True)
     if record.start is not None and shape.most > found.peak_head_acceleration_g * _NOTICEABLE:
