@@ -382,6 +382,9 @@ RANGES: dict[str, Range] = {
     "robot_deceleration": Range(0.0, 100.0, "m/s^2", "ten times gravity", "mm/s^2 given for m/s^2"),
     "arm_reach": Range(0.02, 10.0, "m", "a finger to the largest industrial arms", "mm or cm given for m"),
     "arm_moving_mass": Range(0.0, 6000.0, "kg", "nothing to the heaviest industrial arms", "g or t given for kg"),
+    "wheel_radius": Range(0.01, 1.0, "m", "casters to wheels of trucks", "mm or cm given for m"),
+    "half_track": Range(0.02, 3.0, "m", "palm-sized robots to wide trucks", "mm or cm given for m"),
+    "axle_offset": Range(0.0, 3.0, "m", "above the axle to a long truck", "mm or cm given for m"),
     "damping_ratio": Range(
         0.0, 10.0, "", "0.11 for the foams of Zeng (2011)", "a damping in N s/m given for its ratio"
     ),

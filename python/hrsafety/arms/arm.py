@@ -14,7 +14,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, checked_text, count, flag, positive, sequence, thread_count, word
 from hrsafety._bounds import MOST_MASSES, MOST_POINT_STATES
 from hrsafety._records import dataclass
-from hrsafety.arms.doubts import doubts_of_point, for_rule
+from hrsafety.arms.doubts import doubts_of_point, doubts_of_poses, for_rule
 from hrsafety.arms.facts import Facts
 from hrsafety.arms.inputs import (
     armature_of,
@@ -269,9 +269,9 @@ class Arm(Facts):
             direction=scaled / np.linalg.norm(scaled, axis=-1, keepdims=True),
             effective_mass=mass,
             iso_mass=self.iso_mass,
-            extremes=self._extremes(states, points),
+            extremes=self._extremes(states, poses, points),
             mobility=states["mobility"],
-            warnings=(*self.warnings, *doubts_of_point(points, self.reach)),
+            warnings=(*self.warnings, *self._placed(poses, points)),
         )
 
     @telling()
@@ -297,7 +297,7 @@ class Arm(Facts):
             Masses and directions; the worst mass is inf where a direction is unbounded.
         """
         poses, points = poses_of(joints, self.joint_names), vectors_of("point", point)
-        return self._extremes(self._states(poses, points, link, check_limits, threads), points)
+        return self._extremes(self._states(poses, points, link, check_limits, threads), poses, points)
 
     def mobility(
         self,
@@ -409,11 +409,9 @@ class Arm(Facts):
             motor changes. With the larger one of both that is where the directional mass is below a third of it.
         """
         word("rule", rule, RULES)
-        points = vectors_of("point", point)
-        mass = self._along(
-            poses_of(joints, self.joint_names), points, vectors_of("direction", direction), link, check_limits, threads
-        )
-        doubts = (*for_rule(self.warnings, rule, mass, self.iso_mass), *doubts_of_point(points, self.reach))
+        poses, points = poses_of(joints, self.joint_names), vectors_of("point", point)
+        mass = self._along(poses, points, vectors_of("direction", direction), link, check_limits, threads)
+        doubts = (*for_rule(self.warnings, rule, mass, self.iso_mass), *self._placed(poses, points))
         chosen = mass_by_rule(rule, mass, self.iso_mass)
         return EffectiveMass(chosen if chosen.ndim else float(chosen), rule, self.iso_mass, doubts)
 
@@ -471,11 +469,16 @@ class Arm(Facts):
         states = self._native.point_states(given)
         return {name: values.reshape((*shape, *values.shape[1:])) for name, values in states.items()}
 
-    def _extremes(self, states: dict[str, Array], points: Array) -> Extremes:
+    def _placed(self, poses: Array, points: Array) -> tuple[ResultWarning, ...]:
+        """Return the doubts about poses and points."""
+        turned = doubts_of_poses(poses, self.joint_names, self.joint_kinds)
+        return (*turned, *doubts_of_point(points, self.reach))
+
+    def _extremes(self, states: dict[str, Array], poses: Array, points: Array) -> Extremes:
         return Extremes(
             worst_mass=states["worst_mass"],
             worst_direction=states["worst_direction"],
             least_mass=states["least_mass"],
             least_direction=states["least_direction"],
-            warnings=(*self.warnings, *doubts_of_point(points, self.reach)),
+            warnings=(*self.warnings, *self._placed(poses, points)),
         )

@@ -10,17 +10,18 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array
+from hrsafety.arms.link_doubts import FAR, SMALL, links_with_verb, several, subject_of
 from hrsafety.arms.payload import Payload
-from hrsafety.plausibility import ResultWarning, implausible
+from hrsafety.plausibility import ResultWarning
 
 __all__ = [
     "DIRECTIONAL",
     "NO_MOTOR_INERTIA",
-    "doubts_of_links",
     "doubts_of_motors",
     "doubts_of_payloads",
     "doubts_of_plate",
     "doubts_of_point",
+    "doubts_of_poses",
     "doubts_of_reading",
     "for_rule",
     "governs",
@@ -31,28 +32,14 @@ NO_MOTOR_INERTIA = "no motor inertia given{}: effective masses are lower bounds,
 DIRECTIONAL = frozenset({"no_motor_inertia", "armature_suspicious", "inertia_projected"})
 """Doubts about the mass along a direction that do not touch the mass of ISO/TS 15066."""
 
-SMALL = 0.01
-"""Below this share of the moving mass a link is small, below this share of what its joint moves a motor."""
-DENSITIES = (300.0, 8000.0)
-"""Plausible densities of links in kg/m^3: hollow castings to solid steel."""
-AROUND = 0.1
-"""Collision shapes around what is seen of a link may be so much less dense."""
-GYRATIONS = (0.1, 0.6)
-"""Plausible radii of gyration as shares of the diagonal of a shape."""
-ALIKE = 3
-"""So many links with one mass and one inertia on a way from the base outwards are no coincidence."""
-LIGHT = 0.5
-REACHING = 0.3
-"""An arm that reaches farther than this, in m, is heavier than `LIGHT`, in kg."""
-SLENDER = 1.0
-"""Moving mass over reach cubed, in kg/m^3, below which no arm is: the lightest of a hundred real ones have 3."""
 MOST_MOTOR = 10.0
 """A motor inertia of so many times the largest inertia that any joint moves is hardly meant."""
-FAR = 1.0
-"""Farther from its link, in m, a payload is hardly meant; a point neither, unless the arm reaches farther."""
+LEAST_PAYLOAD = 0.005
+"""A payload below this, in kg, is hardly worth telling."""
+BEYOND_TURN = 7.0
+"""Joints that turn are hardly beyond this, in rad."""
 OF_PLATE = (0.85, 1.15)
 """Sum of all links as a share of the type plate that is plausible; of the moving links half of it."""
-_NAMES = 4
 
 
 def governs(rule: str, directional: Any, iso: float) -> npt.NDArray[np.bool_]:
@@ -138,7 +125,7 @@ def doubts_of_motors(
         yield ResultWarning(
             "armature_suspicious",
             f"armature[{first!r}]",
-            f"motor inertia of {_several(small)} is below 1 % of the inertia that the joint moves ({first}: "
+            f"motor inertia of {several(small)} is below 1 % of the inertia that the joint moves ({first}: "
             f"{given[first]:g} of {own[first]:.3g} kg m^2): on the side of the rotor? It has to be multiplied by the "
             "square of the gear ratio; or has the joint no motor?",
         )
@@ -149,167 +136,10 @@ def doubts_of_motors(
         if large:
             first = large[0]
             message = (
-                f"motor inertia of {_several(large)} is more than ten times what any joint moves ({first}: "
+                f"motor inertia of {several(large)} is more than ten times what any joint moves ({first}: "
                 f"{given[first]:g}, at most {most:.3g} {unit}): kg cm^2 or g m^2 given for kg m^2?"
             )
             yield ResultWarning("implausible", f"armature[{first!r}]", message, safe_side=True)
-
-
-def doubts_of_links(facts: Mapping[str, Any]) -> Iterator[ResultWarning]:
-    """Return why masses and inertias of links may be no data.
-
-    Parameters
-    ----------
-    facts : mapping
-        Of the native arm.
-
-    Yields
-    ------
-    ResultWarning
-        ``link_without_mass``, ``suspicious_link``, ``placeholder_inertial``, ``density``, ``base_assumed_fixed``,
-        ``implausible``.
-    """
-    moved = np.asarray(facts["moved"], dtype=bool)
-    if not moved.any():
-        return
-    names = np.asarray(facts["link_names"], dtype=object)
-    mass = np.asarray(facts["link_masses"])
-    moving = float(facts["moving_mass"])
-    yield from _without_mass(facts, names, moving)
-    suspicious = np.isin(names, facts["suspicious_links"])
-    if suspicious.any():
-        share = float(mass[suspicious].sum()) / moving
-        message = (
-            f"{_links(names[suspicious])} a radius of gyration below 2 mm: the inertia is hardly real "
-            f"({100 * share:.2g} % of the moving mass)"
-        )
-        yield ResultWarning("suspicious_link", _subject(names[suspicious]), message, safe_side=share < SMALL)
-    yield from _placeholders(facts, names, mass)
-    yield from _densities(facts, names, mass)
-    for joints, what in ((facts["wheels"], "turn without limits like wheels"), (facts["floors"], "slide over a floor")):
-        if joints:
-            message = (
-                f"{_several(joints)} {what}, and the base is taken to stand still: one that rolls has other masses"
-            )
-            yield ResultWarning("base_assumed_fixed", "base", message)
-    reach = float(facts["reach"])
-    if facts["chained"] or reach > 1.0:
-        yield from implausible({"reach": reach}, {"reach": "arm_reach"})
-    heavy = implausible({"moving_mass": moving}, {"moving_mass": "arm_moving_mass"})
-    yield from (replace(each, safe_side=True) for each in heavy if moving > 1.0)
-
-
-def _without_mass(facts: Mapping[str, Any], names: Array, moving: float) -> Iterator[ResultWarning]:
-    without = np.isin(names, facts["links_without_mass"])
-    volume = np.asarray(facts["link_volumes"])[without]
-    # What steel of the size of the shape weighs; a mesh may be of any size.
-    if moving == 0.0:
-        message = "no link that a joint moves has a mass: every mass lacks all that the arm weighs"
-        yield ResultWarning("link_without_mass", "links", message)
-    elif without.any() and not float(volume.sum()) * DENSITIES[1] < SMALL * moving:
-        message = (
-            f"{_links(names[without])} a shape but no mass: without what it weighs masses are too low; "
-            "give its inertial, or take the shape of a mere mark out"
-        )
-        yield ResultWarning("link_without_mass", _subject(names[without]), message)
-    elif facts["massless_joints"]:
-        joints = facts["massless_joints"]
-        message = f"{_several(joints)} moves a part of the arm without a mass: what it weighs is missing"
-        yield ResultWarning("link_without_mass", f"joint[{joints[0]!r}]", message)
-
-
-def _counted(facts: Mapping[str, Any], mass: Array) -> npt.NDArray[np.bool_]:
-    """Return which moving links count: from 1 % of the moving mass on, of many links from half of their mean."""
-    moved = np.asarray(facts["moved"], dtype=bool) & (mass > 0.0)
-    share = min(SMALL, 0.5 / max(int(moved.sum()), 1))
-    return np.asarray(moved & (mass >= share * float(facts["moving_mass"])))
-
-
-def _placeholders(facts: Mapping[str, Any], names: Array, mass: Array) -> Iterator[ResultWarning]:
-    """Return signs of inertials that somebody only filled in."""
-    counted = np.flatnonzero(_counted(facts, mass))
-    moments = np.asarray(facts["link_moments"])
-    signs: list[tuple[Any, str]] = []
-    alike = _alike(facts, counted, mass, moments)
-    if len(alike) >= ALIKE and 2 * len(alike) >= len(counted):
-        what = f"one mass ({mass[alike[0]]:g} kg) and one inertia for {len(alike)} of {len(counted)} links"
-        signs.append((alike, what))
-    even = [index for index in counted if _power_of_ten(moments[index])]
-    if len(counted) > 1 and 2 * len(even) >= len(counted):
-        signs.append((even, f"three equal moments of {moments[even[0]][0]:g} kg m^2"))
-    share = np.sqrt(np.maximum(moments[:, 2], 0.0)[counted] / mass[counted])
-    share /= np.asarray(facts["link_diagonals"])[counted]
-    odd = (share < GYRATIONS[0]) | ((share > GYRATIONS[1]) & np.asarray(facts["link_whole"])[counted])
-    if odd.any():
-        least, most = GYRATIONS
-        what = f"a radius of gyration of {share[odd][0]:.3g} of the diagonal of the shape ({least:g} to {most:g})"
-        signs.append((counted[odd], what))
-    moving, reach = float(facts["moving_mass"]), float(facts["reach"])
-    told = [f"{_links(names[which])} {what}" for which, what in signs]
-    if reach > REACHING and 0.0 < moving < max(LIGHT, SLENDER * reach**3):
-        told.append(f"the moving links weigh {moving:.3g} kg and reach {reach:.3g} m")
-    if told:
-        subject = _subject(names[signs[0][0]]) if signs else "links"
-        yield ResultWarning("placeholder_inertial", subject, f"{'; '.join(told)}: filled in, or in another unit?")
-    far = max(FAR, reach)
-    moved = np.flatnonzero(np.asarray(facts["moved"], dtype=bool))
-    wide = [index for index in moved if moments[index, 2] > far**2 * max(mass[index], SMALL * moving) > 0.0]
-    if wide:
-        message = f"{_links(names[wide])} a radius of gyration above {far:.3g} m: an inertia in another unit?"
-        yield ResultWarning("implausible", _subject(names[wide]), message, safe_side=True)
-
-
-def _alike(facts: Mapping[str, Any], real: npt.NDArray[np.intp], mass: Array, moments: Array) -> list[int]:
-    """Return the largest group of links with one mass and one inertia, if three of them follow each other outwards."""
-    groups: dict[tuple[object, ...], list[int]] = {}
-    for index in real.tolist():
-        largest = float(moments[index, 2])
-        shape = np.round(moments[index] / largest, 9) + 0.0 if largest > 0.0 else np.zeros(3)
-        groups.setdefault((f"{mass[index]:.9e}", f"{largest:.9e}", *shape.tolist()), []).append(index)
-    most = max(groups.values(), key=len, default=[])
-    return most if _in_a_row(facts, most) >= ALIKE else []
-
-
-def _in_a_row(facts: Mapping[str, Any], links: Sequence[int]) -> int:
-    """Return how many of some links, of different joints, lie on one way from the base outwards."""
-    segments, parents = facts["segments"], facts["segment_parents"]
-    chosen = {segments[index] for index in links}
-    most = 0
-    for segment in chosen:
-        length, at = 0, segment
-        while at is not None:
-            length += at in chosen
-            at = parents[at]
-        most = max(most, length)
-    return most
-
-
-def _power_of_ten(moments: Array) -> bool:
-    least, largest = float(moments[0]), float(moments[2])
-    if not least > 0.0 or largest - least > 1e-9 * largest:
-        return False
-    power = np.log10(largest)
-    return bool(abs(power - round(power)) < 1e-9)
-
-
-def _densities(facts: Mapping[str, Any], names: Array, mass: Array) -> Iterator[ResultWarning]:
-    """Return links whose mass does not fit their shape; beside a mesh, primitives may be a part of it, or around it."""
-    volume = np.asarray(facts["link_volumes"])
-    moved = np.asarray(facts["moved"], dtype=bool) & (mass > 0.0)
-    least, most = DENSITIES
-    whole = np.asarray(facts["link_whole"], dtype=bool)
-    bound = np.where(whole, least, AROUND * least)
-    # A light link counts by what it lacks.
-    light = moved & (bound * volume - mass > SMALL * float(facts["moving_mass"]))
-    heavy = _counted(facts, mass) & (mass > most * volume) & whole
-    odd = light | heavy
-    if odd.any():
-        density = float((mass[odd] / volume[odd])[0])
-        message = (
-            f"{_links(names[odd])} a density of {density:.4g} kg/m^3 by shape and mass, outside the plausible "
-            f"{least:g} to {most:g}: mass or shape is no data"
-        )
-        yield ResultWarning("density", _subject(names[odd]), message)
 
 
 def doubts_of_plate(total: float, moving: float, plate: float | None) -> Iterator[ResultWarning]:
@@ -362,6 +192,9 @@ def doubts_of_payloads(payloads: Sequence[Payload], moving: float) -> Iterator[R
             "the masses of the links too low?"
         )
         yield ResultWarning("implausible", "payload.mass", message)
+    elif 0.0 < carried < LEAST_PAYLOAD:
+        message = f"a payload of {carried:g} kg is below {1e3 * LEAST_PAYLOAD:g} g: t given for kg?"
+        yield ResultWarning("implausible", "payload.mass", message)
     for index, each in enumerate(payloads):
         owner = "payload" if len(payloads) == 1 else f"payload[{index}]"
         away = float(np.linalg.norm(each.center))
@@ -371,6 +204,31 @@ def doubts_of_payloads(payloads: Sequence[Payload], moving: float) -> Iterator[R
         if float(np.trace(each.inertia)) > 2.0 * FAR**2 * each.mass > 0.0:
             message = f"{owner}.inertia has a radius of gyration above {FAR:g} m: kg mm^2 or g m^2 given for kg m^2?"
             yield ResultWarning("implausible", f"{owner}.inertia", message, safe_side=True)
+
+
+def doubts_of_poses(poses: Array, names: Sequence[str], kinds: Sequence[str]) -> tuple[ResultWarning, ...]:
+    """Return a warning of joints that are turned too far: degrees make any other pose of the one that was meant.
+
+    Parameters
+    ----------
+    poses : ndarray (..., n)
+        Values in the order of the joints.
+    names, kinds : sequence of str
+        Of the joints, ``"turning"`` or ``"sliding"``.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        One at most.
+    """
+    turning = np.array([kind == "turning" for kind in kinds], dtype=bool)
+    farthest = np.abs(poses).reshape(-1, len(turning)).max(axis=0, initial=0.0)
+    far = np.flatnonzero(turning & (farthest > BEYOND_TURN)).tolist()
+    if not far:
+        return ()
+    named = several([names[index] for index in far])
+    message = f"{named} {'is' if len(far) == 1 else 'are'} at {farthest[far[0]]:g} rad: degrees given for radians?"
+    return (ResultWarning("implausible", "joints", message),)
 
 
 def doubts_of_point(point: object, reach: float) -> tuple[ResultWarning, ...]:
@@ -408,7 +266,7 @@ def doubts_of_reading(facts: Mapping[str, Any]) -> Iterator[ResultWarning]:
     Yields
     ------
     ResultWarning
-        ``inertia_projected``, ``inertia_ignored``, ``attribute_ignored``.
+        ``inertia_projected``, ``inertia_ignored``, ``attribute_ignored``, ``implausible``.
     """
     for serious in (False, True):
         rows = [row for row in facts["projected"] if (row[1] > 0.1) == serious]
@@ -418,31 +276,23 @@ def doubts_of_reading(facts: Mapping[str, Any]) -> Iterator[ResultWarning]:
         if rows:
             name, violation, (before, after) = max(rows, key=lambda row: float(row[1]))
             message = (
-                f"{_links(names)} an inertia that no rigid body has ({name}: {100 * violation:.3g} % of its trace "
-                f"off), computed with the nearest one of a body (trace {before:.4g}, now {after:.4g} kg m^2), "
+                f"{links_with_verb(names)} an inertia that no rigid body has ({name}: {100 * violation:.3g} % of its "
+                f"trace off), computed with the nearest one of a body (trace {before:.4g}, now {after:.4g} kg m^2), "
                 "which lowers no effective mass"
             )
-            yield ResultWarning("inertia_projected", _subject(names), message, safe_side=not (serious and counted))
+            yield ResultWarning("inertia_projected", subject_of(names), message, safe_side=not (serious and counted))
     if facts["not_used"]:
         names = facts["not_used"]
-        message = f"{_links(names)} an inertia that no rigid body has; no joint moves it, so that it is not used"
-        yield ResultWarning("inertia_ignored", _subject(names), message, safe_side=True)
+        message = (
+            f"{links_with_verb(names)} an inertia that no rigid body has; no joint moves it, so that it is not used"
+        )
+        yield ResultWarning("inertia_ignored", subject_of(names), message, safe_side=True)
+    if facts["turned"]:
+        message = (
+            f"rpy of {several(facts['turned'])} is beyond a turn: degrees given for radians? Every mass along a "
+            "direction depends on it"
+        )
+        yield ResultWarning("implausible", "urdf", message)
     if facts["passed_over"]:
-        message = f"attributes that URDF does not have are passed over: {_several(facts['passed_over'])}"
+        message = f"attributes that URDF does not have are passed over: {several(facts['passed_over'])}"
         yield ResultWarning("attribute_ignored", "urdf", message, safe_side=True)
-
-
-def _subject(names: Sequence[str] | Array) -> str:
-    return f"link[{names[0]!r}]" if len(names) == 1 else "links"
-
-
-def _links(names: Sequence[str] | Array) -> str:
-    """Return one or several links with their verb."""
-    quoted = [repr(str(name)) for name in names]
-    return f"link {quoted[0]} has" if len(quoted) == 1 else f"links {_several(quoted)} have"
-
-
-def _several(names: Sequence[str]) -> str:
-    """Return the first of some names, and how many there are beyond."""
-    more = f" and {len(names) - _NAMES} more" if len(names) > _NAMES else ""
-    return ", ".join(names[:_NAMES]) + more

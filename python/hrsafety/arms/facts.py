@@ -8,6 +8,7 @@ import numpy as np
 
 from hrsafety._arguments import Array, Parameters
 from hrsafety.arms import doubts
+from hrsafety.arms.link_doubts import doubts_of_links
 from hrsafety.arms.payload import Payload
 from hrsafety.plausibility import ResultWarning
 
@@ -108,7 +109,7 @@ class Facts(Parameters):
         facts = self._facts
         return (
             *doubts.doubts_of_motors(self.armature, facts, self.free_joints),
-            *doubts.doubts_of_links(facts),
+            *doubts_of_links(facts),
             *doubts.doubts_of_plate(self.total_mass, self.moving_mass, self.type_plate_mass),
             *doubts.doubts_of_payloads(self.payloads, self.moving_mass),
             *doubts.doubts_of_reading(facts),

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, finite, not_negative, pair, positive
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
-from hrsafety.plausibility import ResultWarning
+from hrsafety.plausibility import ResultWarning, implausible
 
 __all__ = ["Base", "DifferentialBase", "HolonomicBase"]
 
 _GYRATIONS = (0.03, 5.0)
+# Shares of the mass of a base that wheels with their motors add: the smallest ones of a heavy base, and far too many.
+_LEAST_WHEELS = 0.001
+_MOST_WHEELS = 10.0
+_SIZES = {"base.wheel_radius": "wheel_radius", "base.half_track": "half_track", "base.offset": "axle_offset"}
 _NO_WHEELS = (
     "no inertia of wheels and motors given: the mass of a base that rolls is a lower bound, on the unsafe side; give "
     "wheel_inertia (with the motor behind its gear, n^2 J_m), wheel_radius and half_track"
@@ -28,6 +34,25 @@ def _odd_inertia(mass: float, inertia: float) -> tuple[ResultWarning, ...]:
         f"{most:g} m: another unit than kg m^2?"
     )
     return (ResultWarning("implausible", "base.inertia", message, safe_side=radius > most),)
+
+
+def _odd_wheels(base: DifferentialBase) -> Iterator[ResultWarning]:
+    """Yield doubts about wheels: none, of another unit, or without the motors that turn them."""
+    if base.wheel_inertia == 0.0 or base.wheel_radius is None or base.half_track is None:
+        yield ResultWarning("no_motor_inertia", "base.wheel_inertia", _NO_WHEELS)
+        return
+    sizes = {"wheel_radius": base.wheel_radius, "half_track": base.half_track}
+    yield from implausible({f"base.{name}": size for name, size in sizes.items()}, _SIZES)
+    share = 2.0 * base.wheel_inertia / base.wheel_radius**2 / base.mass
+    if share < _LEAST_WHEELS:
+        message = (
+            f"wheels make the base heavier by {100.0 * share:.2g} % only, less than {100.0 * _LEAST_WHEELS:g} %: the "
+            "inertia of a wheel without motor, of a rotor before its gear, or another unit than kg m^2?"
+        )
+        yield ResultWarning("armature_suspicious", "base.wheel_inertia", message)
+    elif share > _MOST_WHEELS:
+        message = f"wheels make the base heavier by {100.0 * share:.3g} %: another unit than kg m^2?"
+        yield ResultWarning("implausible", "base.wheel_inertia", message, safe_side=True)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -132,8 +157,8 @@ class DifferentialBase:
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why masses of the base may not be what they seem: without the inertia of its wheels they are too low."""
-        massless = ResultWarning("no_motor_inertia", "base.wheel_inertia", _NO_WHEELS)
-        return (*_odd_inertia(self.mass, self.inertia), *((massless,) if self.wheel_inertia == 0.0 else ()))
+        ahead = implausible({"base.offset": abs(self.offset)}, _SIZES)
+        return (*_odd_inertia(self.mass, self.inertia), *ahead, *_odd_wheels(self))
 
     def effective_mass(self, point: Pair, direction: Pair) -> float:
         """Return the mass at a point about the middle of the axle; inf where the base cannot move.

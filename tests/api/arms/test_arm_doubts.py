@@ -6,6 +6,8 @@ import re
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from api.arms.arm_models import EXAMPLE, INERTIA, INERTIAL, LINKS, TWO, joint, link, robot
 from hrsafety import arms, standards
@@ -143,6 +145,44 @@ def test_collision_shapes_around_a_mesh_may_be_large() -> None:
         assert ("density" in codes(arms.Arm.from_urdf(text, armature=0.1))) is told
 
 
+def test_one_mass_for_every_link_is_a_placeholder_whatever_their_inertias() -> None:
+    same = re.sub(r'<mass value="[^"]*"', '<mass value="1.0"', EXAMPLE)
+    arm = arms.Arm.from_urdf(same, armature=MOTORS)
+    assert "one mass (1 kg)" in doubt(arm, "placeholder_inertial").message
+    one = re.sub(r'<mass value="[^"]*"', '<mass value="1.1"', same, count=1)
+    assert "placeholder_inertial" not in codes(arms.Arm.from_urdf(one, armature=MOTORS))
+
+
+@settings(max_examples=40, deadline=None)
+@given(index=st.integers(0, 5), factor=st.floats(1e-7, 2e-3))
+def test_a_link_without_the_mass_of_its_inertia_is_told(index: int, factor: float) -> None:
+    """One link in t, or with a mass that nobody gave: half of it is missing in the mass of ISO/TS 15066."""
+    places = [match for match in re.finditer(r'<mass value="([^"]*)"', EXAMPLE) if float(match[1]) > 1.0]
+    place = places[index % len(places)]
+    text = f"{EXAMPLE[: place.start(1)]}{factor * float(place[1])!r}{EXAMPLE[place.end(1) :]}"
+    arm = arms.Arm.from_urdf(text, armature=MOTORS)
+    missing = (ARM.moving_mass - arm.moving_mass) / ARM.moving_mass
+    assert unsafe_doubts(arm.warnings) or missing < 0.15
+
+
+def test_directions_in_degrees_are_told() -> None:
+    turned = re.sub(r"(<origin [^>]*?)(/?>)", r'\1 rpy="0 90 0"\2', re.sub(r' rpy="[^"]*"', "", EXAMPLE))
+    arm = arms.Arm.from_urdf(turned, armature=MOTORS)
+    assert "rpy of" in doubt(arm, "implausible").message
+    assert "degrees given for radians" in doubt(arm, "implausible").message
+    quarter = turned.replace('"0 90 0"', '"0 -1.5707963267948966 6.28318530717958"')
+    assert "implausible" not in codes(arms.Arm.from_urdf(quarter, armature=MOTORS))
+
+
+def test_poses_in_degrees_are_told_where_no_limit_refuses_them() -> None:
+    endless = arms.Arm.from_urdf(EXAMPLE.replace('type="revolute"', 'type="continuous"'), armature=MOTORS)
+    for call in (endless.effective_mass, endless.robot_mass, endless.point_masses):
+        found = call({"shoulder": 23.0, "elbow": 80.0}, **PLACE)
+        assert [each.subject for each in unsafe_doubts(found.warnings)] == ["joints"]
+        assert call({"shoulder": 0.4, "elbow": 1.4}, **PLACE).warnings == ()
+    assert endless.extremes({"elbow": 80.0}, link="tool").warnings
+
+
 def test_lengths_in_millimeters_are_told() -> None:
     arm = arms.Arm.from_urdf(scaled(EXAMPLE, 1000.0, "origin xyz"), armature=1e4)
     assert "reach is 1" in doubt(arm, "implausible").message
@@ -166,6 +206,7 @@ def test_the_type_plate_is_compared_with_all_links() -> None:
     ("payload", "subject"),
     [
         (("tool", 1200.0), "payload.mass"),
+        (("tool", 0.002), "payload.mass"),
         (("tool", 2.0, (0, 0, 60.0)), "payload.center"),
         (("tool", 2.0, (0, 0, 6.0)), "payload.center"),
         (("tool", 2.0, (0, 0, 0.1), (9e3, 0, 0, 9e3, 0, 9e3)), "payload.inertia"),

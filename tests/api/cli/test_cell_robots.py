@@ -69,11 +69,24 @@ def test_an_arm_without_inertials_is_doubted_or_refused(read: Any) -> None:
         ({"type_plate_mass": 40.0}, "mass_below_type_plate"),
         ({"payload": {"link": "tool", "mass": 1200.0}}, "implausible"),
         ({"payload": {"link": "tool", "mass": 2.0, "center": [0.0, 0.0, 60.0]}}, "implausible"),
+        ({"payload": {"link": "tool", "mass": 0.002}}, "implausible"),
         ({"point": [0.0, 0.0, 60.0]}, "implausible"),
     ],
 )
 def test_masses_that_are_no_data_reach_the_robot(read: Any, more: dict[str, Any], code: str) -> None:
     assert codes(read(TOOL | {"armature": MOTORS} | more)) == [code]
+
+
+def test_poses_in_degrees_are_refused_or_told(read: Any) -> None:
+    degrees = {"poses": [{"shoulder": 23.0, "elbow": 80.0}], "armature": MOTORS}
+    with pytest.raises(InvalidParameterError, match=r"degrees are .* rad"):
+        read(TOOL | degrees)
+    endless = EXAMPLE.replace('type="revolute"', 'type="continuous"')
+    limits = re.sub(r'upper="[^"]*"', 'upper="180"', re.sub(r'lower="[^"]*"', 'lower="-180"', EXAMPLE))
+    for text in (endless, limits):
+        assert codes(read(TOOL | degrees, text)) == ["implausible"]
+        # What is drawn is drawn between limits, and the same pose after a turn.
+        assert codes(read({"urdf": "arm.urdf", "armature": MOTORS, "samples": 50}, text)) == []
 
 
 def test_without_poses_the_worst_draw_is_named_as_singular_with_a_quantile_beside(read: Any) -> None:
@@ -100,6 +113,14 @@ def test_a_rolling_base_without_the_inertia_of_its_motors_is_a_lower_bound(read:
     assert codes(read(base)) == ["no_motor_inertia"]
     wheels = {"wheel_inertia": 0.001, "wheel_radius": 0.08, "half_track": 0.2}
     assert codes(read(base | wheels)) == []
+    # The inertia of a rotor before its gear, or millimeters, silence nothing.
+    assert codes(read(base | wheels | {"wheel_inertia": 1e-6})) == ["armature_suspicious"]
+    assert set(codes(read(base | wheels | {"wheel_radius": 80.0, "half_track": 200.0}))) == {
+        "implausible",
+        "armature_suspicious",
+    }
+    assert codes(read(base | wheels | {"offset": 50.0})) == ["implausible"]
+    assert {each.safe_side for each in read(base | wheels | {"wheel_inertia": 1000.0}).warnings} == {True}
     sideways = base | {"point": [0.0, 0.1], "normal": [0.0, 1.0]}
     assert math.isinf(read(sideways).mass)
     assert codes(read(sideways)) == []

@@ -123,6 +123,7 @@ impl Arm {
         fields.value("projected", projected)?;
         fields.value("not_used", &arm.not_used)?;
         fields.value("passed_over", &arm.passed_over)?;
+        fields.value("turned", &arm.turned)?;
         fields.value("total_mass", arm.total_mass)?;
         fields.value("moving_mass", arm.moving_mass)?;
         fields.value("payload_mass", arm.payload_mass)?;

@@ -278,6 +278,7 @@ impl<'a> Builder<'a> {
             projected,
             not_used,
             passed_over: self.description.passed_over.clone(),
+            turned: self.description.turned.clone(),
             survey,
         })
     }

@@ -82,7 +82,12 @@ pub struct Description {
     pub joints: Vec<JointText>,
     /// Attributes that URDF does not have and that change nothing.
     pub passed_over: Vec<String>,
+    /// Joints and links with an angle of more than a turn in an `rpy`.
+    pub turned: Vec<String>,
 }
+
+/// Angles of more than this are no directions that somebody has written in radians (rad): one turn, and rounding.
+const TURN: f64 = 6.3;
 
 const ROBOT: [&str; 5] = ["link", "joint", "material", "transmission", "gazebo"];
 const LINK: [&str; 4] = ["inertial", "visual", "collision", "contact"];
@@ -151,8 +156,30 @@ impl Description {
                 .map(|node| joint(node, &mut notes))
                 .collect::<Result<_>>()?,
             passed_over: notes,
+            turned: turned(root),
         })
     }
+}
+
+/// Joints and links whose place, or that of whose inertia, is turned by more than a turn about an axis.
+fn turned(root: Node<'_, '_>) -> Vec<String> {
+    let beyond = |origin: Node<'_, '_>| {
+        let angles = origin.attribute("rpy").unwrap_or_default();
+        let mut angles = angles
+            .split_ascii_whitespace()
+            .filter_map(|each| each.parse::<f64>().ok());
+        origin.has_tag_name("origin") && angles.any(|angle| angle.abs() > TURN)
+    };
+    let owners = elements(root).filter(|each| matches!(each.tag_name().name(), "joint" | "link"));
+    let found = owners.filter(|owner| {
+        let inertials = elements(*owner).filter(|each| each.has_tag_name("inertial"));
+        elements(*owner).any(beyond) || inertials.flat_map(elements).any(beyond)
+    });
+    let named = |owner: Node<'_, '_>| {
+        let name = owner.attribute("name").unwrap_or_default();
+        format!("{} {name:?}", owner.tag_name().name())
+    };
+    found.map(named).collect()
 }
 
 fn no_xml(error: &roxmltree::Error, text: &str) -> Failure {

@@ -125,6 +125,8 @@ pub struct Arm {
     pub not_used: Vec<String>,
     /// Attributes that URDF does not have and that change nothing.
     pub passed_over: Vec<String>,
+    /// Joints and links that are turned by more than a turn.
+    pub turned: Vec<String>,
     /// What tells whether the arm may be real.
     pub survey: Survey,
 }

@@ -17,7 +17,7 @@ from hrsafety._display import displayed
 from hrsafety._keys import Keys, checked, one_of
 from hrsafety._records import dataclass
 from hrsafety.arms.arm import Arm
-from hrsafety.arms.doubts import doubts_of_point, for_rule
+from hrsafety.arms.doubts import doubts_of_point, doubts_of_poses, for_rule
 from hrsafety.arms.inputs import poses_of
 from hrsafety.arms.masses import RULES, mass_by_rule
 from hrsafety.arms.payload import Payload
@@ -35,6 +35,8 @@ LEAST_MASS = 0.3
 SINGULAR = 10.0
 """A drawn pose whose mass is so many times the median is near a singular one."""
 QUANTILE = 0.99
+MOTORS = frozenset({"no_motor_inertia", "armature_suspicious"})
+"""Doubts about what could only make a mass larger."""
 
 
 def _motors(name: str, value: Any) -> Any:
@@ -275,6 +277,7 @@ class ContactRobot:
         singular = bool(more) and not masses[worst] <= SINGULAR * median
         doubts = [
             *for_rule(arm.warnings, rule, masses[worst], arm.iso_mass),
+            *(() if more else doubts_of_poses(rows, arm.joint_names, arm.joint_kinds)),
             *doubts_of_point(place["point"], arm.reach),
             *(() if singular else _unlikely(mass)),
         ]
@@ -352,7 +355,7 @@ def _doubts_of_base(base: Base, point: Pair, mass: float) -> Iterator[ResultWarn
     """Yield what is hardly meant of a mobile base."""
     yield from _unlikely(mass)
     # What no wheel can make heavier is not a doubt.
-    yield from (each for each in base.warnings if each.code != "no_motor_inertia" or mass < float("inf"))
+    yield from (each for each in base.warnings if each.code not in MOTORS or mass < float("inf"))
     away = float(np.hypot(*point))
     if away > 5.0:
         message = f"the point is {away:g} m from the middle of the base: mm or cm given for m?"
