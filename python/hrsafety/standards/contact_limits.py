@@ -25,6 +25,9 @@ CONTACTS = ("quasi_static", "transient")
 CERTAINTIES = ("certain", "likely", "single_source", "not_stated")
 """How sure a number is; only the first one goes without saying."""
 
+AREAS = (1e-5, 0.01)
+"""Force over pressure of one contact, in m^2: a tip of 3.5 mm to the largest part of a body that a covering meets."""
+
 Words = npt.NDArray[np.str_]
 
 
@@ -273,6 +276,9 @@ class ContactLimit:
             doubts += _doubts(name, given)
             if limit is None and self.permitted:
                 doubts.append(ResultWarning("not_checked", name, f"the set has no limit of {name}: it is not checked"))
+        if force and pressure and not doubts and (odd := _odd_pair(float(force), float(pressure))):
+            doubts += odd
+            words = [doubted(word, odd) for word in words]
         found = Verdict(strictest(words), *words)
         found.warnings = tuple(doubts) if self.permitted else ()
         return found
@@ -291,10 +297,26 @@ class ContactLimit:
         return np.where(loads <= limit, doubted("within_limits", _doubts(name, loads)), "exceeds")
 
 
+def _odd_pair(force: float, pressure: float) -> tuple[ResultWarning, ...]:
+    """Return the doubt about a force and a pressure that no contact area fits."""
+    least, most = AREAS
+    area = force / pressure
+    if least <= area <= most or not math.isfinite(area):
+        return ()
+    message = (
+        f"force and pressure belong to a contact of {area:.3g} m^2, outside the plausible {least:g} to {most:g} m^2: "
+        "kN given for N, or N/cm^2, N/mm^2 or kPa for Pa?"
+    )
+    return (ResultWarning("implausible", "force", message),)
+
+
 def _doubts(name: str, given: object) -> tuple[ResultWarning, ...]:
     """Return the doubts about loads: of a history the largest one counts, for it starts and ends near 0."""
     loads = np.asarray(given)
     largest = float(np.max(loads[np.isfinite(loads)], initial=0.0))
+    if loads.size and not (loads > 0.0).any():
+        message = f"{name} is 0: nothing was touched, or nothing was measured; what was not measured is not kept"
+        return (ResultWarning("no_push", name, message),)
     found = implausible({name: largest} if largest > 0.0 else {}, {name: f"load_{name}"})
     return tuple(replace(each, safe_side=largest > RANGES[f"load_{name}"].most) for each in found)
 

@@ -19,13 +19,15 @@ __all__ = ["SpeedCurve", "StoppingData", "separation_distance", "separation_spee
 
 WALKING_SPEED = 1.6
 """Speed of a person in m/s whose speed is not measured."""
+STANDING = 0.1
+"""Below this speed, in m/s, somebody stands rather than walks."""
 
 _QUANTITIES = {
     "distance": "person_distance",
     "robot_speed": "approach_speed",
     "max_speed": "approach_speed",
     "contact_speed": "contact_speed",
-    "target_speed": "approach_speed",
+    "target_speed": "contact_speed",
     "human_speed": "person_speed",
     "uncertainty": "position_uncertainty",
     "deceleration": "robot_deceleration",
@@ -168,7 +170,7 @@ def separation_distance(
     >>> f"{standards.separation_distance(1.5, target_speed=0.3, **rules):.2f} m"
     '1.61 m'
     """
-    taken, intrusion, uncertainty = _taken_as_none(intrusion, uncertainty)
+    taken, intrusion, uncertainty = _taken_as_none(intrusion, uncertainty, human_speed)
     rules = _rules(human_speed, reaction_time, intrusion, uncertainty, target_speed)
     speeds, rows, braking, shape = _rows("robot_speed", robot_speed, rules, deceleration, stopping)
     if stopping is None:
@@ -220,7 +222,7 @@ def separation_speed(
     >>> f"{standards.separation_speed(1.0, target_speed=0.3, **rules):.7f} m/s"
     '0.9106939 m/s'
     """
-    taken, intrusion, uncertainty = _taken_as_none(intrusion, uncertainty)
+    taken, intrusion, uncertainty = _taken_as_none(intrusion, uncertainty, human_speed)
     rules = _rules(human_speed, reaction_time, intrusion, uncertainty, target_speed)
     distances, rows, braking, shape = _rows("distance", distance, rules, deceleration, stopping)
     if stopping is None:
@@ -333,7 +335,7 @@ def speed_over_distance(
     target = number("target_speed", target_speed)
     if target > contact:
         raise InvalidParameterError("target_speed", f"be at most contact_speed ({contact:g})", target_speed)
-    taken, intrusion, uncertainty = _taken_as_none(intrusion, uncertainty)
+    taken, intrusion, uncertainty = _taken_as_none(intrusion, uncertainty, human_speed)
     rules = _rules(human_speed, reaction_time, intrusion, uncertainty, target)
     single: dict[str, object] = {name: number(name, each) for name, each in rules.items()}
     braked = None if deceleration is None else number("deceleration", deceleration)
@@ -378,16 +380,24 @@ def _doubted(
 # ---- what is not given --------------------------------------------------------------------------
 
 
-def _taken_as_none(intrusion: Any, uncertainty: Any) -> tuple[tuple[ResultWarning, ...], Any, Any]:
-    """Return a doubt about both numbers that are not given, and the numbers with 0 in their place."""
+def _taken_as_none(intrusion: Any, uncertainty: Any, human_speed: object) -> tuple[tuple[ResultWarning, ...], Any, Any]:
+    """Return doubts about what is taken as 0, and intrusion and uncertainty with 0 where they are not given."""
+    found = []
     missing = [name for name, each in (("intrusion", intrusion), ("uncertainty", uncertainty)) if each is None]
-    if not missing:
-        return (), intrusion, uncertainty
-    words = (
-        f"no {' and no '.join(missing)} given, taken as 0 m: a distance with them is longer; give 0 where there is none"
-    )
-    doubt = ResultWarning("taken_as_zero", " and ".join(missing), words)
-    return (doubt,), 0.0 if intrusion is None else intrusion, 0.0 if uncertainty is None else uncertainty
+    if missing:
+        words = (
+            f"no {' and no '.join(missing)} given, taken as 0 m: a distance with them is longer; give 0 where there is "
+            "none"
+        )
+        found.append(ResultWarning("taken_as_zero", " and ".join(missing), words))
+    walking = numbers("human_speed", human_speed)
+    if walking.size and float(np.max(walking)) < STANDING:
+        words = (
+            f"human_speed is {float(np.max(walking)):g} m/s: people are taken to stand still, and a distance to "
+            f"somebody who walks is longer; {WALKING_SPEED:g} m/s where nothing was measured"
+        )
+        found.append(ResultWarning("taken_as_zero", "human_speed", words))
+    return tuple(found), 0.0 if intrusion is None else intrusion, 0.0 if uncertainty is None else uncertainty
 
 
 def _warn(taken: tuple[ResultWarning, ...]) -> None:

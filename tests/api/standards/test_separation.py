@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import pickle
+import warnings
 
 import numpy as np
 import pytest
 
 from hrsafety import standards
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.plausibility import ImplausibleWarning
+from hrsafety.plausibility import HrsafetyWarning, ImplausibleWarning
 
 RULES = {"reaction_time": 0.1, "deceleration": 3.0, "intrusion": 0.2, "uncertainty": 0.1}
 STOPS = standards.StoppingData(
@@ -187,3 +188,26 @@ def test_guards() -> None:
         standards.minimum_distance(0.3, capability=0.05)
     with pytest.raises(InvalidParameterError, match=r"stopping_time must be finite and positive"):
         standards.minimum_distance(0.0)
+
+
+def test_people_who_are_taken_to_stand_are_told() -> None:
+    """Nobody has to stand still, and km/s are no m/s."""
+    for speed in (0.0, 0.0016, [0.0, 0.0]):
+        rules = RULES | {"human_speed": speed}
+        with pytest.warns(HrsafetyWarning, match=r"people are taken to stand still.*1\.6 m/s"):
+            standards.separation_distance(1.0, **rules)
+        with pytest.warns(HrsafetyWarning, match="people are taken to stand still"):
+            standards.separation_speed(3.0, **rules)
+    curve = standards.speed_over_distance([0.5, 2.0], contact_speed=0.2, max_speed=1.0, **RULES | {"human_speed": 0.0})
+    assert [(each.code, each.subject) for each in curve.warnings] == [("taken_as_zero", "human_speed")]
+    # Measured speeds of somebody who stands now and then are no such thing.
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        standards.separation_distance(1.0, **RULES | {"human_speed": [0.0, 1.2]})
+
+
+def test_contact_at_a_high_speed_is_told_by_every_function() -> None:
+    rules = RULES | {"target_speed": 3.0}
+    for call, given in ((standards.separation_distance, 5.0), (standards.separation_speed, 8.0)):
+        with pytest.warns(ImplausibleWarning, match="target_speed is 3 m/s, outside the plausible 0 to 2 m/s"):
+            call(given, **rules)

@@ -8,9 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from hrsafety import standards
 from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import ImplausibleWarning
 
 ISO = standards.limits("iso_ts_15066_2016")
 
@@ -104,6 +107,36 @@ def test_a_limit_that_was_not_checked_never_counts_as_kept() -> None:
     assert limit.force_verdict([280.0, 280.1, math.inf]).tolist() == ["within_limits", "exceeds", "exceeds"]
     with pytest.raises(InvalidParameterError, match="force must be at least 0, got nan"):
         limit.force_verdict(math.nan)
+
+
+@settings(max_examples=100, deadline=None)
+@given(
+    force=st.floats(100.0, 3000.0),
+    area=st.floats(2e-5, 5e-3),
+    slips=st.tuples(st.sampled_from([1.0, 1e-3]), st.sampled_from([1.0, 1e-3, 1e-4, 1e-6])),
+)
+def test_loads_that_are_too_large_are_never_kept_in_another_unit(
+    force: float, area: float, slips: tuple[float, float]
+) -> None:
+    """One of both in kN, kPa, N/cm^2 or MPa; both at once fit each other, and only small numbers tell."""
+    limit = ISO.contact("chest", "quasi_static")
+    pressure = force / area
+    if force > 140.0 or pressure > 120e4:
+        assert (
+            slips == (1.0, 1.0)
+            or 1.0 not in slips
+            or limit.verdict(force=force * slips[0], pressure=pressure * slips[1]).overall != "within_limits"
+        )
+
+
+def test_loads_of_exactly_0_are_not_kept() -> None:
+    limit = ISO.contact("chest", "transient")
+    found = limit.verdict(force=0.0, pressure=0.0)
+    assert (found.overall, {each.code for each in found.warnings}) == ("not_checked", {"no_push"})
+    assert limit.verdict(force=5.0, pressure=1e5).overall == "within_limits"
+    with pytest.warns(ImplausibleWarning, match="what was not measured is not kept"):
+        assert limit.force_verdict([0.0, 0.0]).tolist() == ["not_checked", "not_checked"]
+    assert limit.force_verdict([0.0, 20.0]).tolist() == ["within_limits", "within_limits"]
 
 
 @pytest.mark.parametrize(
