@@ -87,8 +87,8 @@ def probability(
     region: Region | Mapping[str, object] | float | None = None,
     limits: object = None,
     covering: Covering | Mapping[str, object] | None = None,
-    area: float | None = None,
-    max_strain: float | None = None,
+    area: float | Mapping[str, object] | None = None,
+    max_strain: float | Mapping[str, object] | None = None,
     draws: int = 100_000,
     seed: int = 0,
     threads: int | None = None,
@@ -108,8 +108,10 @@ def probability(
     robot_mass, body_mass : float or mapping
         As for `allowed_speed`, or uncertain. Beside a limit object the middle of a distribution of one of its numbers
         may be off by at most its own spread.
-    region, limits, covering, area, max_strain
+    region, limits, covering
         As for `allowed_speed`; their uncertain numbers are given by name.
+    area, max_strain : float or mapping or None
+        As for `allowed_speed`, or uncertain.
     draws : int
         Number of draws, up to 1e8.
     seed : int
@@ -145,6 +147,10 @@ def probability(
     pad = covering_of(covering)
     if pad is not None and (pad.damping > 0.0 or pad.rate[:2] != (0.0, 0.0)):
         raise InvalidParameterError("covering", "have neither damping nor rate for chances", pad)
+    if isinstance(area, Mapping):
+        uncertain, area = {"area": area, **uncertain}, None
+    if isinstance(max_strain, Mapping):
+        uncertain, max_strain = {"max_strain": max_strain, **uncertain}, None
     given = {"robot_mass": robot_mass, **uncertain}
     body = body_of(limits, region, None if isinstance(body_mass, Mapping) else body_mass, given=tuple(uncertain))
     if body_mass is not None or body.mass not in (None, math.inf):

@@ -265,6 +265,20 @@ def test_the_allowed_chance_is_a_setting(judged: Judged) -> None:
     assert judged(f"allowed_chance = {0.999 * upper}\n" + uncertain)[0] == exit_codes.NOT_CHECKED
 
 
+def test_areas_may_be_uncertain_and_names_that_no_spread_is_for_are_refused(
+    judged: Judged, capsys: pytest.CaptureFixture[str]
+) -> None:
+    uncertain = GOOD.replace("[robot]", "[uncertain]\nNAME = { uniform = 0.2 }\n[robot]")
+    bare = uncertain.replace('covering = "pad"', "")
+    for cell in (uncertain.replace("NAME", "area"), bare.replace("NAME", "area")):
+        _, report, _ = judged(cell)
+        assert report["probability"][0]["uncertain"] == ["area"]
+    for name in ("speed", "human_speed", "seed", "limits"):
+        Path("cell.toml").write_text(uncertain.replace("NAME", name), encoding="utf-8")
+        assert main(["contact", "cell.toml", "--out", "refused"]) == exit_codes.ERROR
+        assert f"uncertain.{name} must be a number of the contact" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("share", ["0.0", "1.0", "-0.1", "nan", "5"])
 def test_a_chance_is_a_share(share: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "cell.toml"

@@ -17,6 +17,8 @@ from hrsafety.plausibility import ResultWarning
 
 __all__ = ["chance_doubts", "chance_of", "spread"]
 
+CERTAIN = ("covering", "draws", "human_speed", "limits", "progress", "region", "seed", "speed", "threads")
+"""What no distribution is for."""
 OF_REGIONS = ("body_mass", "stiffness", "force_limit", "pressure_limit")
 """Numbers that differ from region to region: one distribution for all of them would be wrong for most."""
 
@@ -39,6 +41,13 @@ def spread(name: str, given: Any, nominal: float | None) -> Mapping[str, object]
     mapping
         As for `contact.probability`.
     """
+    if name in CERTAIN:
+        raise InvalidParameterError(
+            f"uncertain.{name}",
+            "be a number of the contact, such as robot_mass, force_limit or thickness",
+            name,
+            "judge the largest speed that may happen" if "speed" in name else None,
+        )
     table = kind.table(f"uncertain.{name}", given)
     if len(table) != 1:
         rule = "be one distribution, such as { lognormal = 0.2 } or { normal = [10.0, 0.5] }"
@@ -86,14 +95,17 @@ def chance_of(cell: Cell, planned: PlannedContact, allowed: AllowedSpeed | None)
         return {"status": "not_computed", "reason": reason}
     nominal = _nominal(cell, planned, pad)
     uncertain = {name: spread(name, given, nominal.get(name)) for name, given in _applying(cell, planned).items()}
-    given: dict[str, Any] = {"robot_mass": cell.robot.mass, **uncertain}
+    given: dict[str, Any] = {
+        "robot_mass": cell.robot.mass,
+        "area": planned.area if pad is None else None,
+        "max_strain": strain(cell, planned.covering),
+        **uncertain,
+    }
     try:
         found = probability(
             speed=planned.speed + cell.human_speed,
             limits=planned.limit,
             covering=pad,
-            area=planned.area if pad is None else None,
-            max_strain=strain(cell, planned.covering),
             draws=cell.draws,
             seed=cell.seed,
             **given,
