@@ -17,6 +17,7 @@ from hrsafety._records import dataclass
 from hrsafety.contact.base import Base, DifferentialBase, HolonomicBase
 from hrsafety.contact.covering import Covering, covering_of
 from hrsafety.contact.doubts import Doubts, counted
+from hrsafety.contact.runs import GAP, approach_of, doubts_of_run, gaps_of
 from hrsafety.contact.speed import AllowedSpeed, AllowedSpeeds, allowed_speed, allowed_speeds
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning, telling, unsafe_doubts
@@ -230,8 +231,8 @@ class ContactMargins(Table):
     verdict : ndarray of str, shape (n, m)
         ``"within_limits"``, also where both move apart; ``"exceeds"``; ``"not_permitted"``, also for a touch at
         closing speed 0; ``"not_checked"`` where a limit of some region was not checked, its speed or the velocity of
-        the person is not known, or a doubt of `warnings` may lie on the unsafe side, and no other limit is exceeded;
-        ``"absent"``.
+        the person is not known, or a doubt of `warnings` may lie on the unsafe side, and no other limit is exceeded, or
+        a person is not seen between two sights; ``"absent"`` before the first and after the last one.
     touching : ndarray of bool, shape (n, m)
         Whether there is contact.
     region, contact : str
@@ -335,11 +336,14 @@ def contact_margins(
     with np.errstate(invalid="ignore", divide="ignore"):
         normal = away / distance[:, :, None]
     share = np.einsum("nk,nmk->nm", trajectory.velocity, normal)
-    closing = share + _approach(trajectory.time, trajectory.obstacle_position, normal)
+    closing = share + approach_of(trajectory.time, trajectory.obstacle_position, normal)
     drive = _Drive.of(robot_stiffness, stop)
     limits = [_limit_at(trajectory, base, covering, each, normal, reach, (area, drive)) for each in regions]
     limit = np.min([each.speed for each in limits], axis=0)
-    known = np.all([each.known for each in limits], axis=0) & (not unsafe_doubts(base.warnings))
+    run_doubts = tuple(doubts_of_run(trajectory))
+    refuted = any(each.code == "closing_speed_unknown" for each in run_doubts)
+    own = (*base.warnings, *run_doubts)
+    known = np.all([each.known for each in limits], axis=0) & (not unsafe_doubts(own))
     lowest = min(limits, key=lambda each: float(np.min(each.speed, initial=np.inf))).limit
     margin = limit - closing
     verdict = np.where(margin >= 0.0, np.where(known, "within_limits", "not_checked"), "exceeds")
@@ -347,10 +351,12 @@ def contact_margins(
         verdict = np.full(closing.shape, "not_permitted")
     touching = distance <= near
     # Who moves apart is touched no more; a touch that lasts counts, whatever its closing speed.
-    verdict = np.where((closing < 0.0) | ((closing == 0.0) & ~touching), "within_limits", verdict)
+    apart = (closing < 0.0) | ((closing == 0.0) & ~touching)
+    verdict = np.where(apart, "not_checked" if refuted else "within_limits", verdict)
     unknown = np.isnan(closing) & ~np.isnan(distance)
     verdict = np.where(unknown & (verdict != "not_permitted"), "not_checked", verdict)
-    verdict = np.where(np.isnan(distance), "absent", verdict)
+    gaps = gaps_of(distance)
+    verdict = np.where(np.isnan(distance), np.where(gaps, "not_checked", "absent"), verdict)
     return ContactMargins(
         time=np.asarray(trajectory.time),
         closing_speed=closing,
@@ -361,9 +367,10 @@ def contact_margins(
         region=lowest.region,
         contact=lowest.contact,
         warnings=(
-            *base.warnings,
+            *own,
             *dict.fromkeys(doubt for each in limits for doubt in each.warnings),
             *((counted(_UNKNOWN, unknown),) if unknown.any() else ()),
+            *((counted(GAP, gaps),) if gaps.any() else ()),
         ),
     )
 
@@ -374,19 +381,6 @@ def _within_reach(regions: Sequence[Any], cover_height: float | None) -> list[An
         return list(regions)
     height = positive("cover_height", cover_height)
     return [each for each in regions if height >= LOWEST.get(each.region, 0.0)]
-
-
-def _approach(time: Array, position: Array, normal: Array) -> Array:
-    """Return speeds of obstacles against a normal, the larger one of those before and after each instant.
-
-    Who stands still from a touch on came with the speed before it, and a mean of both would be half of that.
-    """
-    if len(time) < 2:
-        return np.full(normal.shape[:2], np.nan)
-    steps = np.diff(position, axis=0) / np.diff(time)[:, None, None]
-    unknown = np.full_like(position[:1], np.nan)
-    before, after = np.concatenate([unknown, steps]), np.concatenate([steps, unknown])
-    return np.asarray(np.fmax(*(-np.einsum("nmk,nmk->nm", each, normal) for each in (before, after))))
 
 
 class _Limits(NamedTuple):
