@@ -201,8 +201,11 @@ def readable(name: str, path: str | PathLike[str]) -> Path:
     """Return the path if a file stands there, or say what does and which file may have been meant."""
     from pathlib import Path  # for those who read files; it takes as long to load as all that a run needs
 
-    path = Path(path)
     rule = "name a readable file"
+    try:
+        path = Path(path)
+    except TypeError:
+        raise InvalidParameterError(name, rule, path) from None
     given = str(path) if len(str(path)) <= LONGEST_SHOWN else f"{str(path)[:LONGEST_SHOWN]}..."
     try:
         if path.is_file():

@@ -6,11 +6,13 @@ import functools
 import re
 import sys
 from collections.abc import Callable, Iterable
+from enum import Enum
 from types import FunctionType
 from typing import Any, TypeVar
 
 __all__ = ["suggest", "suggesting"]
 
+_PACKAGE = f"{__name__.partition('.')[0]}."
 _Called = TypeVar("_Called", bound=Callable[..., Any])
 _UNKNOWN = re.compile(r"got an unexpected keyword argument '(\w+)'$")
 
@@ -32,7 +34,10 @@ def suggesting(function: _Called) -> _Called:
 
             from hrsafety._words import meant
 
-            question = meant(unknown[1], [name for name in inspect.signature(function).parameters if name != "self"])
+            question = meant(
+                unknown[1],
+                [name for name in inspect.signature(function).parameters if name not in ("self", "cls", "_cls")],
+            )
             if question is None:
                 raise
             raise TypeError(f"{error}; {question}") from None
@@ -41,7 +46,7 @@ def suggesting(function: _Called) -> _Called:
 
 
 def suggest(names: Iterable[str], space: dict[str, Any]) -> None:
-    """Make functions of a package suggest keywords, here and in the modules where they stand.
+    """Make functions, constructors and methods of a package suggest keywords, in the modules where they stand as well.
 
     Parameters
     ----------
@@ -56,3 +61,17 @@ def suggest(names: Iterable[str], space: dict[str, Any]) -> None:
             # One function under its name: it is found again by it, as pickles do.
             space[name] = suggesting(value)
             setattr(sys.modules[value.__module__], value.__name__, space[name])
+        elif isinstance(value, type) and not issubclass(value, (BaseException, Enum)):
+            for each in value.__mro__:
+                if each.__module__.startswith(_PACKAGE):
+                    _suggest_in(each)
+
+
+def _suggest_in(kind: type) -> None:
+    """Make the constructor and the public methods of a class suggest keywords; those of data classes do already."""
+    for name, value in list(vars(kind).items()):
+        function = value.__func__ if isinstance(value, (classmethod, staticmethod)) else value
+        public = not name.startswith("_") or name in ("__init__", "__new__")
+        if public and isinstance(function, FunctionType) and not hasattr(function, "__wrapped__"):
+            made = suggesting(function)
+            setattr(kind, name, made if value is function else type(value)(made))

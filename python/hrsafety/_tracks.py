@@ -115,6 +115,12 @@ class Ways(NamedTuple):
         units : bool
             Whether speeds and times are compared with those of people.
         """
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            return self._doubts(named, moving, of_frames, smoothing, units)
+
+    def _doubts(
+        self, named: Callable[[int], str], moving: str, of_frames: str, smoothing: str, units: bool
+    ) -> tuple[ResultWarning, ...]:
         spans, lengths, speeds = self._steps()
         same, periods = self.same, self.periods()
         found = self._units(spans[same], speeds[same], moving, of_frames) if units else ()

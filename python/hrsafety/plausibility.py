@@ -19,8 +19,10 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from hrsafety._calls import suggesting
+from hrsafety._calls import suggest, suggesting
 from hrsafety._records import dataclass
+from hrsafety._words import meant
+from hrsafety.errors import InvalidParameterError
 
 __all__ = [
     "RANGES",
@@ -467,7 +469,12 @@ def _implausible(values: Mapping[str, object], quantities: Mapping[str, str]) ->
     for name, value in values.items():
         if value is None:
             continue
-        least, most, unit, source, hint = RANGES[quantities.get(name, name)]
+        quantity = quantities.get(name, name)
+        if quantity not in RANGES:
+            raise InvalidParameterError(
+                "quantities", "name quantities of RANGES", quantity, meant(str(quantity), RANGES)
+            )
+        least, most, unit, source, hint = RANGES[quantity]
         # Most values are plausible, and most are one number: neither takes an array.
         if type(value) is float and not (value < least or value > most):
             continue
@@ -482,3 +489,6 @@ def _implausible(values: Mapping[str, object], quantities: Mapping[str, str]) ->
                 found += f" (element {outside[0]}, {len(outside)} of {numbers.size} outside)"
             message = f"{name} is {found}, outside the plausible {least:g} to {most:g} {unit}".rstrip()
             yield ResultWarning("implausible", name, f"{message} ({source}): {hint}?")
+
+
+suggest(__all__, globals())

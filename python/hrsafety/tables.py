@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from hrsafety._calls import suggest
 from hrsafety.errors import InvalidParameterError, MissingExtraError
 
 if TYPE_CHECKING:
@@ -295,6 +296,8 @@ def unit_suffix(unit: str) -> str:
     >>> unit_suffix("m/s"), unit_suffix("N/m^2"), unit_suffix("")
     ('_m_per_s', '_N_per_m2', '')
     """
+    if not isinstance(unit, str):
+        raise InvalidParameterError("unit", "be the text of a unit", unit)
     words = unit.replace("^", "").replace("/", "_per_").replace("*", "_").replace(" ", "_")
     return f"_{words}" if words else ""
 
@@ -379,3 +382,6 @@ def with_units(result: object, units: Mapping[str, str]) -> Columns:
     return {
         f"{'t' if name == 'time' else name}{unit_suffix(unit)}": getattr(result, name) for name, unit in units.items()
     }
+
+
+suggest(__all__, globals())

@@ -133,7 +133,7 @@ def agreeing(name: str, value: Any, own: float | None, limits: object) -> None:
         return
     try:
         values = np.asarray(value, dtype=np.float64).ravel()
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return
     for each in values[~np.isnan(values)].tolist():
         if not _same(each, own):

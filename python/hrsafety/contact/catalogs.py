@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import tomllib
 from collections.abc import Mapping
-from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -73,7 +72,7 @@ def load_materials(path: str | os.PathLike[str]) -> Mapping[str, CatalogMaterial
     >>> contact.load_materials("foams.toml")["grey foam"].law
     Linear(modulus=120000.0)
     """
-    place = readable("path", Path(path))
+    place = readable("path", path)
     size = place.stat().st_size
     if size > MOST_BYTES:
         raise InvalidParameterError(place.name, f"have at most {MOST_BYTES} bytes", size)

@@ -9,6 +9,7 @@ Importing this module registers ``hrsafety/CircleCrossing-v0``, ``hrsafety/Corri
 
 import importlib.util
 
+from hrsafety._calls import suggest
 from hrsafety.errors import MissingExtraError
 
 if importlib.util.find_spec("gymnasium") is None:
@@ -33,4 +34,5 @@ __all__ = [
     "register",
 ]
 
+suggest(__all__, globals())
 register()

@@ -240,6 +240,6 @@ def as_built(
     whose = "a DifferentialDriveRobot" if built is None else "a robot as built"
     if flag("hold", hold) is False:
         raise InvalidParameterError("hold", f"be True for {whose}", hold)
-    if integrator != "semi_implicit_euler":
+    if not isinstance(integrator, str) or integrator != "semi_implicit_euler":
         raise InvalidParameterError("integrator", f'be "semi_implicit_euler" for {whose}', integrator)
     return robot

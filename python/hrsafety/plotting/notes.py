@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, ParamSpec, TypeVar
 from weakref import WeakSet
 
+from hrsafety._calls import suggesting
 from hrsafety.plotting import style
 
 if TYPE_CHECKING:
@@ -35,12 +36,13 @@ def picture(function: Callable[P, R]) -> Callable[P, R]:
     callable
         With the same arguments.
     """
+    asked = suggesting(function)
 
     @functools.wraps(function)
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
         from matplotlib.figure import Figure
 
-        drawn = function(*args, **kwargs)
+        drawn = asked(*args, **kwargs)
         if isinstance(drawn, Figure) and drawn not in _noted:
             add_warnings(drawn, *_carriers((*args, *kwargs.values())))
         return drawn

@@ -8,7 +8,10 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
-from hrsafety.errors import MissingExtraError
+import numpy as np
+
+from hrsafety.errors import HrsafetyError, MissingExtraError
+from hrsafety.plotting.given import check_given
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -81,15 +84,25 @@ def require_matplotlib() -> None:
 
 
 def styled(function: Callable[P, R]) -> Callable[P, R]:
-    """Run a plotting function with the look of this package, leaving matplotlib's settings alone."""
+    """Run a plotting function with the look of this package, leaving matplotlib's settings alone.
+
+    Where a picture fails, the plain argument that its annotation forbids is named. Numbers that overflow on the way to
+    a pixel are no warnings.
+    """
 
     @functools.wraps(function)
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
         require_matplotlib()
         from matplotlib import rc_context
 
-        with rc_context(_LOOK):  # type: ignore[arg-type]  # keys are known to matplotlib only as literals
-            return function(*args, **kwargs)
+        with rc_context(_LOOK), np.errstate(all="ignore"):  # type: ignore[arg-type]  # keys are literals to matplotlib
+            try:
+                return function(*args, **kwargs)
+            except HrsafetyError:
+                raise
+            except Exception:
+                check_given(function, args, kwargs)
+                raise
 
     return wrapper
 

@@ -152,6 +152,8 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
     ...     scenarios.load(file).scenario.goal
     (0.0, 0.0)
     """
+    if not isinstance(path, (str, PathLike)):
+        raise InvalidParameterError("path", "be a path", path)
     place = Path(path)
     fields = checked("", parsed(place), _TOP, required=("start", "goal"))
     law = law_of(fields.pop("law", {"type": "virtual_force_field"}))

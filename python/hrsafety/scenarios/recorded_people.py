@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from hrsafety import navigation as nav
 from hrsafety._arguments import count as checked_count
-from hrsafety._arguments import followed, word
+from hrsafety._arguments import followed, positive, word
 from hrsafety._bounds import MOST_REPEATS
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
@@ -215,8 +215,10 @@ def _check(recording: object, runs: object, selection: object) -> None:
 
 
 def _positive(name: str, value: object) -> None:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not (math.isfinite(value) and value > 0.0):
+    # Of numbers of NumPy those are refused that are no floats of Python.
+    if not isinstance(value, (int, float)):
         raise InvalidParameterError(name, "be finite and positive", value)
+    positive(name, value)
 
 
 def _pair(point: Array) -> Pair:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import replace
 from typing import Annotated, NamedTuple
 
@@ -14,7 +13,7 @@ from hrsafety._arguments import Array, number, numbers
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
-from hrsafety.plausibility import RANGES, ImplausibleWarning, ResultWarning, implausible
+from hrsafety.plausibility import RANGES, ImplausibleWarning, ResultWarning, implausible, issue
 from hrsafety.standards.verdicts import doubted, strictest
 
 __all__ = ["CERTAINTIES", "CONTACTS", "ContactLimit", "Quantity", "Verdict"]
@@ -286,7 +285,7 @@ class ContactLimit:
     def _warn(self, name: str, given: object) -> None:
         """Issue the doubts about loads that end in words without any."""
         for doubt in _doubts(name, _loads(name, given)) if self.permitted else ():
-            warnings.warn(doubt.message, ImplausibleWarning, stacklevel=3)
+            issue(doubt.message, ImplausibleWarning, stacklevel=3)
 
     def _verdicts(self, name: str, given: object, limit: float | None) -> Words:
         loads = _loads(name, given)

@@ -8,7 +8,6 @@ import os
 import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
-from pathlib import Path
 from typing import Any
 
 from hrsafety._arguments import meant, readable, word
@@ -68,7 +67,7 @@ def load_limits(path: str | os.PathLike[str]) -> LimitSet:
     >>> print(standards.load_limits("own.csv").contact("chest", "transient").status)
     limited
     """
-    place = readable("path", Path(path))
+    place = readable("path", path)
     if place.suffix.lower() not in SUFFIXES:
         raise InvalidParameterError("path", f"end in {' or '.join(SUFFIXES)}", str(path))
     size = place.stat().st_size

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from hrsafety._arguments import Array, sequence
 from hrsafety._records import dataclass
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.sweep.axes import Column, checked_name
 from hrsafety.sweep.studies import Found, Study
 
@@ -104,4 +104,7 @@ class FunctionStudy(Study):
         names = [column.name for column in self.results]
         if set(found) != set(names):
             raise InvalidParameterError("result of the function", f"have the names {', '.join(names)}", sorted(found))
-        return {name: np.asanyarray(found[name]) for name in names}
+        try:
+            return {name: np.asanyarray(found[name]) for name in names}
+        except ValueError as error:
+            raise InvalidParameterError("result of the function", "hold arrays", Shown(str(error))) from None

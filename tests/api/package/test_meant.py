@@ -5,17 +5,26 @@ from __future__ import annotations
 import inspect
 import pickle
 from collections.abc import Callable
+from enum import Enum
+from functools import partial
 from pathlib import Path
+from types import FunctionType
 
 import pytest
 
-from hrsafety import arms, scenarios, sweep
+from api.namespaces import BELOW, places
+from hrsafety import arms, benchmarks, datasets, plausibility, scenarios, sweep, tables
+from hrsafety import gym as environments
 from hrsafety import navigation as nav
 from hrsafety.benchmarks import benchmark
 from hrsafety.cli import main
 from hrsafety.errors import InvalidParameterError
 
 SCENE = scenarios.configuration("c1")
+PACKAGES = (
+    *(place for package in BELOW for place in places(package)),
+    *(scenarios, datasets, sweep, benchmarks, environments, tables, plausibility),
+)
 
 
 @pytest.mark.parametrize(
@@ -117,3 +126,44 @@ def test_a_pose_in_degrees_is_answered_with_radians_and_not_with_the_check_off()
     pose[0] = 500.0
     with pytest.raises(InvalidParameterError, match="check_limits=False"):
         arm.position(pose, link=arm.link_names[-1])
+
+
+def public_callables() -> dict[str, Callable[..., object]]:
+    """Return functions, constructors and methods of all public namespaces by name."""
+    found: dict[str, Callable[..., object]] = {}
+    for package in PACKAGES:
+        for name in getattr(package, "__all__", ()):
+            value = getattr(package, name)
+            if isinstance(value, type):
+                if issubclass(value, (BaseException, Enum)):
+                    continue
+                found.setdefault(f"{value.__module__}.{value.__qualname__}", value)
+                for each, member in vars(value).items():
+                    if not each.startswith("_") and isinstance(member, (FunctionType, classmethod, staticmethod)):
+                        call = getattr(value, each)
+                        bound = partial(call, object()) if isinstance(member, FunctionType) else call
+                        found.setdefault(f"{value.__module__}.{value.__qualname__}.{each}", bound)
+            elif isinstance(value, FunctionType):
+                found.setdefault(f"{value.__module__}.{name}", value)
+    return found
+
+
+def test_every_public_call_answers_an_unknown_keyword_with_the_nearest() -> None:
+    checked = 0
+    for name, call in public_callables().items():
+        try:
+            parameters = inspect.signature(call).parameters.values()
+        except (TypeError, ValueError):
+            continue
+        named = [each.name for each in parameters if each.kind in (each.KEYWORD_ONLY, each.POSITIONAL_OR_KEYWORD)]
+        long = [each for each in named if len(each) > 4]
+        if not long or any(each.kind is each.VAR_KEYWORD for each in parameters):
+            continue
+        typed = long[-1][:2] + long[-1][3:]
+        if typed in named:
+            continue
+        with pytest.raises(TypeError) as caught:
+            call(**{typed: 1.0})
+        assert "did you mean" in str(caught.value), name
+        checked += 1
+    assert checked > 500

@@ -10,7 +10,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hrsafety import InvalidParameterError, ShapeError, contact, impact, reactive, scenarios, sweep
+from hrsafety import (
+    InvalidParameterError,
+    ShapeError,
+    contact,
+    datasets,
+    impact,
+    plausibility,
+    reactive,
+    scenarios,
+    standards,
+    sweep,
+    tables,
+)
 from hrsafety import navigation as nav
 from hrsafety._atomic import only_writer
 from hrsafety.benchmarks import benchmark, entry
@@ -18,6 +30,7 @@ from hrsafety.errors import FolderInUseError, StorageError
 
 LAW, SCENE = nav.VirtualForceField(), scenarios.configuration("c1")
 HUGE = (0.3, 1.79e308)
+WALK = datasets.Recording(time_s=[0.0, 20.0], person=[7, 7], position=[[-10, 1], [10, 1]])
 
 REFUSED: dict[str, tuple[Callable[[], object], str]] = {
     "episodes of a number": (lambda: nav.crowd.episodes_of(1.0), "run"),
@@ -50,6 +63,35 @@ REFUSED: dict[str, tuple[Callable[[], object], str]] = {
     "echo from infinity": (lambda: reactive.follower.collision_point((0.0, 0.15), 0.0, np.inf), "reading"),
     "echo from nowhere": (lambda: reactive.follower.collision_point((0.0, np.nan), 0.0, 1.0), "sensor"),
     "echo at a huge place": (lambda: reactive.follower.collision_point((1.7e308, 0.0), 0.0, 1.7e308), "sensor"),
+    "skirt that is none": (lambda: reactive.skirt.smallest_skirt(0.1, skirt=1.0), "skirt"),
+    "motion that is none": (lambda: reactive.skirt.smallest_skirt(0.1, motion=1.0), "motion"),
+    "unit that is none": (lambda: tables.unit_suffix(1.0), "unit"),
+    "progress that is none": (lambda: nav.crowd.simulate_crowds([], progress="x"), "progress"),
+    "integrator of nothing": (
+        lambda: nav.simulate(SCENE, LAW, built=nav.robots.AsBuilt(), integrator=np.array([])),
+        "integrator",
+    ),
+    "huge body": (
+        lambda: contact.allowed_speed(
+            robot_mass=8.0, limits=standards.limits().contact("chest", "transient"), area=1e-4, body_mass=10**400
+        ),
+        "body_mass",
+    ),
+    "spacing of nothing": (
+        lambda: nav.sensing.patch_places(nav.sensing.Camera(), spacing=np.array([])),
+        "spacing",
+    ),
+    "spacing next to nothing": (lambda: nav.sensing.patch_places(nav.sensing.Camera(), spacing=5e-324), "spacing"),
+    "huge spacing": (lambda: nav.sensing.patch_places(nav.sensing.Camera(), spacing=10**400), "spacing"),
+    "radius below nothing": (lambda: nav.Human(start=(0, 0), velocity=(1, 0)).contact_distance(-1.0), "robot_radius"),
+    "huge radius": (lambda: nav.Human(start=(0, 0), velocity=(1, 0)).contact_distance(10**400), "robot_radius"),
+    "huge length": (lambda: scenarios.crossings(WALK, length=10**400), "length"),
+    "scene file of a number": (lambda: scenarios.load(1.0), "path"),
+    "catalog of a number": (lambda: contact.load_materials(1.0), "path"),
+    "limits of a number": (lambda: standards.load_limits(1.0), "path"),
+    "people of a number": (lambda: datasets.load_pedestrians(1.0), "path"),
+    "map of a number": (lambda: nav.StaticMap.from_map_server(1.0), "path"),
+    "quantity that is none": (lambda: plausibility.implausible({"headng": 1.0}), "quantities"),
     "feet of infinity": (lambda: reactive.follower.collision_vector((np.inf, -1.0), (1.0, 1.0)), "one"),
 }
 

@@ -109,6 +109,8 @@ def load_cell(path: str | PathLike[str]) -> Cell:
     >>> contact.load_cell("cell.toml").contacts[0].limit.force
     280.0
     """
+    if not isinstance(path, (str, PathLike)):
+        raise InvalidParameterError("path", "be a path", path)
     place = Path(path)
     given = checked("", parsed(place), _TOP, required=("robot",))
     read: dict[str, str] = {}

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import instance, sequence, thread_count
+from hrsafety._arguments import callback, instance, sequence, thread_count
 from hrsafety.navigation.crowd.trajectories import CrowdTrajectories, Divergence
 from hrsafety.navigation.crowd.world import World
 from hrsafety.plausibility import telling
@@ -88,7 +88,7 @@ def simulate_crowds(
     given = sequence("worlds", "be a sequence of World", worlds)
     checked = [instance(f"worlds[{index}]", world, World) for index, world in enumerate(given)]
     natives = [world._native for world in checked]
-    found = _hrsafety.crowd_simulate(natives, threads=thread_count(threads), progress=progress)
+    found = _hrsafety.crowd_simulate(natives, threads=thread_count(threads), progress=callback("progress", progress))
     return [_trajectories(world, fields) for world, fields in zip(checked, found, strict=True)]
 
 

@@ -106,7 +106,7 @@ class Obstacle(Parameters):
         >>> nav.Human(start=(0, 0), velocity=(1, 0)).contact_distance(0.25)
         0.65
         """
-        return robot_radius + self._inner_radius()
+        return not_negative("robot_radius", robot_radius) + self._inner_radius()
 
     def _inner_radius(self) -> float:
         """Return the part of the radii that lies inside the obstacle, in m."""

@@ -8,7 +8,7 @@ from typing import Annotated
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import Array, count, followed, instance, not_negative
+from hrsafety._arguments import Array, count, followed, instance, not_negative, positive
 from hrsafety._bounds import MOST_SEEDS
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
@@ -21,6 +21,8 @@ __all__ = ["CalibrationStudy", "calibration_points", "calibration_study", "patch
 # Patches of the study: heights in m of one on the robot and of one on a shoulder.
 PATCH_HEIGHTS = (0.3, 1.4)
 # The workspace of the source's configurations that its camera sees, in m.
+LEAST_SPACING = 1e-3
+"""Points of a workspace are no nearer to each other, in m."""
 _ACROSS, _ALONG = (0.0, 4.0), (-0.4, 1.4)
 _RAISED = (
     *((0.4, 0.0, 0.5), (2.0, 1.0, 0.6), (3.6, 0.1, 0.8)),
@@ -78,9 +80,10 @@ def patch_places(camera: Camera, *, spacing: float = 0.2) -> Array:
     (411, 3)
     """
     instance("camera", camera, Camera)
-    if not 0.0 < spacing < np.inf:
-        raise InvalidParameterError("spacing", "be finite and positive", spacing)
-    axes = [np.arange(low, high + 0.5 * spacing, spacing) for low, high in (_ACROSS, _ALONG)]
+    apart = positive("spacing", spacing)
+    if apart < LEAST_SPACING:
+        raise InvalidParameterError("spacing", f"be at least {LEAST_SPACING:g} m", spacing)
+    axes = [np.arange(low, high + 0.5 * apart, apart) for low, high in (_ACROSS, _ALONG)]
     x, y = (values.ravel() for values in np.meshgrid(*axes))
     layers = [np.column_stack([x, y, np.full(x.size, height)]) for height in PATCH_HEIGHTS]
     places = np.vstack(layers)

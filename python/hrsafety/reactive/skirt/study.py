@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
-from hrsafety._arguments import callback, count, number, positive, sequence, word
+from hrsafety._arguments import callback, count, instance, number, positive, sequence, word
 from hrsafety._records import dataclass
 from hrsafety._statistics import Share
 from hrsafety.errors import InvalidParameterError, Shown
@@ -155,7 +155,7 @@ def smallest_skirt(
         raise InvalidParameterError("contact_share", "be between 0 and 1", contact_share)
     words = ("wheels", "even")
     tried = _counts(counts, _COUNTS[word("layout", layout, words)])
-    base = skirt if skirt is not None else UltrasonicSkirt()
+    base = UltrasonicSkirt() if skirt is None else instance("skirt", skirt, UltrasonicSkirt)
     radius, reading = positive("chassis_radius", chassis_radius), positive("trigger_distance", trigger_distance)
     skirts = tuple(
         replace(
@@ -169,7 +169,8 @@ def smallest_skirt(
         )
         for size in tried
     )
-    way = replace(motion if motion is not None else SkirtMotion(), speed=positive("speed", speed))
+    moves = SkirtMotion() if motion is None else instance("motion", motion, SkirtMotion)
+    way = replace(moves, speed=positive("speed", speed))
     place = scene if scene is not None else _grown(radius - PUBLISHED_CHASSIS_RADIUS)
     report = callback("progress", progress)
     contacts = []
