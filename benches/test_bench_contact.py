@@ -18,11 +18,15 @@ FOAM = contact.GibsonAshby(modulus=3e5, plateau=15e3, lock=0.9)
 POWERS = contact.Rusch(a=15e3, p=0.5, b=2e5, q=5.0)
 # Exponents that are no products and roots.
 OTHER_POWERS = contact.Rusch(a=15e3, p=0.43, b=2e5, q=4.3)
-HAND: dict[str, Any] = {"region": 75e3, "limits": {"force": 280.0, "pressure": 380e4}}
+LIMITS = {"force": 280.0, "pressure": 380e4}
 
 
 def pad(material: contact.Material, rate: tuple[float, float, float] = (0.0, 0.0, 1.0)) -> contact.Covering:
     return contact.Covering(material=material, thickness=0.02, area=4e-3, rate=rate)
+
+
+def hand(covering: contact.Covering) -> contact.Contact:
+    return contact.Contact(robot=8.0, body=0.6, region=75e3, covering=covering)
 
 
 def rate(rows: int, work: Callable[[], object]) -> float:
@@ -41,7 +45,7 @@ def test_closed_form_speeds(benchmark: Any) -> None:
 
         def speeds(material: Any = material) -> object:
             covering = pad(material)
-            return contact.allowed_speeds(robot_mass=masses, body_mass=0.6, covering=covering, threads=1, **HAND)
+            return hand(covering).allowed_speeds(LIMITS, robot_mass=masses, threads=1)
 
         benchmark.extra_info[f"{name} per s"] = rate(len(masses), speeds)
     benchmark.pedantic(speeds, rounds=1)
@@ -50,15 +54,8 @@ def test_closed_form_speeds(benchmark: Any) -> None:
 
 def test_map(benchmark: Any) -> None:
     def speeds() -> object:
-        return contact.allowed_speeds(
-            robot_mass=8.0,
-            body_mass=0.6,
-            covering=pad(FOAM),
-            thickness=np.linspace(0.005, 0.05, 1000)[:, None],
-            plateau=np.linspace(5e3, 40e3, 1000),
-            threads=1,
-            **HAND,
-        )
+        thickness, plateau = np.linspace(0.005, 0.05, 1000)[:, None], np.linspace(5e3, 40e3, 1000)
+        return hand(pad(FOAM)).allowed_speeds(LIMITS, thickness=thickness, plateau=plateau, threads=1)
 
     print("map 1000 x 1000:", 1e6 / rate(10**6, speeds), "s")
     benchmark.pedantic(speeds, rounds=1)
@@ -66,14 +63,11 @@ def test_map(benchmark: Any) -> None:
 
 def test_chance(benchmark: Any) -> None:
     def chance() -> object:
-        return contact.probability(
-            speed=0.5,
+        return hand(pad(FOAM)).probability(
+            0.5,
             robot_mass={"lognormal": [8.0, 0.2]},
-            body_mass=0.6,
             stiffness={"lognormal": [75e3, 0.2]},
             force_limit={"lognormal": [280.0, 0.2]},
-            covering=pad(FOAM),
-            region=75e3,
             draws=10**6,
             threads=1,
         )
@@ -119,25 +113,11 @@ def test_collisions(benchmark: Any) -> None:
         for region in (None, 25e3):
 
             def collide(material: Any = material, rated: Any = rated, k: float | None = region) -> Any:
-                covering = pad(material, rated)
-                return contact.batch(
-                    robot_mass=8.0,
-                    body_mass=40.0,
-                    closing_speed=speeds,
-                    region=k,
-                    covering=covering,
-                    tolerance=1e-6,
-                    threads=1,
-                )
+                hit = contact.Contact(robot=8.0, body=40.0, region=k, covering=pad(material, rated))
+                return hit.simulate_many(speeds, tolerance=1e-6, threads=1)
 
-            exact = contact.batch(
-                robot_mass=8.0,
-                body_mass=40.0,
-                closing_speed=speeds[::500],
-                region=region,
-                covering=pad(material, rated),
-                tolerance=1e-11,
-            )
+            hit = contact.Contact(robot=8.0, body=40.0, region=region, covering=pad(material, rated))
+            exact = hit.simulate_many(speeds[::500], tolerance=1e-11)
             error = np.abs(collide().peak_force[::500] / exact.peak_force - 1.0).max()
             kind = f"{name}, {'rigid' if region is None else 'spring'}"
             print(f"{kind}: {rate(len(speeds), collide):.3g} per s, peak force within {error:.1e}")
@@ -147,7 +127,7 @@ def test_collisions(benchmark: Any) -> None:
     start = time.process_time()
     peaks = [plain(speed, covering) for speed in some]
     spent = time.process_time() - start
-    ours = contact.batch(robot_mass=8.0, body_mass=40.0, closing_speed=some, covering=covering).peak_force
+    ours = contact.Contact(robot=8.0, body=40.0, covering=covering).simulate_many(some).peak_force
     print(f"SciPy: {len(some) / spent:.3g} per s, peak force within {np.abs(np.array(peaks) / ours - 1).max():.1e}")
 
 
@@ -170,15 +150,14 @@ def test_errors_of_random_collisions(benchmark: Any) -> None:
         rated = (draw.uniform(0.0, 0.1), draw.uniform(0.0, 0.04), 10.0 ** draw.uniform(-2.0, 0.0))
         thickness = draw.uniform(0.01, 0.04)
         covering = contact.Covering(material=kinds[index % 2], thickness=thickness, rate=rated, **shapes[index % 3])
-        masses = {"robot_mass": draw.uniform(2.0, 30.0), "body_mass": draw.uniform(0.6, 60.0)}
+        masses = {"robot": draw.uniform(2.0, 30.0), "body": draw.uniform(0.6, 60.0)}
         region = None if index % 4 < 2 else draw.uniform(1e4, 1e5)
         speed = draw.uniform(0.05, 0.8)
 
         def found(tolerance: float, own: Any = (masses, speed, region, covering)) -> list[float]:
             bodies, closing, stiffness, pad = own
-            collided = contact.batch(
-                **bodies, closing_speed=[closing], region=stiffness, covering=pad, tolerance=tolerance, threads=1
-            )
+            hit = contact.Contact(**bodies, region=stiffness, covering=pad)
+            collided = hit.simulate_many([closing], tolerance=tolerance, threads=1)
             return [float(getattr(collided, name)[0]) for name in columns]
 
         exact = np.array(found(1e-12))

@@ -67,28 +67,16 @@ def impacts() -> Work:
 def collisions() -> Work:
     covering = contact.Covering(material=FOAM, thickness=0.02, area=4e-3, rate=(0.05, 0.02, 0.1))
     speeds = np.linspace(0.1, 0.6, 60_000)
-    return lambda threads: contact.batch(
-        robot_mass=8.0,
-        body_mass=40.0,
-        closing_speed=speeds,
-        region=25e3,
-        covering=covering,
-        tolerance=1e-6,
-        threads=threads,
-    )
+    hit = contact.Contact(robot=8.0, body=40.0, region=25e3, covering=covering)
+    return lambda threads: hit.simulate_many(speeds, tolerance=1e-6, threads=threads)
 
 
 def allowed_speeds() -> Work:
     covering = contact.Covering(material=FOAM, thickness=0.02, area=4e-3)
     masses = np.linspace(2.0, 30.0, 1_000_000)
-    return lambda threads: contact.allowed_speeds(
-        robot_mass=masses,
-        body_mass=0.6,
-        region=75e3,
-        limits={"force": 280.0, "pressure": 380e4},
-        covering=covering,
-        threads=threads,
-    )
+    hit = contact.Contact(robot=8.0, body=0.6, region=75e3, covering=covering)
+    limits = {"force": 280.0, "pressure": 380e4}
+    return lambda threads: hit.allowed_speeds(limits, robot_mass=masses, threads=threads)
 
 
 def masses() -> Work:

@@ -49,9 +49,7 @@ def speeds() -> Iterator[str]:
             if not limit.permitted:
                 cells += ["not permitted", ""]
                 continue
-            found = contact.allowed_speed(
-                robot_mass=ARM_MASS, body_mass=limit.body_mass, region=limit.spring_constant, limits=limit, area=1e-4
-            )
+            found = contact.Contact(robot=ARM_MASS, body=limit, area=1e-4).allowed_speed()
             cells += [f"{found.speed:.3f}", found.governs]
         yield line(region, *cells)
 
@@ -64,7 +62,7 @@ def measured() -> Iterator[str]:
     hand = MEASURED["clamped_hand"]
     for stated, safe in zip(hand["iso_speed"], hand["measured_safe_speed_at_two_places"], strict=True):
         mass = (140.0 / stated) ** 2 / 75e3
-        found = contact.allowed_speed(robot_mass=mass, region=75e3, limits={"force": 140.0}).speed or math.nan
+        found = contact.Contact(robot=mass, region=75e3).allowed_speed({"force": 140.0}).speed or math.nan
         what = f"clamped hand, {mass:.1f} kg by M/2 + m_L"
         yield line(what, "safe speed, m/s", f"{safe:.2f}", f"{found:.2f}", deviation(found, safe))
 
@@ -80,14 +78,13 @@ def legs() -> Iterator[str]:
     mean = sum(peaks) / len(peaks)
     for name, power in (("one power law through the two slower ones", exponent), ("a linear covering", 1.0)):
         covering = power_covering(power, low, slow, mass)
-        hit = contact.simulate(robot_mass=ROBOT, body_mass=DUMMY, covering=covering, closing_speed=fastest, horizon=2.0)
+        bumped = contact.Contact(robot=ROBOT, body=DUMMY, covering=covering)
+        hit = bumped.simulate(fastest, horizon=2.0)
         force = hit.peak_force or math.nan
         what = f"adult legs at {fastest} m/s, {name}"
         yield line(what, "peak force, N", f"{mean:.0f}", f"{force:.0f}", deviation(force, mean))
         if power != 1.0:
-            first = contact.simulate(
-                robot_mass=ROBOT, body_mass=DUMMY, covering=covering, closing_speed=slow, horizon=2.0
-            )
+            first = bumped.simulate(slow, horizon=2.0)
             instant, seen = 1e3 * (hit.peak_force_time or math.nan), sum(times[2:]) / len(peaks)
             scaled = times[0] * instant / (1e3 * (first.peak_force_time or math.nan))
             yield line(what, "time of the peak, ms", f"{seen:.0f}", f"{instant:.0f}", deviation(instant, seen))
@@ -96,7 +93,7 @@ def legs() -> Iterator[str]:
     for speed, seen in zip(
         *(MEASURED["mobile_adult_legs_iso"][name] for name in ("speeds", "measured_N")), strict=True
     ):
-        hit = contact.simulate(robot_mass=ROBOT, body_mass=75.0, region=60e3, closing_speed=speed)
+        hit = contact.Contact(robot=ROBOT, body=75.0, region=60e3).simulate(speed)
         force = hit.peak_force or math.nan
         what = f"adult legs at {speed} m/s, spring of the lower leg without the bumper"
         yield line(what, "peak force, N", seen, f"{force:.0f}", deviation(force, seen))
@@ -113,7 +110,7 @@ def children() -> Iterator[str]:
         mass = 60.0 if "60" in what else ROBOT
         stiffness = (peaks[0] / cases[0]) ** 2 * (mass + CHILD) / (mass * CHILD)
         for speed, seen in zip(cases[1:], peaks[1:], strict=True):
-            hit = contact.simulate(robot_mass=mass, body_mass=CHILD, region=stiffness, closing_speed=speed, horizon=2.0)
+            hit = contact.Contact(robot=mass, body=CHILD, region=stiffness).simulate(speed, horizon=2.0)
             force = hit.peak_force or math.nan
             name = f"{what} at {speed} m/s, a line through {cases[0]} m/s"
             yield line(name, "peak force, N", seen, f"{force:.0f}", deviation(force, seen))

@@ -49,7 +49,8 @@ LEADER = reactive.FollowerLayouts(kind="static").scene(0)
 PAD = contact.Covering(
     material=contact.GibsonAshby(modulus=3e5, plateau=15e3, lock=0.9), thickness=0.02, shape="flat", area=4e-3
 )
-TOUCH = {"robot_mass": 16.0, "body_mass": 0.6, "region": 75e3}
+TOUCH: dict[str, Any] = {"robot": 16.0, "body": 0.6, "region": 75e3}
+HIT = contact.Contact(**TOUCH, covering=PAD)
 BORNE = {"force": 280.0, "pressure": 3.8e6}
 TRAP = nav.StaticMap.from_polylines([[(3.0, -1.5), (3.0, 1.5)], [(1.0, 1.5), (3.0, 1.5)], [(1.0, -1.5), (3.0, -1.5)]])
 WALKER = nav.crowd.Person(start=(1.0, 2.0), route=[(3.0, 2.0)])
@@ -227,33 +228,21 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "random_traffic": (scenarios.random_traffic, {"obstacles": 2, "seed": 0}),
     "Recording": (datasets.Recording, dict(WALK)),
     "Recording.humans": (RECORDING.humans, {"start_time": 0.2, "duration": 1.0}),
-    "contact.allowed_speed": (
-        contact.allowed_speed,
-        {
-            **TOUCH,
-            "limits": dict(BORNE),
-            "covering": PAD,
-            "max_strain": 0.7,
-            "human_speed": 0.1,
-            "robot_stiffness": 0.0,
-        },
+    "Contact": (contact.Contact, {**TOUCH, "covering": PAD, "max_strain": 0.7, "drive": contact.Support()}),
+    "Contact bare": (contact.Contact, {**TOUCH, "area": 1e-4}),
+    "Contact.allowed_speed": (HIT.allowed_speed, {"limits": dict(BORNE), "human_speed": 0.1}),
+    "Contact.allowed_speeds": (
+        HIT.allowed_speeds,
+        {"limits": dict(BORNE), "robot_mass": [8.0, 16.0], "thickness": [0.01, 0.02], "threads": 1},
     ),
-    "contact.allowed_speed bare": (contact.allowed_speed, {**TOUCH, "limits": dict(BORNE), "area": 1e-4}),
-    "contact.allowed_speeds": (
-        contact.allowed_speeds,
-        {**TOUCH, "limits": dict(BORNE), "covering": PAD, "thickness": [0.01, 0.02], "threads": 1},
+    "Contact.simulate": (HIT.simulate, {"speed": 0.3, "horizon": 0.1}),
+    "Contact.simulate_many": (HIT.simulate_many, {"speed": [0.3, 0.5], "body_mass": 0.6, "threads": 1}),
+    "Contact.thickness": (HIT.thickness, {"speed": 0.8, "limits": dict(BORNE)}),
+    "Contact.probability": (
+        HIT.probability,
+        {"speed": 0.8, "limits": dict(BORNE), "body_mass": 0.6, "draws": 200, "seed": 1},
     ),
-    "contact.simulate": (
-        contact.simulate,
-        {**TOUCH, "closing_speed": 0.3, "covering": PAD, "stop": (0.01, 5.0), "horizon": 0.1, "body_stiffness": 0.0},
-    ),
-    "contact.batch": (contact.batch, {**TOUCH, "closing_speed": [0.3, 0.5], "covering": PAD, "threads": 1}),
-    "contact.thickness": (contact.thickness, {**TOUCH, "speed": 0.8, "limits": dict(BORNE), "covering": PAD}),
-    "contact.probability": (
-        contact.probability,
-        {**TOUCH, "speed": 0.8, "limits": dict(BORNE), "covering": PAD, "draws": 200, "seed": 1},
-    ),
-    "contact.sensitivity": (contact.sensitivity, {**TOUCH, "limits": dict(BORNE), "covering": PAD}),
+    "Contact.sensitivity": (HIT.sensitivity, {"limits": dict(BORNE)}),
     "contact.contact_speed_limit": (
         contact.contact_speed_limit,
         {

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from api import contact_calls
 from hrsafety import contact
 from hrsafety.errors import InvalidParameterError
 
@@ -25,7 +26,7 @@ def near(found: float | None, expected: float | None, tolerance: float) -> bool:
 
 @pytest.mark.parametrize("case", CASES["impacts"], ids=lambda case: case["name"])
 def test_impacts(case: dict[str, Any]) -> None:
-    found = contact.simulate(**case["input"], tolerance=1e-10)
+    found = contact_calls.simulate(**case["input"], tolerance=1e-10)
     output = dict(case["output"])
     assert found.status == output.pop("status")
     assert found.bottomed == output.pop("bottomed")
@@ -37,7 +38,7 @@ def test_impacts(case: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("case", CASES["allowed_speed"])
 def test_allowed_speeds_from_stored_energy(case: dict[str, Any]) -> None:
-    found = contact.allowed_speed(**case["input"])
+    found = contact_calls.allowed_speed(**case["input"])
     assert near(found.speed, case["speed"], PRINTED)
     assert near(found.bare_speed_force, case["bare_speed_force"], PRINTED)
     assert found.governs == case["governs"]
@@ -48,14 +49,14 @@ def test_allowed_speeds_from_stored_energy(case: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("case", CASES["allowed_speed_numeric"])
 def test_allowed_speeds_by_simulation(case: dict[str, Any]) -> None:
-    found = contact.allowed_speed(**case["input"])
+    found = contact_calls.allowed_speed(**case["input"])
     assert near(found.speed, case["speed"], 1e-7)
     assert found.status == "monotone"
 
 
 @pytest.mark.parametrize("case", CASES["thickness"])
 def test_thicknesses(case: dict[str, Any]) -> None:
-    found = contact.thickness(**case["input"])
+    found = contact_calls.thickness(**case["input"])
     assert near(found.thickness, case["thickness"], PRINTED)
     assert found.status == case["status"]
 
@@ -104,9 +105,9 @@ def test_bare_speeds_of_all_regions(case: dict[str, Any]) -> None:
     arguments = {"robot_mass": case["robot_mass"], "area": case["area"], "limits": limit}
     if case["speed"] is None:
         with pytest.raises(InvalidParameterError, match="not_permitted"):
-            contact.allowed_speed(region=limit.spring_constant, body_mass=limit.body_mass, **arguments)
+            contact_calls.allowed_speed(region=limit.spring_constant, body_mass=limit.body_mass, **arguments)
         return
-    found = contact.allowed_speed(region=limit.spring_constant, body_mass=limit.body_mass, **arguments)
+    found = contact_calls.allowed_speed(region=limit.spring_constant, body_mass=limit.body_mass, **arguments)
     assert near(found.speed, case["speed"], PRINTED)
     assert near(found.speeds["force"], case["speed_force"], PRINTED)
     assert near(found.speeds["pressure"], case["speed_pressure"], PRINTED)
@@ -126,7 +127,7 @@ def test_bare_speeds_of_all_regions(case: dict[str, Any]) -> None:
 def test_covered_speeds(region: str, kind: str, shape: dict[str, Any], speed: float, governs: str) -> None:
     limit = Limit(region, kind)
     foam = contact.GibsonAshby(modulus=3e5, plateau=15e3, lock=0.9)
-    found = contact.allowed_speed(
+    found = contact_calls.allowed_speed(
         robot_mass=16.35,
         body_mass=limit.body_mass,
         region=limit.spring_constant,
@@ -139,7 +140,7 @@ def test_covered_speeds(region: str, kind: str, shape: dict[str, Any], speed: fl
 
 @pytest.mark.parametrize("case", CASES["probability"])
 def test_chances(case: dict[str, Any]) -> None:
-    found = contact.probability(**case["input"], draws=200_000, seed=3)
+    found = contact_calls.probability(**case["input"], draws=200_000, seed=3)
     assert found.interval[0] - 1e-9 <= case["probability"] <= found.interval[1] + 1e-9
 
 

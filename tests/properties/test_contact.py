@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from api import contact_calls
 from hrsafety import contact, impact
 
 SETTINGS = settings(max_examples=40, deadline=None)
@@ -57,7 +58,7 @@ def test_stored_energy_is_kinetic_energy_and_momentum_is_kept(
     thickness: float,
 ) -> None:
     pad = contact.Covering(material=material, thickness=thickness, **shape)
-    hit = contact.simulate(
+    hit = contact_calls.simulate(
         robot_mass=robot,
         body_mass=other,
         region=k,
@@ -85,7 +86,7 @@ def test_restitution_of_a_flat_covering(
     robot: float, other: float, retained: float, v: float, material: contact.Material
 ) -> None:
     pad = contact.Covering(material=material, thickness=0.05, area=0.02, unloading=(retained, 1.0), bottom=(10.0, 0.0))
-    hit = contact.simulate(
+    hit = contact_calls.simulate(
         robot_mass=robot, body_mass=other, covering=pad, closing_speed=v, horizon=5.0, tolerance=1e-10, head=False
     )
     assert hit.status == "released"
@@ -104,7 +105,7 @@ def test_peak_force_does_not_fall_with_the_speed(
     rate: tuple[float, float, float],
 ) -> None:
     pad = contact.Covering(material=material, thickness=thickness, rate=rate, **shape)
-    found = contact.batch(
+    found = contact_calls.batch(
         robot_mass=robot,
         body_mass=math.inf if other is None else other,
         region=k,
@@ -124,7 +125,7 @@ def test_a_thicker_flat_covering_is_never_slower(
     material: contact.Material, robot: float, other: float | None, k: float, force: float
 ) -> None:
     pad = contact.Covering(material=material, thickness=0.02, area=4e-3)
-    found = contact.allowed_speeds(
+    found = contact_calls.allowed_speeds(
         robot_mass=robot,
         body_mass=math.inf if other is None else other,
         region=k,
@@ -148,11 +149,13 @@ def test_least_thickness_and_allowed_speed_undo_each_other(
 ) -> None:
     limits = {"force": force}
     pad: dict[str, Any] = {"material": material, **shape}
-    found = contact.thickness(speed=wanted, robot_mass=robot, body_mass=other, region=k, limits=limits, covering=pad)
+    found = contact_calls.thickness(
+        speed=wanted, robot_mass=robot, body_mass=other, region=k, limits=limits, covering=pad
+    )
     if found.status != "found":
         return
     pad["thickness"] = found.thickness
-    back = contact.allowed_speed(robot_mass=robot, body_mass=other, region=k, limits=limits, covering=pad)
+    back = contact_calls.allowed_speed(robot_mass=robot, body_mass=other, region=k, limits=limits, covering=pad)
     assert back.speed == pytest.approx(wanted, rel=1e-9)
 
 
@@ -218,7 +221,7 @@ def test_scipy_finds_the_same(seed: int, rate: tuple[float, float, float]) -> No
         "region": draw.uniform(2e4, 8e4),
         "closing_speed": draw.uniform(0.3, 0.5),
     }
-    hit = contact.simulate(**case, covering=pad, tolerance=1e-10, horizon=0.5)
+    hit = contact_calls.simulate(**case, covering=pad, tolerance=1e-10, horizon=0.5)
     peak, rebound = plain_solution(case, pad, rate)
     assert hit.peak_force == pytest.approx(peak, rel=1e-3)
     assert hit.rebound_speed == pytest.approx(rebound, rel=1e-6)
@@ -231,7 +234,7 @@ def test_the_linear_limit_is_the_exact_linear_solution() -> None:
         (impact.MANIPULATOR_2, impact.FOAM_1, impact.Head.apparatus()),
     ]:
         exact = impact.metrics(manipulator, foam, head, closing_speed=1.0)
-        hit = contact.simulate(
+        hit = contact_calls.simulate(
             robot_mass=manipulator.mass,
             robot_damping=manipulator.damping,
             robot_stiffness=manipulator.stiffness,
@@ -257,16 +260,18 @@ def test_threads_and_rows_change_no_bit() -> None:
     pad = contact.Covering(material=LAWS[2], thickness=0.02, area=4e-3, rate=(0.05, 0.0, 0.1))
     speeds = np.linspace(0.1, 1.0, 700)
     found = [
-        contact.batch(
+        contact_calls.batch(
             robot_mass=8.0, body_mass=40.0, region=25e3, covering=pad, closing_speed=speeds, threads=threads
         ).peak_force
         for threads in (1, 2)
     ]
     assert np.array_equal(*found)
-    single = contact.simulate(robot_mass=8.0, body_mass=40.0, region=25e3, covering=pad, closing_speed=speeds[333])
+    single = contact_calls.simulate(
+        robot_mass=8.0, body_mass=40.0, region=25e3, covering=pad, closing_speed=speeds[333]
+    )
     assert single.peak_force == found[0][333]
     drawn = [
-        contact.probability(
+        contact_calls.probability(
             speed=0.4,
             robot_mass={"lognormal": [8.0, 0.2]},
             region=25e3,

@@ -14,9 +14,10 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.contact.cell.file import load_cell as load_cell
     from hrsafety.contact.cell.robot import ContactRobot as ContactRobot
     from hrsafety.contact.cell.study import ContactStudy as ContactStudy, study as study
-    from hrsafety.contact.chance import Exceedance as Exceedance, probability as probability
+    from hrsafety.contact.chance import Exceedance as Exceedance
+    from hrsafety.contact.contact import Contact as Contact, Support as Support
     from hrsafety.contact.covering import Column as Column, Covering as Covering, Region as Region
-    from hrsafety.contact.least_thickness import LeastThickness as LeastThickness, thickness as thickness
+    from hrsafety.contact.least_thickness import LeastThickness as LeastThickness
     from hrsafety.contact.margins import (
         ContactMargins as ContactMargins,
         RegionSpeed as RegionSpeed,
@@ -32,18 +33,10 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
         StressTable as StressTable,
         material as material,
     )
-    from hrsafety.contact.sensitivities import sensitivity as sensitivity
-    from hrsafety.contact.simulation import (
-        ContactBatch as ContactBatch,
-        ContactImpact as ContactImpact,
-        batch as batch,
-        simulate as simulate,
-    )
+    from hrsafety.contact.simulation import ContactBatch as ContactBatch, ContactImpact as ContactImpact
     from hrsafety.contact.speed import (
         AllowedSpeed as AllowedSpeed,
         AllowedSpeeds as AllowedSpeeds,
-        allowed_speed as allowed_speed,
-        allowed_speeds as allowed_speeds,
         free_from_fixed_force as free_from_fixed_force,
     )
 else:

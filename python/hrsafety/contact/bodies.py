@@ -13,9 +13,28 @@ from hrsafety.contact.covering import Covering, Region, region_of
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["Body", "agreeing", "body_of", "contact_width_doubt", "larger_than_part", "part_of", "spread_agrees"]
+__all__ = [
+    "OWN",
+    "Body",
+    "agreeing",
+    "body_of",
+    "contact_width_doubt",
+    "knows",
+    "larger_than_part",
+    "part_of",
+    "spread_agrees",
+]
 
-_OWN = "leave it out, or give limits as a mapping of force and pressure for a body of your own"
+_REMEDY = "leave it out, or give limits as a mapping of force and pressure for a body of your own"
+OWN = MappingProxyType(
+    {
+        "body_mass": "body_mass",
+        "stiffness": "spring_constant",
+        "force_limit": "force",
+        "pressure_limit": "pressure",
+    }
+)
+"""What a limit object knows of the numbers of a contact."""
 _EQUAL = 1e-9
 """Relative difference up to which two numbers are the same."""
 
@@ -90,7 +109,7 @@ def body_of(
     InvalidParameterError
         If a number contradicts the object, or neither has it.
     """
-    if not _knows(limits):
+    if not knows(limits):
         return Body(region_of(region), body_mass)
     spring, mass = getattr(limits, "spring_constant", None), getattr(limits, "body_mass", None)
     if region is None:
@@ -102,7 +121,7 @@ def body_of(
         found = region_of(region)
         if spring is not None and (found is None or found.n is not None or not _same(found.k, spring)):
             rule = f"have the spring constant of limits ({named(limits)}: {spring:g} N/m)"
-            raise InvalidParameterError("region", rule, region, _OWN)
+            raise InvalidParameterError("region", rule, region, _REMEDY)
     if body_mass is None:
         if mass is None and "body_mass" not in given:
             rule = f"be given: limits has no mass of the region ({named(limits)})"
@@ -112,7 +131,8 @@ def body_of(
     return Body(found, body_mass)
 
 
-def _knows(limits: object) -> bool:
+def knows(limits: object) -> bool:
+    """Return whether limits are an object that knows the body, no mapping."""
     return limits is not None and not isinstance(limits, Mapping) and hasattr(limits, "body_mass")
 
 
@@ -138,12 +158,12 @@ def agreeing(name: str, value: Any, own: float | None, limits: object) -> None:
     for each in values[~np.isnan(values)].tolist():
         if not _same(each, own):
             rule = f"be that of limits ({named(limits)}: {own:g})"
-            raise InvalidParameterError(name, rule, each, _OWN)
+            raise InvalidParameterError(name, rule, each, _REMEDY)
 
 
 def spread_agrees(name: str, kind: str, parts: Sequence[float], own: float | None, limits: object) -> None:
     """Refuse a distribution whose middle is farther than its own spread from the number of a limit object."""
-    if own is None or not _knows(limits):
+    if own is None or not knows(limits):
         return
     if kind in ("uniform", "triangular"):
         fits = parts[0] <= own <= parts[-1]
@@ -154,7 +174,7 @@ def spread_agrees(name: str, kind: str, parts: Sequence[float], own: float | Non
         fits = abs(off) <= parts[1] + 1e-12
     if not fits:
         rule = f"be around the number of limits ({named(limits)}: {own:g}), within its own spread"
-        raise InvalidParameterError(name, rule, {kind: list(parts)}, _OWN)
+        raise InvalidParameterError(name, rule, {kind: list(parts)}, _REMEDY)
 
 
 # ---- how large a part of a body is --------------------------------------------------------------

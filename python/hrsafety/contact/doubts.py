@@ -57,9 +57,9 @@ _FLAGS = {
 
 _WITHOUT_DRIVE = ResultWarning(
     "drive_not_given",
-    "stop",
+    "drive",
     "a clamped contact is that of a robot without drive: one that is driven on until it has reacted and braked presses "
-    "harder; robot_stiffness and stop describe it",
+    "harder; a drive with stiffness and stop describes it",
 )
 
 _LINEAR_STRAIN = 0.5

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import Annotated
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import positive
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
-from hrsafety.contact.bodies import body_of, contact_width_doubt, larger_than_part, touched_area
-from hrsafety.contact.covering import Covering, Region, covering_of
+from hrsafety.contact.bodies import contact_width_doubt, larger_than_part, touched_area
 from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers, not_checked, without_drive
-from hrsafety.contact.rows import TOLERANCE, contact_row, in_order, limits_of, missing_limits
+from hrsafety.contact.rows import Prepared, in_order, missing_limits
 from hrsafety.contact.simulation import known
-from hrsafety.plausibility import ResultWarning, telling
+from hrsafety.plausibility import ResultWarning
 
-__all__ = ["LeastThickness", "thickness"]
+__all__ = ["LeastThickness", "thickness_of"]
 
 
 @displayed
@@ -46,80 +43,16 @@ class LeastThickness:
     warnings: Doubts
 
 
-@telling()
-def thickness(
-    *,
-    speed: float,
-    robot_mass: float,
-    region: Region | Mapping[str, object] | float | None = None,
-    limits: object,
-    covering: Covering | Mapping[str, object],
-    body_mass: float | None = None,
-    max_strain: float | None = None,
-) -> LeastThickness:
-    """Return the least thickness of a covering at which a closing speed is allowed.
-
-    Parameters
-    ----------
-    speed : float
-        Wanted closing speed in m/s.
-    robot_mass, region, limits, body_mass, max_strain
-        As for `allowed_speed`.
-    covering : Covering or mapping
-        Law and shape; its own thickness does not matter and may be absent from a mapping.
-
-    Returns
-    -------
-    LeastThickness
-        With its status.
-
-    Raises
-    ------
-    InvalidParameterError
-        If a number is out of its range or contradicts a limit object, or the covering has a damper or a rate.
-
-    Examples
-    --------
-    >>> from hrsafety import contact
-    >>> pad = {"material": {"law": "linear", "E": 69690.0}, "shape": "flat", "area": 0.002481}
-    >>> found = contact.thickness(
-    ...     speed=1.064, robot_mass=6.709, body_mass=40.0, region=25e3, covering=pad,
-    ...     limits={"force": 360.0, "pressure": 420e4},
-    ... )
-    >>> round(found.thickness, 6), found.status
-    (0.051863, 'found')
-    """
-    if isinstance(covering, Mapping) and "thickness" not in covering:
-        covering = {**covering, "thickness": 0.01}
-    pad = covering_of(covering)
-    speed = positive("speed", speed)
-    body = body_of(limits, region, body_mass)
-    shared, values = contact_row(
-        robot_mass=robot_mass,
-        body_mass=body.mass,
-        region=body.region,
-        covering=pad,
-        tolerance=TOLERANCE,
-        max_strain=max_strain,
-        closing_speed=speed,
-    )
-    values |= limits_of(limits)
+def thickness_of(given: Prepared, bare: Prepared, speed: float) -> LeastThickness:
+    """Return the least thickness of a covering at which a closing speed is allowed, beside the contact without it."""
+    shared, values, pad, limits, robot = given
     value, status = _hrsafety.contact_thickness(shared, in_order(values))
     missing = missing_limits(values, bare=pad is None)
-    doubts: list[ResultWarning] = []
+    doubts: list[ResultWarning] = [*robot]
     if status == "bare_is_enough" and pad is not None:
-        bare, alone = contact_row(
-            robot_mass=robot_mass,
-            body_mass=body.mass,
-            region=body.region,
-            covering=None,
-            tolerance=TOLERANCE,
-            area=pad.area,
-        )
-        alone |= limits_of(limits)
-        missing = missing_limits(alone, bare=True)
+        missing = missing_limits(bare.values, bare=True)
         rigid = shared["region"] == "rigid"
-        most = 0.0 if rigid else _hrsafety.contact_speed(bare, in_order(alone))["speed"]
+        most = 0.0 if rigid else _hrsafety.contact_speed(bare.shared, in_order(bare.values))["speed"]
         if most < speed:
             doubts.append(_bare_exceeds(most))
     doubted = values | {"thickness": value if value > 0.0 else math.nan}

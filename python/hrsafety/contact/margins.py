@@ -11,14 +11,16 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import Array, Pair, instance, not_negative, pair, positive, sequence
+from hrsafety._arguments import Array, Pair, instance, positive, sequence
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.contact.base import Base, DifferentialBase, HolonomicBase
+from hrsafety.contact.contact import Contact, Support
 from hrsafety.contact.covering import Covering, covering_of
 from hrsafety.contact.doubts import Doubts, counted
+from hrsafety.contact.rows import HORIZON
 from hrsafety.contact.runs import GAP, approach_of, doubts_of_run, gaps_of
-from hrsafety.contact.speed import AllowedSpeed, AllowedSpeeds, allowed_speed, allowed_speeds
+from hrsafety.contact.speed import AllowedSpeed, AllowedSpeeds
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning, telling, unsafe_doubts
 from hrsafety.tables import Columns, Table, unit_suffix
@@ -90,8 +92,7 @@ def contact_speed_limit(
     regions: Sequence[Any],
     *,
     area: float | None = None,
-    robot_stiffness: float = 0.0,
-    stop: tuple[float, float] | None = None,
+    drive: Support | None = None,
 ) -> tuple[RegionSpeed, ...]:
     """Return the allowed closing speed of a point of a base along a normal, for each region and class.
 
@@ -111,9 +112,8 @@ def contact_speed_limit(
         ``body_mass``, such as those of `hrsafety.standards`. Give both classes: transient and clamped.
     area : float or None
         Contact area of a bare contact in m^2.
-    robot_stiffness, stop : float, tuple of two floats or None
-        Drive of the base, as for `simulate`: its stiffness in N/m, and when it begins to brake, in s, at which
-        deceleration in m/s^2. Clamped contacts are simulated with it.
+    drive : Support or None
+        Drive of the base, its stiffness and its stop. Clamped contacts are simulated with it.
 
     Returns
     -------
@@ -139,43 +139,38 @@ def contact_speed_limit(
     """
     instance("base", base, HolonomicBase, DifferentialBase)
     mass = base.effective_mass(point, normal)
-    drive = _Drive.of(robot_stiffness, stop)
+    drive = _whole(drive)
     found = (_region_speed(mass, covering, each, area, drive) for each in _limits_of(regions))
     return tuple(each._replace(warnings=(*base.warnings, *each.warnings)) for each in found)
 
 
-class _Drive(NamedTuple):
-    """Drive of a base: stiffness in N/m, when it begins to brake in s, at which deceleration in m/s^2."""
+def _hit(
+    mass: float, covering: Covering | Mapping[str, object] | None, limit: Any, area: float | None, drive: Support | None
+) -> tuple[Contact, float]:
+    """Return the contact with a region, and the time until which its loads are followed.
 
-    stiffness: float
-    time: float
-    deceleration: float
+    A clamped region meets the drive, too; a free body is hit and left alone.
+    """
+    for name in ("spring_constant", "body_mass"):
+        if getattr(limit, name) is None:
+            raise InvalidParameterError(f"regions.{limit.region}.{name}", "be known", None)
+    free = drive is None or drive.stop is None or math.isfinite(limit.body_mass)
+    hit = Contact(robot=mass, body=limit, covering=covering, area=area, drive=None if free else drive)
+    if free or drive is None or drive.stop is None:
+        return hit, HORIZON
+    # At rest by then, and pressed no further.
+    return hit, min(drive.stop[0] + FASTEST / drive.stop[1] + SETTLING, LATEST)
 
-    @classmethod
-    def of(cls, robot_stiffness: float, stop: tuple[float, float] | None) -> _Drive | None:
-        """Return a drive; none where it is not described."""
-        stiffness = not_negative("robot_stiffness", robot_stiffness)
-        if stop is None and stiffness == 0.0:
-            return None
-        if stop is None or stiffness == 0.0:
-            name, rule = ("stop", "time and deceleration") if stop is None else ("robot_stiffness", "above 0")
-            rule = f"be given, {rule}: a drive is robot_stiffness and stop"
-            raise InvalidParameterError(name, rule, stop if stop is None else stiffness)
-        time, deceleration = pair("stop", stop)
-        return cls(stiffness, not_negative("stop.time", time), positive("stop.deceleration", deceleration))
 
-    def numbers(self, limit: Any) -> dict[str, float]:
-        """Return the numbers of a clamped contact with it; a free body is hit and left alone."""
-        if math.isfinite(limit.body_mass):
-            return {}
-        # At rest by then, and pressed no further.
-        horizon = min(self.time + FASTEST / self.deceleration + SETTLING, LATEST)
-        return {
-            "robot_stiffness": self.stiffness,
-            "stop_time": self.time,
-            "stop_deceleration": self.deceleration,
-            "horizon": horizon,
-        }
+def _whole(drive: Support | None) -> Support | None:
+    """Return a drive of which stiffness and stop are known; half of one is none."""
+    if drive is not None:
+        instance("drive", drive, Support)
+        for name, given in (("stop", drive.stop is not None), ("stiffness", drive.stiffness > 0.0)):
+            if not given:
+                rule = "be given: a drive of a base has a stiffness and a stop"
+                raise InvalidParameterError(f"drive.{name}", rule, getattr(drive, name))
+    return drive
 
 
 def _limits_of(regions: Sequence[Any]) -> list[Any]:
@@ -194,24 +189,14 @@ def _region_speed(
     covering: Covering | Mapping[str, object] | None,
     limit: Any,
     area: float | None,
-    drive: _Drive | None,
+    drive: Support | None,
 ) -> RegionSpeed:
     if not limit.permitted:
         return RegionSpeed(limit.region, limit.contact, "not_permitted", mass, 0.0, None)
-    driven: dict[str, Any] = {} if drive is None else drive.numbers(_known(limit))
-    if driven:
-        driven["stop"] = (driven.pop("stop_time"), driven.pop("stop_deceleration"))
-    found = allowed_speed(robot_mass=mass, covering=covering, area=area, limits=_known(limit), **driven)
+    hit, horizon = _hit(mass, covering, limit, area, drive)
+    found = hit.allowed_speed(horizon=horizon)
     speed = math.nan if found.speed is None else found.speed
     return RegionSpeed(limit.region, limit.contact, found.status, mass, speed, found, found.warnings)
-
-
-def _known(limit: Any) -> Any:
-    """Return a limit of which it is known how the region yields."""
-    for name in ("spring_constant", "body_mass"):
-        if getattr(limit, name) is None:
-            raise InvalidParameterError(f"regions.{limit.region}.{name}", "be known", None)
-    return limit
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -278,8 +263,7 @@ def contact_margins(
     person_radius: float,
     area: float | None = None,
     cover_height: float | None = None,
-    robot_stiffness: float = 0.0,
-    stop: tuple[float, float] | None = None,
+    drive: Support | None = None,
 ) -> ContactMargins:
     """Return the margin of the closing speed at every instant of a run, as if the robot touched then.
 
@@ -289,7 +273,7 @@ def contact_margins(
     ----------
     trajectory : navigation.Trajectory
         The run: its ``time``, ``position``, ``velocity``, ``heading`` and ``obstacle_position``.
-    base, covering, regions, area, robot_stiffness, stop
+    base, covering, regions, area, drive
         As for `contact_speed_limit`. The lowest speed of all regions and classes counts.
     robot_radius, person_radius : float
         Radii in m, for the point of contact and for ``touching``.
@@ -337,7 +321,7 @@ def contact_margins(
         normal = away / distance[:, :, None]
     share = np.einsum("nk,nmk->nm", trajectory.velocity, normal)
     closing = share + approach_of(trajectory.time, trajectory.obstacle_position, normal)
-    drive = _Drive.of(robot_stiffness, stop)
+    drive = _whole(drive)
     limits = [_limit_at(trajectory, base, covering, each, normal, reach, (area, drive)) for each in regions]
     limit = np.min([each.speed for each in limits], axis=0)
     run_doubts = tuple(doubts_of_run(trajectory))
@@ -399,7 +383,7 @@ def _limit_at(
     limit: Any,
     normal: Array,
     reach: float,
-    how: tuple[float | None, _Drive | None],
+    how: tuple[float | None, Support | None],
 ) -> _Limits:
     area, drive = how
     shape = normal.shape[:2]
@@ -414,8 +398,8 @@ def _limit_at(
         for place in map(tuple, np.argwhere(np.isfinite(turned)).tolist()):
             along = (math.cos(turned[place]), math.sin(turned[place]))
             masses[place] = base.effective_mass((reach * along[0], reach * along[1]), along)
-    driven = {} if drive is None else drive.numbers(_known(limit))
-    found = allowed_speeds(robot_mass=masses, covering=covering, area=area, limits=_known(limit), **driven)
+    hit, horizon = _hit(math.inf, covering, limit, area, drive)
+    found = hit.allowed_speeds(horizon=horizon, robot_mass=masses)
     unlimited = found.status == "unlimited_up_to_20"
     known = np.isfinite(found.speed) | unlimited
     # Some doubts hold for the instants of a flag; every other one holds for all of them.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,10 +14,12 @@ from hrsafety._bounds import MOST_CONTACTS
 from hrsafety._words import meant
 from hrsafety.contact.covering import Covering, Region, covering_of, region_of
 from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.plausibility import ResultWarning
 
 __all__ = [
     "HORIZON",
     "TOLERANCE",
+    "Prepared",
     "applying",
     "columns_of",
     "contact_row",
@@ -43,6 +46,30 @@ _SHAPES = {
     "cylinder": ("radius", "length"),
 }
 _REGIONS = {"rigid": (), "spring": ("stiffness", "region_cubic"), "power": ("stiffness", "region_exponent")}
+
+
+class Prepared(NamedTuple):
+    """A contact as the core reads it.
+
+    Attributes
+    ----------
+    shared : dict
+        What is no number: law, shape, region.
+    values : dict of str to float
+        Numbers of a row by name.
+    pad : Covering or None
+        The covering.
+    limits : object
+        What says which limits hold, and for which part of the body.
+    doubts : tuple of ResultWarning
+        Those about the robot.
+    """
+
+    shared: dict[str, object]
+    values: dict[str, float]
+    pad: Covering | None
+    limits: object
+    doubts: tuple[ResultWarning, ...]
 
 
 def limits_of(given: object) -> dict[str, float]:

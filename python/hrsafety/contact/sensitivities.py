@@ -3,68 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
 from hrsafety import _hrsafety
-from hrsafety.contact.bodies import body_of
-from hrsafety.contact.covering import Covering, Region, covering_of
-from hrsafety.contact.rows import contact_row, in_order, limits_of
+from hrsafety.contact.rows import Prepared, in_order
 from hrsafety.errors import InvalidParameterError, Shown
 
-__all__ = ["sensitivity"]
+__all__ = ["sensitivities_of"]
 
 _STEP = 1e-5
 _FIXED = ("bottoming_strain", "horizon", "backing_stiffness", "unloading_retained", "unloading_exponent")
 """Numbers without a sensitivity: an allowed speed belongs to the first loading."""
 
 
-def sensitivity(
-    *,
-    robot_mass: float,
-    region: Region | Mapping[str, object] | float | None = None,
-    limits: object,
-    body_mass: float | None = None,
-    covering: Covering | Mapping[str, object] | None = None,
-    area: float | None = None,
-    max_strain: float | None = None,
-) -> dict[str, float]:
-    """Return d ln v/d ln x of the allowed speed for every number x that is given, the largest first.
-
-    Parameters
-    ----------
-    robot_mass, region, limits, body_mass, covering, area, max_strain
-        As for `allowed_speed`; without supports and stop.
-
-    Returns
-    -------
-    dict of str to float
-        By name; central differences. At a tie of two limits each side has its own slope, and this is
-        the mean.
-
-    Raises
-    ------
-    InvalidParameterError
-        If a number is out of its range, or nothing limits the speed.
-
-    Examples
-    --------
-    >>> from hrsafety import contact
-    >>> found = contact.sensitivity(robot_mass=10.0, region=75e3, limits={"force": 280.0})
-    >>> {name: round(value, 6) for name, value in found.items()}
-    {'force_limit': 1.0, 'robot_mass': -0.5, 'stiffness': -0.5}
-    """
-    body = body_of(limits, region, body_mass)
-    shared, values = contact_row(
-        robot_mass=robot_mass,
-        body_mass=body.mass,
-        region=body.region,
-        covering=covering,
-        tolerance=1e-10,
-        area=area,
-        max_strain=max_strain,
-    )
-    values |= limits_of(limits)
-    pad = covering_of(covering)
+def sensitivities_of(given: Prepared) -> dict[str, float]:
+    """Return d ln v/d ln x of the allowed speed for every number x that is given, the largest first."""
+    shared, values, pad, _, _ = given
     laws = [] if pad is None else list(pad.material.keys.values())
     found: dict[str, float] = {}
     for name, value in values.items():

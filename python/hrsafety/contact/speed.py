@@ -13,8 +13,8 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, not_negative, positive
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
-from hrsafety.contact.bodies import Part, agreeing, body_of, contact_width_doubt, larger_than_part, touched_area
-from hrsafety.contact.covering import Covering, Region, covering_of
+from hrsafety.contact.bodies import OWN, Part, agreeing, contact_width_doubt, larger_than_part, touched_area
+from hrsafety.contact.covering import Covering
 from hrsafety.contact.doubts import (
     Doubts,
     counted,
@@ -25,17 +25,17 @@ from hrsafety.contact.doubts import (
     without_drive,
 )
 from hrsafety.contact.many import many, words_at
-from hrsafety.contact.rows import HORIZON, TOLERANCE, contact_row, in_order, limits_of, missing_limits, spring_of
+from hrsafety.contact.rows import Prepared, in_order, missing_limits
 from hrsafety.contact.simulation import arrays_of, known
-from hrsafety.plausibility import ResultWarning, telling
+from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table
 
 __all__ = [
     "AllowedSpeed",
     "AllowedSpeeds",
-    "allowed_speed",
-    "allowed_speeds",
+    "allowed_of",
     "free_from_fixed_force",
+    "speeds_of",
 ]
 
 _GOVERNS = ("force", "pressure", "strain", "nothing")
@@ -89,99 +89,9 @@ class AllowedSpeed:
     human_speed: Annotated[float, "m/s"]
 
 
-@telling()
-def allowed_speed(
-    *,
-    robot_mass: float,
-    region: Region | Mapping[str, object] | float | None = None,
-    limits: object,
-    body_mass: float | None = None,
-    covering: Covering | Mapping[str, object] | None = None,
-    area: float | None = None,
-    max_strain: float | None = None,
-    robot_damping: float = 0.0,
-    robot_stiffness: float = 0.0,
-    body_damping: float = 0.0,
-    body_stiffness: float = 0.0,
-    stop: tuple[float, float] | None = None,
-    horizon: float = HORIZON,
-    human_speed: float = 0.0,
-    tolerance: float = TOLERANCE,
-) -> AllowedSpeed:
-    """Return the closing speed at which a contact just keeps its limits.
-
-    From the stored energy, mu v^2/2 = W_c + W_b, where nothing is lost; by simulation with rate, damper,
-    supports or a stop.
-
-    Parameters
-    ----------
-    robot_mass : float
-        In kg; inf where the robot cannot yield.
-    region : Region, mapping, float or None
-        Spring of the region; a number is k in N/m. ``None``: that of a limit object, else a rigid region.
-    limits : mapping or object
-        ``force`` in N and ``pressure`` in Pa, of the class of contact; ``None`` is not checked. A limit object such as
-        `standards.ContactLimit` also knows spring, mass and class of its region: they may be left out, and others than
-        its own are refused.
-    body_mass : float or None
-        In kg; inf: clamped. ``None``: that of a limit object, else clamped.
-    covering : Covering, mapping or None
-        ``None``: bare.
-    area : float or None
-        Contact area in m^2 of a bare contact; without it its pressure is not checked.
-    max_strain : float or None
-        Largest strain of the covering, its e_b when ``None``.
-    robot_damping, robot_stiffness, body_damping, body_stiffness, stop, horizon
-        As for `simulate`.
-    human_speed : float
-        Speed of the person towards the robot in m/s, not negative: nobody has to keep walking away.
-    tolerance : float
-        Relative tolerance of simulations.
-
-    Returns
-    -------
-    AllowedSpeed
-        A closing speed with the limit that governs.
-
-    Raises
-    ------
-    InvalidParameterError
-        If a number is out of its range or contradicts a limit object, or the contact is not permitted.
-
-    Notes
-    -----
-    A clamped contact holds for a robot without drive, unless `robot_stiffness` and `stop` describe one: the doubt
-    ``drive_not_given`` says so.
-
-    Examples
-    --------
-    >>> from hrsafety import contact, standards
-    >>> limits = {"force": 280.0, "pressure": 380e4}
-    >>> bare = contact.allowed_speed(robot_mass=16.35, body_mass=0.6, region=75e3, limits=limits, area=1e-4)
-    >>> round(bare.speed, 6), bare.governs
-    (1.343933, 'force')
-    >>> hand = standards.limits().contact("hand_finger", "transient")
-    >>> contact.allowed_speed(robot_mass=16.35, limits=hand, area=1e-4).speed == bare.speed
-    True
-    """
-    pad = covering_of(covering)
-    body = body_of(limits, region, body_mass)
-    shared, values = contact_row(
-        robot_mass=robot_mass,
-        body_mass=body.mass,
-        region=body.region,
-        covering=pad,
-        tolerance=tolerance,
-        area=area,
-        max_strain=max_strain,
-        robot_damping=robot_damping,
-        robot_stiffness=robot_stiffness,
-        body_damping=body_damping,
-        body_stiffness=body_stiffness,
-        stop=stop,
-        horizon=horizon,
-    )
-    values |= limits_of(limits)
+def allowed_of(given: Prepared, human_speed: float) -> AllowedSpeed:
+    """Return the closing speed at which a contact just keeps its limits."""
+    shared, values, pad, limits, doubts = given
     walking = not_negative("human_speed", human_speed)
     found = _hrsafety.contact_speed(shared, in_order(values))
     speed = known(found["speed"])
@@ -202,6 +112,7 @@ def allowed_speed(
         not_checked=missing,
         covering_compression=known(found["covering_compression"]),
         warnings=(
+            *doubts,
             *not_checked(missing),
             *without_drive(values),
             *flagged(flags, pad, values),
@@ -271,72 +182,19 @@ class AllowedSpeeds(Table):
         return arrays_of(self)
 
 
-@telling()
-def allowed_speeds(
-    *,
-    robot_mass: npt.ArrayLike,
-    region: Region | Mapping[str, object] | float | None = None,
-    limits: object = None,
-    body_mass: npt.ArrayLike | None = None,
-    covering: Covering | Mapping[str, object] | None = None,
-    area: npt.ArrayLike | None = None,
-    max_strain: npt.ArrayLike | None = None,
-    tolerance: float = TOLERANCE,
-    threads: int | None = None,
-    progress: Callable[[int, int], object] | None = None,
-    **arrays: npt.ArrayLike,
+def speeds_of(
+    given: Prepared,
+    arrays: Mapping[str, npt.ArrayLike],
+    threads: int | None,
+    progress: Callable[[int, int], object] | None,
 ) -> AllowedSpeeds:
-    """Return many allowed speeds: a map over thickness and modulus, masses along a motion, a catalog.
-
-    Parameters
-    ----------
-    robot_mass, body_mass, area, max_strain : array_like
-        As for `allowed_speed`; a body mass of inf is clamped.
-    region, covering, limits, tolerance
-        As for `allowed_speed`, the same for all rows.
-    threads, progress
-        As for `batch`.
-    **arrays : array_like
-        As for `batch`, and ``force_limit`` (N) and ``pressure_limit`` (Pa). Beside a limit object none that contradicts
-        its own number.
-
-    Returns
-    -------
-    AllowedSpeeds
-        Arrays of the broadcast shape.
-
-    Raises
-    ------
-    InvalidParameterError
-        If a name is not known, an option out of range, or a number not that of a limit object.
-    ShapeError
-        If the arrays do not broadcast.
-
-    Examples
-    --------
-    Which foam: a map over thickness and modulus.
-
-    >>> from hrsafety import contact
-    >>> pad = contact.Covering(material=contact.Linear(modulus=1e5), thickness=0.02, area=4e-3)
-    >>> found = contact.allowed_speeds(
-    ...     robot_mass=8.0, body_mass=40.0, region=25e3, limits={"force": 280.0}, covering=pad,
-    ...     thickness=[[0.01], [0.02]], modulus=[5e4, 1e5],
-    ... )
-    >>> found.speed.round(3).tolist(), found.governs[0].tolist()
-    ([[0.588, 0.874], [0.733, 1.029]], ['strain', 'force'])
-    """
-    pad = covering_of(covering)
-    for name, own in (("stiffness", "spring_constant"), ("force_limit", "force"), ("pressure_limit", "pressure")):
+    """Return many allowed speeds: numbers of a contact as arrays."""
+    shared, values, pad, limits, doubts = given
+    for name, own in OWN.items():
         if name in arrays:
             agreeing(name, arrays[name], getattr(limits, own, None), limits)
-    body = body_of(limits, region, body_mass, given=tuple(arrays))
-    spring = spring_of(body.region, arrays)
-    shared, values = contact_row(robot_mass=1.0, body_mass=None, region=spring, covering=pad, tolerance=tolerance)
-    values |= limits_of(limits)
-    given = {"robot_mass": robot_mass, "body_mass": body.mass, "max_strain": max_strain, "area": area}
-    varying = {name: value for name, value in given.items() if value is not None} | arrays
-    found = many("speed", (shared, values), varying, pad, threads=threads, progress=progress)
-    there = {name: 0.0 if name in varying else values[name] for name in ("force_limit", "pressure_limit", "area")}
+    found = many("speed", (shared, values), arrays, pad, threads=threads, progress=progress)
+    there = {name: 0.0 if name in arrays else values[name] for name in ("force_limit", "pressure_limit", "area")}
     missing = missing_limits(there, bare=pad is None)
     numbers: dict[str, Any] = dict(found.numbers)
     flags: dict[str, Any] = {name: found.flag(name) for name in _FLAGS}
@@ -353,7 +211,7 @@ def allowed_speeds(
         status=found.status,
         **flags,
         not_checked=missing,
-        warnings=(*not_checked(missing), *without_drive(found.given), *wide, *found.warnings),
+        warnings=(*doubts, *not_checked(missing), *without_drive(found.given), *wide, *found.warnings),
     )
 
 

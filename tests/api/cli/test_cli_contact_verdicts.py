@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
+from api import contact_calls
 from hrsafety import contact, standards
 from hrsafety.cli import exit_codes, main
 from hrsafety.contact import load_cell
@@ -179,12 +180,12 @@ def test_the_stop_of_the_cell_is_looked_at_with_drives_of_any_stiffness(judged: 
         "stop": (0.1, 3.0),
         "horizon": 2.0,
     }
-    one = contact.simulate(**driven, closing_speed=0.25, robot_stiffness=1e5)
+    one = contact_calls.simulate(**driven, closing_speed=0.25, robot_stiffness=1e5)
     assert one.peak_force == pytest.approx(892.0, abs=1.0)
     # Up to the speed of the row all limits are kept with this drive, too.
     most = row["drive"]["allowed_closing_speed"]
     assert 0.05 < most < 0.139
-    slow = contact.simulate(**driven, closing_speed=most, robot_stiffness=1e5)
+    slow = contact_calls.simulate(**driven, closing_speed=most, robot_stiffness=1e5)
     assert (slow.peak_force or 0.0) <= 140.0
     assert "1447" in page
     within = judged(cell.replace("speed = 0.1", f"speed = {0.999 * most}") + STOP)[1]["verdicts"][0]
@@ -211,7 +212,7 @@ def test_no_drive_presses_harder_than_the_row_says(
     path.write_text(text)
     cell = load_cell(str(path))
     row = verdicts_of(cell)[0][0].verdict
-    hit = contact.simulate(
+    hit = contact_calls.simulate(
         robot_mass=mass,
         limits=cell.contacts[0].limit,
         covering=cell.coverings["pad"] if covering else None,
@@ -324,8 +325,8 @@ def test_the_area_of_a_contact_is_that_of_its_flat_covering(
     pad = load_cell("cell.toml").coverings["pad"]
     own = contact.Covering(material=pad.material, thickness=0.02, area=4e-4)
     limit = standards.limits().contact("hand_finger", "transient")
-    assert row["allowed_speed"] == contact.allowed_speed(robot_mass=8.0, limits=limit, covering=own).speed
-    hit = contact.simulate(robot_mass=8.0, closing_speed=0.1, limits=limit, covering=own)
+    assert row["allowed_speed"] == contact_calls.allowed_speed(robot_mass=8.0, limits=limit, covering=own).speed
+    hit = contact_calls.simulate(robot_mass=8.0, closing_speed=0.1, limits=limit, covering=own)
     assert report["results"][0]["rows"][1]["peak_force"] == hit.peak_force
     capsys.readouterr()
     Path("cell.toml").write_text(finger.replace("area = 4e-3", 'shape = "sphere"\nradius = 0.08'))

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from api import contact_calls
 from hrsafety import contact, impact, scenarios
 from hrsafety import navigation as nav
 from hrsafety.errors import InvalidParameterError, ShapeError
@@ -45,10 +46,10 @@ def changed(changes: dict[str, Any]) -> dict[str, Any]:
 
 
 BAD = [
-    ({"robot_mass": 0.0}, "robot_mass", "finite and positive"),
-    ({"robot_mass": math.nan}, "robot_mass", "finite and positive"),
-    ({"body_mass": -1.0}, "body_mass", "finite and positive"),
-    ({"robot_damping": -1.0}, "robot_damping", "not negative"),
+    ({"robot_mass": 0.0}, "robot", "finite and positive"),
+    ({"robot_mass": math.nan}, "robot", "finite and positive"),
+    ({"body_mass": -1.0}, "body", "finite and positive"),
+    ({"robot_damping": -1.0}, "damping", "not negative"),
     ({"closing_speed": math.inf}, "closing_speed", "finite"),
     ({"horizon": 0.0}, "horizon", "positive"),
     ({"horizon": 1e9}, "horizon", "at most 60"),
@@ -99,7 +100,7 @@ BAD = [
 @pytest.mark.parametrize(("changes", "name", "rule"), BAD, ids=[f"{next(iter(each[0]))}-{each[2]}" for each in BAD])
 def test_bad_numbers_are_refused_by_name(changes: dict[str, Any], name: str, rule: str) -> None:
     with pytest.raises(InvalidParameterError, match=rule) as caught:
-        contact.simulate(**changed(changes))
+        contact_calls.simulate(**changed(changes))
     assert caught.value.argument == name
 
 
@@ -117,12 +118,12 @@ def test_bad_numbers_are_refused_by_name(changes: dict[str, Any], name: str, rul
 )
 def test_bad_limits_are_refused_by_name(changes: dict[str, Any], name: str) -> None:
     with pytest.raises(InvalidParameterError) as caught:
-        contact.allowed_speed(**{**SPEED, **changes})
+        contact_calls.allowed_speed(**{**SPEED, **changes})
     assert caught.value.argument == name
 
 
 def test_rows_with_bad_numbers_say_which() -> None:
-    found = contact.batch(
+    found = contact_calls.batch(
         **{**HIT, "closing_speed": [0.5, 0.0, math.nan]}, thickness=[[0.02], [-1.0]], plateau=[[15e3], [15e3]]
     )
     assert found.status.tolist() == [
@@ -130,46 +131,46 @@ def test_rows_with_bad_numbers_say_which() -> None:
         ["invalid_thickness"] * 3,
     ]
     assert np.isfinite(found.peak_force).tolist() == [[True, False, False], [False] * 3]
-    table = contact.allowed_speeds(**SPEED, plateau=[15e3, 0.0])
+    table = contact_calls.allowed_speeds(**SPEED, plateau=[15e3, 0.0])
     assert table.status.tolist() == ["closed_form", "invalid_plateau"]
     with pytest.raises(InvalidParameterError, match="did you mean"):
-        contact.batch(**HIT, thicknes=0.02)
+        contact_calls.batch(**HIT, thicknes=0.02)
     with pytest.raises(ShapeError):
-        contact.batch(**{**HIT, "closing_speed": [0.1, 0.2]}, thickness=[0.1, 0.2, 0.3])
+        contact_calls.batch(**{**HIT, "closing_speed": [0.1, 0.2]}, thickness=[0.1, 0.2, 0.3])
 
 
 def test_statuses() -> None:
-    assert contact.simulate(**{**HIT, "closing_speed": -1.0}).status == "no_impact"
+    assert contact_calls.simulate(**{**HIT, "closing_speed": -1.0}).status == "no_impact"
     points = {"law": "table", "strain": [0.0, 0.1], "stress": [0.0, 1e3]}
     short = {"material": points, "thickness": 0.01, "area": 1e-3}
     with pytest.raises(InvalidParameterError, match="beyond_data"):
-        contact.simulate(**{**HIT, "covering": short})
-    rows = contact.batch(**{**HIT, "closing_speed": [1e-4, 0.5], "covering": short})
+        contact_calls.simulate(**{**HIT, "covering": short})
+    rows = contact_calls.batch(**{**HIT, "closing_speed": [1e-4, 0.5], "covering": short})
     assert rows.status.tolist() == ["horizon", "beyond_data"]
     assert np.isnan(rows.peak_force[1])
     assert "beyond_data" in {each.code for each in rows.warnings}
-    heavy = contact.allowed_speed(**{**SPEED, "robot_mass": math.inf, "body_mass": None})
+    heavy = contact_calls.allowed_speed(**{**SPEED, "robot_mass": math.inf, "body_mass": None})
     assert (heavy.speed, heavy.status) == (0.0, "unbounded_mass")
-    bare = contact.allowed_speed(robot_mass=8.0, region=25e3, limits={"pressure": 1e6})
+    bare = contact_calls.allowed_speed(robot_mass=8.0, region=25e3, limits={"pressure": 1e6})
     assert (bare.speed, bare.status, bare.governs) == (None, "not_checked", "nothing")
     assert bare.not_checked == ("force", "pressure")
-    walking = contact.allowed_speed(**SPEED, human_speed=100.0)
+    walking = contact_calls.allowed_speed(**SPEED, human_speed=100.0)
     assert walking.robot_speed == 0.0
     deep = contact.Covering(material=FOAM, thickness=0.05, shape="sphere", radius=0.009, half_width=0.01)
     assert deep.column(0.006).status == ("outside_paraboloid", "beyond_pad", "edge")
     with pytest.raises(InvalidParameterError, match="where the law ends"):
         deep.column(0.046)
-    thin = contact.thickness(**SPEED, speed=0.05)
+    thin = contact_calls.thickness(**SPEED, speed=0.05)
     assert (thin.thickness, thin.status) == (0.0, "bare_is_enough")
-    never = contact.thickness(**SPEED, speed=1e3)
+    never = contact_calls.thickness(**SPEED, speed=1e3)
     assert (never.thickness, never.status) == (None, "none_up_to_1_m")
 
 
 def test_supports_and_stops_are_solved_by_simulation() -> None:
-    held = contact.allowed_speed(**SPEED, robot_stiffness=2e4, robot_damping=200.0, stop=(0.01, 10.0))
+    held = contact_calls.allowed_speed(**SPEED, robot_stiffness=2e4, robot_damping=200.0, stop=(0.01, 10.0))
     assert held.status == "monotone"
     assert held.speed is not None
-    hit = contact.simulate(
+    hit = contact_calls.simulate(
         **{**HIT, "closing_speed": held.speed}, robot_stiffness=2e4, robot_damping=200.0, stop=(0.01, 10.0)
     )
     assert held.governs == "strain"
@@ -179,7 +180,7 @@ def test_supports_and_stops_are_solved_by_simulation() -> None:
 
 
 def test_sensitivities_of_a_bare_contact_are_known() -> None:
-    found = contact.sensitivity(robot_mass=10.0, body_mass=40.0, region=75e3, limits={"force": 280.0})
+    found = contact_calls.sensitivity(robot_mass=10.0, body_mass=40.0, region=75e3, limits={"force": 280.0})
     assert found == pytest.approx(
         {"force_limit": 1.0, "robot_mass": -0.4, "body_mass": -0.1, "stiffness": -0.5}, rel=1e-8
     )
@@ -187,7 +188,7 @@ def test_sensitivities_of_a_bare_contact_are_known() -> None:
 
 def test_distributions_are_checked() -> None:
     given: dict[str, Any] = {"speed": 0.3, "region": 25e3, "limits": {"force": 140.0}, "draws": 2000}
-    sure = contact.probability(robot_mass=8.0, **given)
+    sure = contact_calls.probability(robot_mass=8.0, **given)
     assert sure.probability in (0.0, 1.0)
     for bad, rule in [
         ({"normal": [8.0, 4.0]}, "be positive but for a chance"),
@@ -199,23 +200,23 @@ def test_distributions_are_checked() -> None:
         ({}, "one distribution"),
     ]:
         with pytest.raises(InvalidParameterError, match=rule):
-            contact.probability(robot_mass=bad, **given)
+            contact_calls.probability(robot_mass=bad, **given)
     with pytest.raises(InvalidParameterError, match="be among"):
-        contact.probability(robot_mass=8.0, weight=3.0, **given)
+        contact_calls.probability(robot_mass=8.0, weight=3.0, **given)
 
 
 def test_a_foam_from_tests_is_a_covering() -> None:
     fit = impact.Foam(stiffness=24_250.0, damping=0.0, thickness=0.0254, linear_range=0.02)
     pad = contact.Covering.from_foam(fit, tested_area=5e-3)
     given: dict[str, Any] = {"robot_mass": 4.4, "region": 60e3}
-    free = contact.allowed_speed(**given, body_mass=75.0, limits={"force": 260.0}, covering=pad)
-    clamped = contact.allowed_speed(**given, limits={"force": 130.0}, covering=pad)
+    free = contact_calls.allowed_speed(**given, body_mass=75.0, limits={"force": 260.0}, covering=pad)
+    clamped = contact_calls.allowed_speed(**given, limits={"force": 130.0}, covering=pad)
     assert (round(free.speed or 0.0, 4), round(clamped.speed or 0.0, 4)) == (0.9705, 0.4716)
     # Twice the area is twice the stiffness and twice the damper; no strain beyond the tested one is allowed.
     double = contact.Covering.from_foam(impact.FOAM_1, tested_area=5e-3, area=1e-2)
     assert double.column(0.001).force == pytest.approx(2.0 * 24.3)
     assert double.damping == pytest.approx(2.0 * 71.9)
-    heavy = contact.allowed_speed(robot_mass=100.0, region=60e3, limits={"force": 1e5}, covering=pad)
+    heavy = contact_calls.allowed_speed(robot_mass=100.0, region=60e3, limits={"force": 1e5}, covering=pad)
     assert heavy.governs == "strain"
     assert heavy.covering_compression == pytest.approx(0.02)
     with pytest.raises(InvalidParameterError, match="moving_mass"):
@@ -278,7 +279,9 @@ def test_margins_along_a_run(kind: Any) -> None:
     if kind is contact.HolonomicBase:
         limit = 130.0 / math.sqrt(4.4 * 60e3)
         assert (found.margin + found.closing_speed)[present] == pytest.approx(limit)
-        driven = contact.contact_margins(run, regions=regions, robot_stiffness=1e4, stop=(0.1, 3.0), **around)
+        driven = contact.contact_margins(
+            run, regions=regions, drive=contact.Support(stiffness=1e4, stop=(0.1, 3.0)), **around
+        )
         assert (driven.margin[present] < found.margin[present]).all()
         assert set(driven.verdict[closing].tolist()) == {"within_limits", "exceeds"}
         free = contact.contact_margins(run, regions=regions[:1], **around)
@@ -312,7 +315,7 @@ def test_errors_are_some_tolerances_at_most_where_the_motion_turns_beside_a_plat
     speeds = np.concatenate([np.linspace(0.1799, 0.1806, 60), np.linspace(0.4976, 0.4983, 60)])
 
     def found(tolerance: float) -> contact.ContactBatch:
-        return contact.batch(
+        return contact_calls.batch(
             robot_mass=8.0,
             body_mass=40.0,
             closing_speed=speeds,
@@ -345,6 +348,6 @@ def test_a_pressure_beyond_a_table_is_no_limit_where_the_backing_lies_beyond_it(
     law = {"law": "table", "strain": [0.0, 0.3, 0.6], "stress": [0.0, 1e4, 3e4]}
     for bottom, known in ((0.8, False), (0.5, True)):
         pad = contact.Covering(material=law, thickness=0.02, shape="sphere", radius=0.08, bottom=(bottom, 1e7))
-        found = contact.allowed_speed(robot_mass=10.0, region=25e3, limits={"pressure": 1e6}, covering=pad)
+        found = contact_calls.allowed_speed(robot_mass=10.0, region=25e3, limits={"pressure": 1e6}, covering=pad)
         assert (found.speeds["pressure"] is not None) == known
         assert found.governs == ("pressure" if known else "strain")

@@ -10,30 +10,35 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from api import contact_calls
 from hrsafety import contact, standards
 from hrsafety.errors import InvalidParameterError
 
 ISO = standards.limits()
 PAD = contact.Covering(material=contact.GibsonAshby(modulus=3e5, plateau=15e3, lock=0.9), thickness=0.02, area=4e-4)
 CALLS: dict[str, Callable[..., Any]] = {
-    "allowed_speed": lambda **body: contact.allowed_speed(robot_mass=8.0, area=1e-4, **body).speed,
-    "allowed_speeds": lambda **body: contact.allowed_speeds(robot_mass=[8.0], area=1e-4, **body).speed[0],
-    "thickness": lambda **body: contact.thickness(robot_mass=8.0, speed=0.6, covering=PAD, **body).thickness,
-    "sensitivity": lambda **body: tuple(contact.sensitivity(robot_mass=8.0, area=1e-4, **body).values()),
+    "allowed_speed": lambda **body: contact_calls.allowed_speed(robot_mass=8.0, area=1e-4, **body).speed,
+    "allowed_speeds": lambda **body: contact_calls.allowed_speeds(robot_mass=[8.0], area=1e-4, **body).speed[0],
+    "thickness": lambda **body: contact_calls.thickness(robot_mass=8.0, speed=0.6, covering=PAD, **body).thickness,
+    "sensitivity": lambda **body: tuple(contact_calls.sensitivity(robot_mass=8.0, area=1e-4, **body).values()),
     "probability": lambda **body: (
-        contact.probability(speed=0.2, robot_mass={"lognormal": [8.0, 0.1]}, area=1e-4, draws=2000, **body).quantiles
+        contact_calls.probability(
+            speed=0.2, robot_mass={"lognormal": [8.0, 0.1]}, area=1e-4, draws=2000, **body
+        ).quantiles
     ),
-    "simulate": lambda **body: contact.simulate(robot_mass=8.0, closing_speed=0.2, **body).peak_force,
-    "batch": lambda **body: contact.batch(robot_mass=8.0, closing_speed=[0.2], **body).peak_force[0],
+    "simulate": lambda **body: contact_calls.simulate(robot_mass=8.0, closing_speed=0.2, **body).peak_force,
+    "batch": lambda **body: contact_calls.batch(robot_mass=8.0, closing_speed=[0.2], **body).peak_force[0],
 }
+LOADS = ("simulate", "batch")
+"""Of a collision the limit object is the body: there is no other mass that could contradict it."""
 permitted = st.sampled_from([each for each in ISO.regions if each not in ("skull_forehead", "face")])
 
 
 def test_the_chest_is_not_taken_for_clamped() -> None:
     chest = ISO.contact("chest", "transient")
-    free = contact.allowed_speed(robot_mass=16.35, limits=chest, area=1e-4)
+    free = contact_calls.allowed_speed(robot_mass=16.35, limits=chest, area=1e-4)
     assert round(free.speed or 0.0, 3) == 0.446  # 0.521 with an infinite mass, 0.188 if it were clamped
-    assert contact.allowed_speed(robot_mass=16.35, region=25e3, limits=chest, area=1e-4) == free
+    assert contact_calls.allowed_speed(robot_mass=16.35, region=25e3, limits=chest, area=1e-4) == free
 
 
 @settings(max_examples=12, deadline=None)
@@ -56,10 +61,10 @@ def test_what_is_of_another_region_or_class_is_refused(region: str, other: str, 
     if wrong.spring_constant != limit.spring_constant:
         with pytest.raises(InvalidParameterError, match=f"spring constant of limits .{region}"):
             CALLS[name](region=wrong.spring_constant, limits=limit)
-    if wrong.body_mass != limit.body_mass:
+    if wrong.body_mass != limit.body_mass and name not in LOADS:
         with pytest.raises(InvalidParameterError, match=f"be that of limits .{region}"):
             CALLS[name](body_mass=wrong.body_mass, limits=limit)
-    if kind == "transient":
+    if kind == "transient" and name not in LOADS:
         with pytest.raises(InvalidParameterError, match="be that of limits"):
             CALLS[name](body_mass=math.inf, limits=limit)
     with pytest.raises(InvalidParameterError, match="spring constant of limits"):
@@ -77,17 +82,17 @@ def test_arrays_and_spreads_of_another_region_are_refused(name: str) -> None:
     )
     assert of_hand is not None
     case: dict[str, Any] = {"robot_mass": 8.0, "limits": hand, "area": 1e-4}
-    own = contact.allowed_speeds(**case, **{name: [of_hand, of_hand]})
-    assert own.speed.tolist() == [contact.allowed_speed(**case).speed] * 2
-    around = contact.probability(**case, speed=0.3, draws=500, **{name: {"lognormal": [0.95 * of_hand, 0.1]}})
+    own = contact_calls.allowed_speeds(**case, **{name: [of_hand, of_hand]})
+    assert own.speed.tolist() == [contact_calls.allowed_speed(**case).speed] * 2
+    around = contact_calls.probability(**case, speed=0.3, draws=500, **{name: {"lognormal": [0.95 * of_hand, 0.1]}})
     assert around.draws == 500
     if of_arm == of_hand:
         return
     with pytest.raises(InvalidParameterError, match="hand_finger, free to give way"):
-        contact.allowed_speeds(**case, **{name: [of_hand, of_arm]})
+        contact_calls.allowed_speeds(**case, **{name: [of_hand, of_arm]})
     for spread in ({"lognormal": [2.0 * of_hand, 0.1]}, {"uniform": [1.1 * of_hand, 2.0 * of_hand]}):
         with pytest.raises(InvalidParameterError, match="within its own spread"):
-            contact.probability(**case, speed=0.3, **{name: spread})
+            contact_calls.probability(**case, speed=0.3, **{name: spread})
 
 
 def test_what_neither_knows_is_asked_for(tmp_path: Any) -> None:
@@ -95,7 +100,7 @@ def test_what_neither_knows_is_asked_for(tmp_path: Any) -> None:
     path.write_text("region,contact,force_N,source\nchest,transient,100,own tests\n")
     chest = standards.limits(path).contact("chest", "transient")
     with pytest.raises(InvalidParameterError, match="region must be given: limits has no spring constant"):
-        contact.allowed_speed(robot_mass=8.0, limits=chest, body_mass=40.0)
+        contact_calls.allowed_speed(robot_mass=8.0, limits=chest, body_mass=40.0)
     with pytest.raises(InvalidParameterError, match="body_mass must be given: limits has no mass"):
-        contact.allowed_speed(robot_mass=8.0, limits=chest, region=25e3)
-    assert contact.allowed_speed(robot_mass=8.0, limits=chest, region=25e3, body_mass=40.0).speed is not None
+        contact_calls.allowed_speed(robot_mass=8.0, limits=chest, region=25e3)
+    assert contact_calls.allowed_speed(robot_mass=8.0, limits=chest, region=25e3, body_mass=40.0).speed is not None

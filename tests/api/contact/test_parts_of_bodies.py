@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from api import contact_calls
 from hrsafety import contact, standards
 from hrsafety.contact.bodies import part_of
 from hrsafety.plausibility import unsafe_doubts
@@ -52,15 +53,15 @@ def test_parts_have_their_areas(region: str, area: str | None, most: float) -> N
 def test_a_pad_larger_than_a_finger_is_told_with_the_speed_of_what_it_touches() -> None:
     hand = ISO.contact("hand_finger", "quasi_static")
     case: dict[str, Any] = {"robot_mass": 16.5, "limits": hand}
-    wide = contact.allowed_speed(**case, covering=pad(4e-3))
+    wide = contact_calls.allowed_speed(**case, covering=pad(4e-3))
     assert round(wide.speed or 0.0, 3) == 0.367
-    narrow = contact.allowed_speed(**case, covering=pad(4e-4))
+    narrow = contact_calls.allowed_speed(**case, covering=pad(4e-4))
     assert "covering_larger_than_part" in codes(wide)
     assert codes(narrow) == {"drive_not_given"}
     (told,) = [each.message for each in wide.warnings if each.code == "covering_larger_than_part"]
     assert f"with that area {narrow.speed:.3g} m/s is allowed" in told
     palm = ISO.contact("hand_finger", "quasi_static", area="palm")
-    assert codes(contact.allowed_speed(robot_mass=16.5, limits=palm, covering=pad(4e-3))) == {"drive_not_given"}
+    assert codes(contact_calls.allowed_speed(robot_mass=16.5, limits=palm, covering=pad(4e-3))) == {"drive_not_given"}
 
 
 @settings(max_examples=30, deadline=None)
@@ -75,23 +76,23 @@ def test_every_result_tells_of_contacts_larger_than_the_part(region: str, area: 
     assert part is not None
     case: dict[str, Any] = {"robot_mass": 8.0, "limits": limit}
     if kind == "bare":
-        found: Any = contact.allowed_speed(**case, area=area)
+        found: Any = contact_calls.allowed_speed(**case, area=area)
     elif kind == "sphere":
         ball = contact.Covering(material=LINEAR, thickness=0.02, shape="sphere", radius=20.0 * area)
-        found = contact.allowed_speed(**case, covering=ball)
+        found = contact_calls.allowed_speed(**case, covering=ball)
         # F = p A: the area that bears, of a linear law half the footprint.
         column = ball.column(found.covering_compression)
         area = column.force / column.peak_pressure
     elif kind == "thickness":
-        found = contact.thickness(**case, covering=pad(area), speed=0.1)
+        found = contact_calls.thickness(**case, covering=pad(area), speed=0.1)
         if found.status == "none_up_to_1_m":
             return
     elif kind == "probability":
-        found = contact.probability(**case, covering=pad(area), speed=0.1, draws=100)
+        found = contact_calls.probability(**case, covering=pad(area), speed=0.1, draws=100)
     elif kind == "rows":
-        found = contact.allowed_speeds(robot_mass=[8.0, 9.0], limits=limit, covering=pad(area))
+        found = contact_calls.allowed_speeds(robot_mass=[8.0, 9.0], limits=limit, covering=pad(area))
     else:
-        found = contact.allowed_speed(**case, covering=pad(area))
+        found = contact_calls.allowed_speed(**case, covering=pad(area))
     if abs(area / part.area - 1.0) > 1e-6:
         assert ("covering_larger_than_part" in codes(found)) == (area > part.area)
 
@@ -99,14 +100,16 @@ def test_every_result_tells_of_contacts_larger_than_the_part(region: str, area: 
 def test_a_linear_covering_is_not_believed_to_four_fifths_of_its_thickness() -> None:
     soft = contact.Linear(modulus=3e4)
     case: dict[str, Any] = {"robot_mass": 8.0, "limits": ISO.contact("chest", "transient")}
-    deep = contact.allowed_speed(**case, covering=pad(4e-3, material=soft))
+    deep = contact_calls.allowed_speed(**case, covering=pad(4e-3, material=soft))
     assert deep.covering_compression == pytest.approx(0.8 * 0.02)
     assert codes(deep) == {"linear_beyond_half"}
     # Who states how far it was tested, or stays within half of it, is believed.
-    assert codes(contact.allowed_speed(**case, covering=pad(4e-3, material=soft, bottom=(0.7, 1e7)))) == set()
-    assert codes(contact.allowed_speed(**case, covering=pad(4e-3, material=soft), max_strain=0.5)) == set()
-    assert codes(contact.allowed_speed(**case, covering=pad(4e-3))) == set()
-    hit = contact.simulate(robot_mass=8.0, closing_speed=0.9, covering=pad(4e-3, material=soft), limits=case["limits"])
+    assert codes(contact_calls.allowed_speed(**case, covering=pad(4e-3, material=soft, bottom=(0.7, 1e7)))) == set()
+    assert codes(contact_calls.allowed_speed(**case, covering=pad(4e-3, material=soft), max_strain=0.5)) == set()
+    assert codes(contact_calls.allowed_speed(**case, covering=pad(4e-3))) == set()
+    hit = contact_calls.simulate(
+        robot_mass=8.0, closing_speed=0.9, covering=pad(4e-3, material=soft), limits=case["limits"]
+    )
     assert "linear_beyond_half" in codes(hit)
 
 
@@ -129,17 +132,17 @@ def test_a_linear_covering_is_not_believed_to_four_fifths_of_its_thickness() -> 
 def test_numbers_in_another_unit_know_the_side_of_their_error(slip: dict[str, Any], unsafe: bool) -> None:
     right: dict[str, Any] = {"robot_mass": 8.0, "region": 75e3, "body_mass": 0.6, "area": 1e-4}
     right |= {"limits": {"force": 140.0, "pressure": 190e4}}
-    assert codes(contact.allowed_speed(**right)) == set()
-    found = contact.allowed_speed(**right | slip)
+    assert codes(contact_calls.allowed_speed(**right)) == set()
+    found = contact_calls.allowed_speed(**right | slip)
     assert [each.code for each in found.warnings] == ["implausible"]
     assert (codes(found) == {"implausible"}) is unsafe
     if not unsafe:
-        assert (found.speed or 0.0) < (contact.allowed_speed(**right).speed or 0.0)
+        assert (found.speed or 0.0) < (contact_calls.allowed_speed(**right).speed or 0.0)
 
 
 def test_a_covering_of_twenty_meters_is_a_doubt() -> None:
     thick = contact.Covering(material=FOAM, thickness=20.0, area=4e-3)
-    found = contact.allowed_speed(robot_mass=8.0, limits=ISO.contact("chest", "transient"), covering=thick)
+    found = contact_calls.allowed_speed(robot_mass=8.0, limits=ISO.contact("chest", "transient"), covering=thick)
     assert "implausible" in codes(found)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from api import contact_calls
 from hrsafety import arms, contact, standards
 
 APART = {"contact_speed": 0.2, "max_speed": 1.0, "reaction_time": 0.1, "intrusion": 0.2, "uncertainty": 0.1}
@@ -14,7 +15,7 @@ def test_strain_in_percent_is_told_of() -> None:
     percent = contact.StressTable(strain=[0.0, 10.0, 60.0], stress=[0.0, 14e3, 30e3])
     for material, subjects in ((shares, []), (percent, ["strain"])):
         pad = contact.Covering(material=material, thickness=0.02, area=4e-3, bottom=(0.5, 1e7))
-        found = contact.allowed_speed(
+        found = contact_calls.allowed_speed(
             robot_mass=6.0, body_mass=0.6, region=75e3, limits={"force": 140.0, "pressure": 2e6}, covering=pad
         )
         assert [each.subject for each in found.warnings] == subjects

@@ -318,8 +318,8 @@ def test_an_array_without_an_axis_is_a_number_only_if_it_holds_one(value: Any) -
             contact.Linear(modulus=given)
         with pytest.raises(InvalidParameterError, match="stiffness must be a number"):
             impact.Foam(stiffness=given, damping=10.0)
-        with pytest.raises(InvalidParameterError, match="closing_speed must be a number"):
-            contact.simulate(robot_mass=3.0, closing_speed=given, region=75e3)
+        with pytest.raises(InvalidParameterError, match="speed must be a number"):
+            contact.Contact(robot=3.0, region=75e3).simulate(given)
     for fine in (np.array(5), np.float32(5.0), np.array(5, dtype=np.uint8)):
         assert contact.Linear(modulus=fine) == contact.Linear(modulus=5.0)  # type: ignore[arg-type]  # what is tried
 
@@ -344,15 +344,15 @@ def test_numbers_of_other_kinds_are_taken_as_numbers() -> None:
     half = Decimal("0.5")
     assert len(nav.robots.WheelReference.sine(duration=5, period=half).angle) == 10
     pad = contact.Covering(material=contact.Linear(modulus=1e5), thickness=0.02, area=4e-3)
-    case: dict[str, Any] = {"robot_mass": 16.0, "body_mass": 0.6, "region": 75e3, "limits": {"force": 280.0}}
-    exact = contact.thickness(speed=0.5, covering=pad, **case)
-    assert contact.thickness(speed=half, covering=pad, **case) == exact  # type: ignore[arg-type]  # what is tried
+    hit = contact.Contact(robot=16.0, body=0.6, region=75e3, covering=pad)
+    exact = hit.thickness(0.5, {"force": 280.0})
+    assert hit.thickness(half, {"force": 280.0}) == exact  # type: ignore[arg-type]  # what is tried
 
 
 def test_arrays_of_too_many_axes_are_refused_by_name() -> None:
-    speed = np.ones((1,) * 40)
-    with pytest.raises(InvalidParameterError, match="closing_speed must have at most 16 axes, got 40 axes"):
-        contact.batch(closing_speed=speed, robot_mass=16.0, body_mass=0.6, region=75e3)
+    speed, hit = np.ones((1,) * 40), contact.Contact(robot=16.0, body=0.6, region=75e3)
+    with pytest.raises(InvalidParameterError, match="speed must have at most 16 axes, got 40 axes"):
+        hit.simulate_many(speed)
 
 
 def test_names_without_a_hash_are_refused_by_name() -> None:

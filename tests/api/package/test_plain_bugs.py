@@ -41,7 +41,7 @@ REFUSED: dict[str, tuple[Callable[[], object], str]] = {
     "metrics of a number": (lambda: nav.crowd.world_metrics(1.0), "run"),
     "entry of a number": (lambda: entry(1.0), "laws"),
     "head of an array": (
-        lambda: contact.simulate(robot_mass=3.0, closing_speed=0.5, region=75e3, body_mass=0.6, head=np.ones(2)),
+        lambda: contact.Contact(robot=3.0, body=0.6, region=75e3).simulate(0.5, head=np.ones(2)),
         "head",
     ),
     "corridor beyond the world": (lambda: scenarios.corridor(5, length=1e101), "length"),
@@ -72,8 +72,8 @@ REFUSED: dict[str, tuple[Callable[[], object], str]] = {
         "integrator",
     ),
     "huge body": (
-        lambda: contact.allowed_speed(
-            robot_mass=8.0, limits=standards.limits().contact("chest", "transient"), area=1e-4, body_mass=10**400
+        lambda: contact.Contact(robot=8.0, body=standards.limits().contact("chest", "transient")).allowed_speeds(
+            body_mass=10**400
         ),
         "body_mass",
     ),

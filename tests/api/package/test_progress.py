@@ -22,7 +22,8 @@ LONG: tuple[Callable[..., Any], ...] = (
     *(nav.simulate_many, nav.simulate_batch, nav.compare, nav.optimize_gains, nav.gain_sensitivity),
     *(nav.gains.pareto_front, nav.metrics.falsify, nav.metrics.evaluate_many, nav.crowd.simulate_crowds),
     *(nav.tracking.track_batch, nav.sensing.calibration_study, nav.robots.open_loop_tests),
-    *(impact.metrics_batch, impact.identify_foam, contact.batch, contact.allowed_speeds, contact.probability),
+    *(impact.metrics_batch, impact.identify_foam, contact.study),
+    *(contact.Contact.simulate_many, contact.Contact.allowed_speeds, contact.Contact.probability),
     *(reactive.experiment, reactive.skirt_test, reactive.smallest_skirt, reactive.locate_batch),
     *(reactive.sound.jittered_fixes, arms.workspace, scenarios.crossings, sweep.run),
 )
@@ -60,10 +61,13 @@ def test_resamplings_and_draws_are_counted_to_all() -> None:
         time, height=0.05, mass=1.54, stiffness=24250.0, damping_ratio=0.112, friction=2.0
     )
     scattered = np.round(drop, 4)
-    chance: dict[str, Any] = {"speed": 0.2, "robot_mass": 4.0, "region": 75e3, "limits": {"force": 140.0}}
+    hit = contact.Contact(robot=4.0, region=75e3)
     calls: dict[str, tuple[Callable[..., Any], int]] = {
         "bootstrap": (lambda **told: impact.identify_foam(24250.0 * depth, depth, time, scattered, 1.54, **told), 20),
-        "draws": (lambda **told: contact.probability(**chance, body_mass={"lognormal": [1.0, 0.2]}, **told), 5000),
+        "draws": (
+            lambda **told: hit.probability(0.2, {"force": 140.0}, body_mass={"lognormal": [1.0, 0.2]}, **told),
+            5000,
+        ),
     }
     for name, (call, total) in calls.items():
         seen: list[int] = []

@@ -58,7 +58,7 @@ def test_speeds_over_the_distance_show_their_doubts() -> None:
 
 
 def test_loads_show_the_doubts_of_collisions() -> None:
-    hit = contact.simulate(robot_mass=8e5, closing_speed=0.3, region=75e3, body_mass=0.6)
+    hit = contact.Contact(robot=8e5, body=0.6, region=75e3).simulate(0.3)
     assert hit.warnings
     assert "robot_mass" in note(plotting.contacts.contact_forces({"bare": hit}))
 

@@ -7,6 +7,7 @@ import pytest
 
 pytest.importorskip("matplotlib")
 
+from api import contact_calls
 from hrsafety import contact, plotting, standards
 from hrsafety.errors import InvalidParameterError, ShapeError
 
@@ -16,7 +17,7 @@ pictures = plotting.contacts
 
 def test_forces_over_time_are_those_of_the_collisions() -> None:
     hits = {
-        name: contact.simulate(robot_mass=8.0, closing_speed=0.3, region=75e3, covering=covering)
+        name: contact_calls.simulate(robot_mass=8.0, closing_speed=0.3, region=75e3, covering=covering)
         for name, covering in (("bare $1", None), ("pad", PAD))
     }
     axes = pictures.contact_forces(hits, limits={"clamped": 140.0, "far": 1e6}).axes[0]
@@ -31,7 +32,7 @@ def test_forces_over_time_are_those_of_the_collisions() -> None:
 
 
 def test_warnings_of_collisions_stand_below() -> None:
-    early = contact.simulate(robot_mass=100.0, closing_speed=0.5, region=1e3)
+    early = contact_calls.simulate(robot_mass=100.0, closing_speed=0.5, region=1e3)
     figure = pictures.contact_forces({"heavy": early})
     assert any("longer horizon" in text.get_text().replace("\n", " ") for text in figure.texts)
 

@@ -14,6 +14,7 @@ from hrsafety._records import dataclass
 from hrsafety._words import meant
 from hrsafety.contact.cell.robot import ContactRobot
 from hrsafety.contact.cell.stops import separation_of
+from hrsafety.contact.contact import Contact
 from hrsafety.contact.covering import Covering
 from hrsafety.contact.materials import StressTable
 from hrsafety.errors import InvalidParameterError
@@ -21,7 +22,7 @@ from hrsafety.standards.contact_limits import ContactLimit
 from hrsafety.standards.limit_sets import LimitSet
 from hrsafety.standards.sets import limits as limit_set
 
-__all__ = ["MOST_CONTACTS", "MOST_COVERINGS", "NO_COVERING", "Cell", "PlannedContact", "checked_fit", "pad_of"]
+__all__ = ["MOST_CONTACTS", "MOST_COVERINGS", "NO_COVERING", "Cell", "PlannedContact", "checked_fit", "contact_of"]
 
 MOST_CONTACTS = 64
 MOST_COVERINGS = 16
@@ -245,12 +246,15 @@ def _confirmed(table: Mapping[str, Any]) -> dict[str, str]:
     return found
 
 
-def pad_of(cell: Cell, planned: PlannedContact, covering: str | None) -> Covering | None:
-    """Return a covering as a contact meets it: a flat one over the area that the contact gives itself."""
+def contact_of(cell: Cell, planned: PlannedContact, covering: str | None) -> Contact:
+    """Return a planned contact bare or with a covering: a flat one over the area that the contact gives itself."""
+    robot, limit = cell.robot.mass, planned.limit
     if covering is None:
-        return None
+        return Contact(robot=robot, body=limit, area=planned.area)
     pad = cell.coverings[covering]
-    return replace(pad, area=planned.area) if planned.own_area and pad.shape == "flat" else pad
+    if planned.own_area and pad.shape == "flat":
+        pad = replace(pad, area=planned.area)
+    return Contact(robot=robot, body=limit, covering=pad, max_strain=cell.strains.get(covering))
 
 
 def _input(planned: PlannedContact) -> dict[str, Any]:

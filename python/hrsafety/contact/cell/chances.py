@@ -7,10 +7,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from hrsafety import _keys as kind
-from hrsafety.contact.cell.cell import Cell, PlannedContact, pad_of
-from hrsafety.contact.cell.judgement import reasons_of, strain
-from hrsafety.contact.chance import probability
-from hrsafety.contact.covering import Covering
+from hrsafety.contact.cell.cell import Cell, PlannedContact, contact_of
+from hrsafety.contact.cell.judgement import reasons_of
+from hrsafety.contact.covering import Covering, covering_of
 from hrsafety.contact.speed import AllowedSpeed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
@@ -39,7 +38,7 @@ def spread(name: str, given: Any, nominal: float | None) -> Mapping[str, object]
     Returns
     -------
     mapping
-        As for `contact.probability`.
+        As for `Contact.probability`.
     """
     if name in CERTAIN:
         raise InvalidParameterError(
@@ -89,27 +88,17 @@ def chance_of(cell: Cell, planned: PlannedContact, allowed: AllowedSpeed | None)
     dict
         Fields of the report.
     """
-    pad = pad_of(cell, planned, planned.covering)
+    hit = contact_of(cell, planned, planned.covering)
+    pad = covering_of(hit.covering)
     reason = _reason(cell, planned, allowed, pad)
     if reason is not None:
         return {"status": "not_computed", "reason": reason}
     nominal = _nominal(cell, planned, pad)
-    uncertain = {name: spread(name, given, nominal.get(name)) for name, given in _applying(cell, planned).items()}
-    given: dict[str, Any] = {
-        "robot_mass": cell.robot.mass,
-        "area": planned.area if pad is None else None,
-        "max_strain": strain(cell, planned.covering),
-        **uncertain,
+    uncertain: dict[str, Any] = {
+        name: spread(name, given, nominal.get(name)) for name, given in _applying(cell, planned).items()
     }
     try:
-        found = probability(
-            speed=planned.speed + cell.human_speed,
-            limits=planned.limit,
-            covering=pad,
-            draws=cell.draws,
-            seed=cell.seed,
-            **given,
-        )
+        found = hit.probability(planned.speed + cell.human_speed, draws=cell.draws, seed=cell.seed, **uncertain)
     except InvalidParameterError as error:
         raise error.renamed(f"uncertain: {error.argument}") from None
     return {
@@ -186,7 +175,7 @@ def _nominal(cell: Cell, planned: PlannedContact, pad: Covering | None) -> dict[
 
 def _applying(cell: Cell, planned: PlannedContact) -> dict[str, Any]:
     """Return what is uncertain of a contact: a clamped body has no mass, a limit that is not there no spread."""
-    nominal = _nominal(cell, planned, pad_of(cell, planned, planned.covering))
+    nominal = _nominal(cell, planned, covering_of(contact_of(cell, planned, planned.covering).covering))
     gone = {name for name in OF_REGIONS if nominal[name] is None or not math.isfinite(float(nominal[name] or 0.0))}
     numbers_of_coverings = {name for pad in cell.coverings.values() for name in _own(pad)}
     gone |= {name for name in numbers_of_coverings if nominal.get(name) is None}

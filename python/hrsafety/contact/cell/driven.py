@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hrsafety.contact.cell.cell import Cell, PlannedContact, pad_of
+from hrsafety.contact.cell.cell import Cell, PlannedContact, contact_of
 from hrsafety.contact.cell.stops import stopping_of
-from hrsafety.contact.covering import Covering
-from hrsafety.contact.simulation import batch
+from hrsafety.contact.contact import Contact, Support
+from hrsafety.contact.covering import Covering, covering_of
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning, implausible
 
@@ -78,17 +78,11 @@ def driven_of(cell: Cell, planned: PlannedContact, speed: float) -> Driven | Non
     except InvalidParameterError:
         return Driven(math.nan, math.inf, math.inf, math.inf, math.inf, math.nan, keeps=False)
     path = speed * (reaction + 0.5 * speed / braking)
-    pad = pad_of(cell, planned, planned.covering)
+    pad = covering_of(contact_of(cell, planned, planned.covering).covering)
     k = float(planned.limit.spring_constant or math.nan)
-    rows = batch(
-        robot_mass=cell.robot.mass,
-        closing_speed=speed,
-        region=k,
-        covering=pad,
-        stop=(reaction, braking),
-        horizon=min(reaction + speed / braking + SETTLING, 60.0),
-        robot_stiffness=k * STIFFNESSES,
-    )
+    hit = Contact(robot=cell.robot.mass, region=k, covering=pad, drive=Support(stop=(reaction, braking)))
+    horizon = min(reaction + speed / braking + SETTLING, 60.0)
+    rows = hit.simulate_many(speed, horizon=horizon, robot_stiffness=k * STIFFNESSES)
     forces, strains = rows.peak_force, rows.peak_strain
     pressures = rows.peak_pressure
     if pad is None and planned.area is not None:

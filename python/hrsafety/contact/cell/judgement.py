@@ -6,12 +6,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-from hrsafety.contact.cell.cell import Cell, PlannedContact, pad_of
-from hrsafety.contact.speed import AllowedSpeed, allowed_speed
+from hrsafety.contact.cell.cell import Cell, PlannedContact, contact_of
+from hrsafety.contact.covering import covering_of
+from hrsafety.contact.speed import AllowedSpeed
 from hrsafety.plausibility import ResultWarning, unsafe_doubts
 from hrsafety.standards.verdicts import speed_verdict
 
-__all__ = ["FASTEST", "Judged", "common", "decided", "governing", "judged_of", "known", "reasons_of", "strain"]
+__all__ = ["FASTEST", "Judged", "decided", "governing", "judged_of", "known", "reasons_of"]
 
 FASTEST = 20.0
 """Up to this speed, in m/s, contacts are looked at."""
@@ -43,12 +44,7 @@ def reasons_of(found: Iterable[ResultWarning]) -> list[str]:
 
 def apart_from_drive(found: Iterable[ResultWarning]) -> tuple[ResultWarning, ...]:
     """Return doubts without that of a clamped contact about the drive, which a cell judges by its own stop."""
-    return tuple(each for each in found if (each.code, each.subject) != ("drive_not_given", "stop"))
-
-
-def common(cell: Cell, planned: PlannedContact) -> dict[str, Any]:
-    """Return what every computation about a contact is given."""
-    return {"robot_mass": cell.robot.mass, "limits": planned.limit}
+    return tuple(each for each in found if (each.code, each.subject) != ("drive_not_given", "drive"))
 
 
 def known(planned: PlannedContact) -> bool:
@@ -56,20 +52,8 @@ def known(planned: PlannedContact) -> bool:
     return planned.limit.spring_constant is not None and planned.limit.body_mass is not None
 
 
-def strain(cell: Cell, covering: str | None) -> float | None:
-    """Return the largest strain of a covering, ``None`` for its own."""
-    return None if covering is None else cell.strains.get(covering)
-
-
 def _allowed(cell: Cell, planned: PlannedContact, covering: str | None) -> AllowedSpeed:
-    pad = pad_of(cell, planned, covering)
-    found = allowed_speed(
-        **common(cell, planned),
-        covering=pad,
-        area=planned.area if pad is None else None,
-        max_strain=strain(cell, covering),
-        human_speed=cell.human_speed,
-    )
+    found = contact_of(cell, planned, covering).allowed_speed(human_speed=cell.human_speed)
     return replace(found, warnings=apart_from_drive(found.warnings))
 
 
@@ -126,7 +110,7 @@ def _fields(cell: Cell, planned: PlannedContact, allowed: AllowedSpeed | None) -
     if allowed is not None:
         most = FASTEST if allowed.status == "unlimited_up_to_20" else allowed.speed
     speed = None if most is None else max(most - cell.human_speed, 0.0)
-    pad = pad_of(cell, planned, planned.covering)
+    pad = covering_of(contact_of(cell, planned, planned.covering).covering)
     return {
         "region": limit.region,
         "area_name": limit.area,

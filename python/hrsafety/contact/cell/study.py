@@ -12,26 +12,23 @@ import numpy as np
 
 from hrsafety._arguments import Array, callback, instance
 from hrsafety._records import dataclass
-from hrsafety.contact.cell.cell import Cell, PlannedContact, pad_of
+from hrsafety.contact.cell.cell import Cell, PlannedContact, contact_of
 from hrsafety.contact.cell.chances import chance_doubts, chance_of
 from hrsafety.contact.cell.driven import drive_doubts, drive_fields, driven_of
 from hrsafety.contact.cell.file import load_cell
 from hrsafety.contact.cell.judgement import (
     FASTEST,
     Judged,
-    common,
     decided,
     governing,
     judged_of,
     known,
     reasons_of,
-    strain,
 )
 from hrsafety.contact.cell.stops import speed_over_distance
-from hrsafety.contact.least_thickness import thickness
-from hrsafety.contact.sensitivities import sensitivity
-from hrsafety.contact.simulation import ContactImpact, batch, simulate
-from hrsafety.contact.speed import AllowedSpeed, allowed_speeds
+from hrsafety.contact.covering import covering_of
+from hrsafety.contact.simulation import ContactImpact
+from hrsafety.contact.speed import AllowedSpeed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
 from hrsafety.standards.separation import SpeedCurve
@@ -291,11 +288,10 @@ def _label(planned: PlannedContact, covering: str | None) -> str:
 def _impact(cell: Cell, planned: PlannedContact, covering: str | None) -> ContactImpact | None:
     if math.isinf(cell.robot.mass) and planned.limit.body_mass == math.inf:
         return None
-    hit = {**common(cell, planned), "covering": pad_of(cell, planned, covering), "head": False}
-    hit["closing_speed"] = planned.speed + cell.human_speed
+    hit, closing = contact_of(cell, planned, covering), planned.speed + cell.human_speed
     try:
-        found = simulate(**hit)
-        return simulate(**hit, horizon=LATEST) if found.rising else found
+        found = hit.simulate(closing, head=False)
+        return hit.simulate(closing, head=False, horizon=LATEST) if found.rising else found
     except InvalidParameterError as error:
         # A covering that is compressed by more than was measured has no loads; the verdict says so, too.
         if "beyond_data" not in error.requirement:
@@ -330,8 +326,7 @@ def _over_speed(cell: Cell, judged: list[Judged]) -> dict[str, list[Curve]]:
         most = 1.5 * max(each.verdict["planned_closing_speed"], each.verdict["allowed_closing_speed"] or 0.0)
         speeds = np.linspace(min(most, FASTEST) / SPEEDS, min(most, FASTEST), SPEEDS)
         for covering in dict.fromkeys((None, each.planned.covering)):
-            pad = pad_of(cell, each.planned, covering)
-            rows = batch(**common(cell, each.planned), covering=pad, closing_speed=speeds)
+            rows = contact_of(cell, each.planned, covering).simulate_many(speeds)
             label = _label(each.planned, covering)
             found.setdefault(each.planned.limit.region, []).append(Curve(label, speeds, rows.peak_force))
     return found
@@ -381,11 +376,11 @@ def _pressure(planned: PlannedContact, covering: str | None, impact: ContactImpa
 
 
 def _thickness(cell: Cell, planned: PlannedContact, covering: str) -> dict[str, Any]:
-    pad = pad_of(cell, planned, covering)
+    hit = contact_of(cell, planned, covering)
+    pad = covering_of(hit.covering)
     if pad is None or pad.damping > 0.0 or pad.rate[:2] != (0.0, 0.0) or math.isinf(cell.robot.mass):
         return {"least_thickness": None, "least_thickness_status": "not_computed"}
-    closing = planned.speed + cell.human_speed
-    found = thickness(**common(cell, planned), covering=pad, speed=closing, max_strain=strain(cell, covering))
+    found = hit.thickness(planned.speed + cell.human_speed)
     return {
         "least_thickness": found.thickness,
         "least_thickness_status": found.status,
@@ -423,22 +418,17 @@ def _named(judged: Judged) -> dict[str, Any]:
 
 def _map(cell: Cell, judged: Judged, progress: Callable[[int, int], object] | None) -> dict[str, Any] | None:
     """Return the allowed speed over thickness and strength of the covering that is planned."""
-    if judged.planned.covering is None:
+    hit = contact_of(cell, judged.planned, judged.planned.covering)
+    pad = covering_of(hit.covering)
+    if pad is None:
         return None
-    pad = pad_of(cell, judged.planned, judged.planned.covering) or cell.coverings[judged.planned.covering]
     name = MAPPED.get(pad.material.law)
     own = None if name is None else getattr(pad.material, name)
     if name is None or not own:
         return None
     span = np.geomspace(1.0 / MAP_SPAN, MAP_SPAN, MAP_POINTS)
     thick, strength = pad.thickness * span, own * span
-    found = allowed_speeds(
-        **common(cell, judged.planned),
-        covering=pad,
-        max_strain=strain(cell, judged.planned.covering),
-        progress=progress,
-        **{"thickness": thick[:, np.newaxis], name: strength},
-    )
+    found = hit.allowed_speeds(progress=progress, **{"thickness": thick[:, np.newaxis], name: strength})
     return {
         **_named(judged),
         "number": name,
@@ -485,16 +475,9 @@ def _speed_fields(cell: Cell, curve: SpeedCurve) -> dict[str, Any]:
 
 
 def _sensitivity(cell: Cell, judged: Judged) -> dict[str, Any] | None:
-    planned = judged.planned
-    pad = pad_of(cell, planned, planned.covering)
     if math.isinf(cell.robot.mass):
         return None
-    found = sensitivity(
-        **common(cell, planned),
-        covering=pad,
-        area=planned.area if pad is None else None,
-        max_strain=strain(cell, planned.covering),
-    )
+    found = contact_of(cell, judged.planned, judged.planned.covering).sensitivity()
     return {**_named(judged), "values": [{"name": name, "value": value} for name, value in found.items()]}
 
 

@@ -53,7 +53,7 @@ def contact_forces(
     Examples
     --------
     >>> from hrsafety import contact, plotting
-    >>> hit = contact.simulate(robot_mass=8.0, closing_speed=0.3, region=75e3, body_mass=0.6)
+    >>> hit = contact.Contact(robot=8.0, body=0.6, region=75e3).simulate(0.3)
     >>> figure = plotting.contacts.contact_forces({"bare": hit}, limits={"transient": 280.0})
     >>> figure.axes[0].get_ylabel()
     'force (N)'
@@ -87,7 +87,7 @@ def forces_over_speed(
     speed : array_like, shape (n,)
         Closing speeds in m/s.
     forces : mapping of str to array_like, shape (n,)
-        Peak forces in N by label, such as those of `contact.batch`.
+        Peak forces in N by label, such as those of `Contact.simulate_many`.
     limits : mapping of str to float or None
         Limits of the force in N by label.
     planned : float or None
@@ -111,7 +111,7 @@ def forces_over_speed(
     --------
     >>> from hrsafety import contact, plotting
     >>> speeds = [0.1, 0.2, 0.3]
-    >>> found = contact.batch(robot_mass=8.0, closing_speed=speeds, region=75e3, body_mass=0.6)
+    >>> found = contact.Contact(robot=8.0, body=0.6, region=75e3).simulate_many(speeds)
     >>> figure = plotting.contacts.forces_over_speed(speeds, {"bare": found.peak_force}, planned=0.25)
     """
     over = vector("speed", speed)

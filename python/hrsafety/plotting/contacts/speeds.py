@@ -42,7 +42,7 @@ def speed_map(
     strength : array_like, shape (k,)
         Number of the law, rising; both axes are logarithmic.
     speed : array_like, shape (n, k)
-        Allowed closing speeds in m/s, of `contact.allowed_speeds`; NaN is left blank.
+        Allowed closing speeds in m/s, of `Contact.allowed_speeds`; NaN is left blank.
     quantity : str
         Label of the number with its unit.
     wanted : float or None
@@ -153,7 +153,7 @@ def contact_sensitivity(values: Mapping[str, float], *, title: str | None = None
     Parameters
     ----------
     values : mapping of str to float
-        d ln v/d ln x by name, of `contact.sensitivity`.
+        d ln v/d ln x by name, of `Contact.sensitivity`.
     title : str or None
         Title of the figure.
 
