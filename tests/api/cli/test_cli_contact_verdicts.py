@@ -157,8 +157,12 @@ def test_doubts_of_an_arm_reach_the_verdict(judged: Judged) -> None:
 def test_a_clamped_row_says_that_it_knows_no_drive(judged: Judged, capsys: pytest.CaptureFixture[str]) -> None:
     code, report, page = judged(CLAMPED)
     (row,) = report["verdicts"]
-    assert (code, row["drive"]["holds_for"], row["drive"]["keeps_limits"]) == (0, "a robot without drive", None)
+    assert (row["verdict"], row["doubts"]) == ("not_checked", ["drive_not_given"])
+    assert (code, row["drive"]["holds_for"], row["drive"]["keeps_limits"]) == (5, "a robot without drive", None)
     assert "holds for a robot without drive" in page
+    assert judged(CLAMPED + STOP.replace("0.1", "0.01", 1))[1]["verdicts"][0]["verdict"] == "within_limits"
+    confirmed = CLAMPED + '[confirmed]\ndrive_not_given = "moved by hand only, N. N."\n'
+    assert judged(confirmed)[0] == 0
     assert "clamped contacts hold for a robot without drive" in capsys.readouterr().out
     assert judged(GOOD)[1]["verdicts"][0]["drive"] is None
 

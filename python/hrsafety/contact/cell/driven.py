@@ -24,6 +24,12 @@ SETTLING = 1.0
 HALVINGS = 30
 _FASTEST_BRAKE = 1e6
 WITHOUT = "a robot without drive"
+UNKNOWN = ResultWarning(
+    "drive_not_given",
+    "separation",
+    f"the allowed speed holds for {WITHOUT}: one that is driven on until it has reacted and braked presses harder; "
+    "give reaction_time and deceleration in [separation]",
+)
 
 
 class Driven(NamedTuple):
@@ -160,9 +166,10 @@ def _words(cell: Cell) -> str:
 
 
 def drive_doubts(cell: Cell, planned: PlannedContact, driven: Driven | None) -> tuple[ResultWarning, ...]:
-    """Return the doubts about a clamped contact: kept only without the drive, or a stop that is hardly meant."""
+    """Return the doubts about a clamped contact: kept only without the drive, which nobody gave, or an odd stop."""
     if driven is None:
-        return ()
+        # A robot that cannot yield has no allowed speed anyway.
+        return () if cell.separation is not None or math.isinf(cell.robot.mass) else (UNKNOWN,)
     stop = {"reaction_time": (cell.separation or {})["reaction_time"], "deceleration": driven.deceleration}
     doubts = implausible(stop, {"deceleration": "robot_deceleration"})
     if driven.keeps:

@@ -204,7 +204,7 @@ def verdicts_of(
         chosen = impacts.get(each.planned.covering)
         doubts = (
             *(() if chosen is None else chosen.warnings),
-            *drive_doubts(cell, each.planned, driven),
+            *(() if _yields(each) else drive_doubts(cell, each.planned, driven)),
             *chance_doubts(cell, chance),
         )
         decision = decided(cell, each, doubts)
