@@ -64,6 +64,8 @@ def write_file(path: Path, content: bytes | str) -> Path:
 def replacing(path: Path, *, durable: bool = False) -> Iterator[BinaryIO]:
     """Open a file that takes the place of another when the block ends without an error.
 
+    A link stays, and what it leads to is replaced. A device, such as ``/dev/stdout``, is written to as it comes.
+
     Parameters
     ----------
     path : Path
@@ -82,6 +84,16 @@ def replacing(path: Path, *, durable: bool = False) -> Iterator[BinaryIO]:
     OSError
         If the file cannot be written; nothing is left behind and an older file stays as it was.
     """
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        try:
+            with path.open("wb") as device:
+                yield device
+        except OSError as error:  # a full one fails a write, which knows no name
+            error.filename = str(path)
+            raise
+        return
+    if path.is_symlink():
+        path = path.resolve()
     try:
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     except OSError as error:

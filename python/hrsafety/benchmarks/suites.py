@@ -11,6 +11,7 @@ import numpy as np
 
 from hrsafety import datasets, scenarios
 from hrsafety import navigation as nav
+from hrsafety._arguments import readable
 from hrsafety.benchmarks import barn
 from hrsafety.benchmarks.drawn import DRAWN, among, crowd, drifting, first_of
 from hrsafety.benchmarks.protocol import Case, Suite
@@ -38,7 +39,7 @@ PERSON_SPEED = 1.6
 
 def recordings(folder: Path | None) -> list[Path]:
     """Return the recordings in a folder, or the one that is named."""
-    files = [] if folder is None else sorted(folder.glob("*.csv")) if folder.is_dir() else [folder]
+    files = [] if folder is None else sorted(folder.glob("*.csv")) if folder.is_dir() else [readable("data", folder)]
     if not files:
         raise InvalidParameterError("data", "be a folder with recordings (.csv), or one of them", str(folder))
     return files
@@ -65,7 +66,13 @@ _KNOWN: dict[Path, tuple[datasets.Recording, list[scenarios.Crossing]]] = {}
 def _known(path: Path) -> tuple[datasets.Recording, list[scenarios.Crossing]]:
     if path not in _KNOWN:
         recording = datasets.load_pedestrians(path)
-        _KNOWN[path] = recording, list(scenarios.crossings(recording, runs=RUNS))
+        try:
+            found = list(scenarios.crossings(recording, runs=RUNS))
+        except InvalidParameterError as error:
+            rule = f"hold {RUNS} starts of a robot across its people ({error.argument} must {error.requirement})"
+            remedy = "a longer recording, or hrsafety simulate --people FILE --runs N"
+            raise InvalidParameterError("data", rule, str(path), remedy) from None
+        _KNOWN[path] = recording, found
     return _KNOWN[path]
 
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 import errno
 import os
 import pickle
+import stat
 import subprocess
 import sys
+import threading
 import wave
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -16,7 +18,7 @@ import pytest
 
 from hrsafety import InvalidParameterError, reactive, sweep
 from hrsafety import navigation as nav
-from hrsafety._atomic import create_file, only_writer
+from hrsafety._atomic import create_file, only_writer, write_file
 from hrsafety.cli import main
 from hrsafety.errors import FolderInUseError, StorageError
 
@@ -223,3 +225,36 @@ def test_two_searches_do_not_share_a_checkpoint(tmp_path: Path) -> None:
         child.kill()
         child.communicate()
     nav.optimize_gains([SCENE], checkpoint=tmp_path / "search.checkpoint", **TINY)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no such files")
+def test_what_is_no_regular_file_is_written_to_and_stays(tmp_path: Path) -> None:
+    pipe, found = tmp_path / "pipe", []
+    os.mkfifo(pipe)
+    reader = threading.Thread(target=lambda: found.append(pipe.read_bytes()))
+    reader.start()
+    write_file(pipe, "some text")
+    reader.join(10.0)
+    assert found == [b"some text"]
+    assert stat.S_ISFIFO(pipe.stat().st_mode)
+    assert list(tmp_path.iterdir()) == [pipe]
+
+
+@pytest.mark.skipif(not Path("/dev/full").is_char_device(), reason="no such device")
+def test_a_device_stays_a_device() -> None:
+    with pytest.raises(OSError, match="/dev/full"):
+        write_file(Path("/dev/full"), "x" * 100_000)
+    write_file(Path("/dev/null"), "some text")
+    assert all(Path(device).is_char_device() for device in ("/dev/full", "/dev/null"))
+
+
+def test_a_link_stays_and_leads_to_what_was_written(tmp_path: Path) -> None:
+    (tmp_path / "folder").mkdir()
+    for target in (tmp_path / "folder" / "old", tmp_path / "folder" / "new"):
+        link = tmp_path / f"to_{target.name}"
+        link.symlink_to(target)
+        if target.name == "old":
+            target.write_text("before")
+        write_file(link, "after")
+        assert link.is_symlink()
+        assert target.read_text() == "after"
