@@ -24,6 +24,8 @@ MOST = {
     "A navigation law": 8,
     "A gain of a law": 7,
     "A sensor on a robot": 8,
+    "A model of people": 7,
+    "A social metric": 7,
     "A criterion of an impact": 8,
 }
 """How many files an addition may touch."""
@@ -147,6 +149,18 @@ def test_the_files_of_a_recipe_alone_have_all_criteria() -> None:
 def test_the_files_of_a_recipe_alone_have_a_criterion_that_no_page_shows() -> None:
     found = {path for path, words in product().items() if "peak_power_foam" in words}
     assert found <= files_of("A criterion of an impact")
+
+
+def test_the_files_of_a_recipe_alone_have_all_models_of_people() -> None:
+    kinds = nav.crowd.Pedestrian.__subclasses__()
+    found = {path for path in lists_of([names_of(kind) for kind in kinds], product()) if not path.endswith(".py")}
+    measured = {"docs/validation.md", "docs/performance.md", "docs/limits.md"}
+    assert found - measured <= files_of("A model of people")
+
+
+def test_the_files_of_a_recipe_alone_have_all_social_metrics() -> None:
+    found = {path for path, words in product().items() if "longest_without_progress" in words}
+    assert found <= files_of("A social metric")
 
 
 def test_the_files_of_a_recipe_alone_have_a_sensor() -> None:

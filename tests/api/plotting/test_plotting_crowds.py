@@ -46,7 +46,7 @@ def groups() -> nav.crowd.CrowdTrajectories:
 
 def mixed() -> nav.crowd.CrowdTrajectories:
     """All models, a recorded person, and somebody from a source, among three robots."""
-    models = [getattr(nav.crowd, name)() for name in world_scenes.MODELS]
+    models = [kind() for kind in nav.crowd.Pedestrian.__subclasses__()]
     people = [
         nav.crowd.Person(start=(0.0, 1.2 * k), route=[(6.0, 1.2 * k)], model=each) for k, each in enumerate(models)
     ]
@@ -129,7 +129,7 @@ def test_contacts_are_marked_and_in_the_legend() -> None:
 def test_colors_tell_models_or_groups() -> None:
     words = legend(plotting.crowds.crowd_paths(mixed()))
     assert [each for each in words if "person" in each or "Moussa" in each]
-    for model in (*world_scenes.MODELS.values(), "recorded person"):
+    for model in (*(kind.TITLE for kind in nav.crowd.Pedestrian.__subclasses__()), "recorded person"):
         assert any(model in each for each in words)
     words = legend(plotting.crowds.crowd_paths(groups(), color_by="group"))
     assert {"group 0", "group 7", "no group", "wall"} <= set(words)

@@ -1,6 +1,8 @@
 //! What a pedestrian model knows and answers.
 
+use crate::arguments::Named;
 use crate::crowd::agent::{Agent, SHORTEST};
+use crate::crowd::agent_lanes::{AgentLanes, LaneRoom, Vectors};
 use crate::crowd::neighbors::Neighbors;
 use crate::crowd::neighbors::grid::Period;
 use crate::crowd::neighbors::mutual::Mutual;
@@ -173,9 +175,38 @@ pub struct Room {
 }
 
 /// A model of people.
-pub trait Pedestrian {
+pub(in crate::crowd) trait Pedestrian: Named {
+    /// Largest step in s.
+    const LARGEST_STEP: f64;
+    /// Largest speed as a multiple of the desired one, infinite for none.
+    const CAP: f64;
+    /// Whether a decision is an acceleration, not a velocity.
+    const IS_FORCE: bool;
+    /// Whether people of worlds side by side decide in lanes.
+    const LANES: bool = false;
+
     /// Acceleration in m/s^2 of a force model, velocity in m/s of a velocity model.
     fn decide(&self, own: &mut Walker, around: &Around<'_>, room: &mut Room) -> Vector2<f64>;
+
+    /// Decides for everybody in a world that does not repeat itself, pairs at once; returns whether it has.
+    fn decide_together(
+        &self,
+        _walkers: &[Walker],
+        _around: &Around<'_>,
+        _room: &mut Room,
+        _decisions: &mut [Decision],
+    ) -> bool {
+        false
+    }
+
+    /// Decides for the people of worlds side by side, if they do that in lanes.
+    fn decide_in_lanes(
+        &self,
+        _agents: &AgentLanes,
+        _room: &mut LaneRoom,
+        _decisions: &mut Vec<Vectors>,
+    ) {
+    }
 }
 
 /// Drive `(v0 e - v)/tau` of the force models.

@@ -4,7 +4,7 @@ use crate::crowd::agent::Agent;
 use crate::crowd::models::Model;
 use crate::crowd::neighbors::Neighbors;
 use crate::crowd::neighbors::grid::{Grid, Period};
-use crate::crowd::pedestrian::{Around, Decision, Fellows, Pedestrian, Room, Walker};
+use crate::crowd::pedestrian::{Around, Decision, Fellows, Room, Walker};
 use crate::crowd::walls::Wall;
 use crate::lanes::vectors;
 
@@ -147,17 +147,11 @@ impl pulp::NullaryFnOnce for Job<'_, '_> {
 
     #[inline(always)]
     fn call(self) {
-        match self.mutual() {
-            Some(Model::SocialForce1995(model)) => {
-                model.decide_together(self.placed, self.around, self.room, self.decisions);
-            }
-            Some(Model::Moussaid(model)) => {
-                model.decide_together(self.placed, self.around, self.room, self.decisions);
-            }
-            Some(Model::ReciprocalAvoidance(model)) if self.around.neighbors.are_few() => {
-                model.decide_together(self.placed, self.around, self.room, self.decisions);
-            }
-            _ => self.one_by_one(),
+        let together = self.mutual().is_some_and(|model| {
+            model.decide_together(self.placed, self.around, self.room, self.decisions)
+        });
+        if !together {
+            self.one_by_one();
         }
     }
 }

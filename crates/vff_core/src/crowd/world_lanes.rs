@@ -4,12 +4,11 @@
 //! Learners step a thousand small worlds by turns. In lanes of their own no list of pairs has to be made, and what
 //! five people compare fills all lanes. Every decision has the bits of [`Snapshot`](crate::crowd::snapshot::Snapshot).
 
-use crate::crowd::agent_lanes::{AgentLanes, FEW, Vectors, WIDTH};
+use crate::crowd::agent_lanes::{AgentLanes, FEW, LaneRoom, Vectors, WIDTH};
 use crate::crowd::models::Model;
 use crate::crowd::neighbors::grid::Period;
 use crate::crowd::people::{PersonState, Presence};
 use crate::crowd::simulation::Simulation;
-use crate::crowd::velocity_programs::VelocityPrograms;
 use crate::crowd::world::{CrowdWorld, PersonSetup, Waypoint};
 use crate::lanes::{LaneMask, Real, Truth, Vector2, vectors};
 
@@ -21,8 +20,7 @@ const WORTH: usize = 3;
 pub(super) struct WorldLanes {
     agents: AgentLanes,
     decisions: Vec<Vectors>,
-    ways: Vec<Vectors>,
-    programs: VelocityPrograms,
+    room: LaneRoom,
     /// Whether the agents are those of the last call.
     seated: bool,
 }
@@ -43,13 +41,8 @@ pub(super) fn model_of(world: &CrowdWorld) -> Option<&Model> {
         && world.period == Period::default()
         && world.people.len() + world.robots.len() <= FEW
         && world.people.iter().all(alone);
-    let model = world.models.get(number).filter(|_| plain)?;
-    match model {
-        Model::SocialForce1995(_) | Model::Moussaid(_) | Model::ReciprocalAvoidance(_) => {
-            Some(model)
-        }
-        Model::SocialForce2000(_) | Model::CollisionFreeSpeed(_) => None,
-    }
+    let model = world.models.get(number)?;
+    (plain && model.fits_lanes()).then_some(model)
 }
 
 impl WorldLanes {
@@ -102,20 +95,13 @@ impl pulp::NullaryFnOnce for Job<'_> {
         let WorldLanes {
             agents,
             decisions,
-            ways,
-            programs,
+            room,
             ..
         } = self.lanes;
         agents.look_ahead();
         decisions.clear();
-        match self.model {
-            Model::SocialForce1995(model) => model.decide_in_lanes(agents, ways, decisions),
-            Model::Moussaid(model) => model.decide_in_lanes(agents, decisions),
-            Model::ReciprocalAvoidance(model) => {
-                model.decide_in_lanes(agents, self.step, programs, decisions);
-            }
-            Model::SocialForce2000(_) | Model::CollisionFreeSpeed(_) => {}
-        }
+        room.step = self.step;
+        self.model.decide_in_lanes(agents, room, decisions);
         let cap = self.model.is_force().then(|| self.model.cap());
         agents.advance(decisions, cap, self.step)
     }

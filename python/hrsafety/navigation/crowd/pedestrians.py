@@ -26,6 +26,7 @@ class Pedestrian(Parameters):
     __slots__ = ()
 
     NAME: ClassVar[str]
+    TITLE: ClassVar[str]  # words of legends
     cutoff: float | None
     _native: _hrsafety.CrowdModel
 
@@ -93,6 +94,7 @@ class SocialForce1995(Pedestrian):
     """
 
     NAME: ClassVar[str] = "social_force_1995"
+    TITLE: ClassVar[str] = "social force, 1995"
 
     relaxation_time: float = 0.5
     strength: float = 2.1
@@ -146,6 +148,7 @@ class SocialForce2000(Pedestrian):
     """
 
     NAME: ClassVar[str] = "social_force_2000"
+    TITLE: ClassVar[str] = "social force, 2000"
 
     relaxation_time: float = 0.5
     mass: float = 80.0
@@ -205,6 +208,7 @@ class Moussaid(Pedestrian):
     """
 
     NAME: ClassVar[str] = "moussaid"
+    TITLE: ClassVar[str] = "Moussaïd"
 
     relaxation_time: float = 0.54
     strength: float = 4.5
@@ -256,6 +260,7 @@ class CollisionFreeSpeed(Pedestrian):
     """
 
     NAME: ClassVar[str] = "collision_free_speed"
+    TITLE: ClassVar[str] = "collision-free speed"
 
     time_gap: float = 1.0
     strength: float = 8.0
@@ -298,6 +303,7 @@ class ReciprocalAvoidance(Pedestrian):
     """
 
     NAME: ClassVar[str] = "reciprocal_avoidance"
+    TITLE: ClassVar[str] = "reciprocal avoidance"
 
     horizon: float = 5.0
     wall_horizon: float = 0.5

@@ -48,13 +48,6 @@ WALL_COLOR = "#3A3A3A"
 MARGIN = 0.5  # free space around what must be in view, in m
 NEAR = 3.0  # m around everybody's places; what stands beyond is not asked to be in view
 TOUCH = 1e-6  # m by which surfaces in contact overlap, as environments have it
-MODELS = {
-    "SocialForce1995": "social force, 1995",
-    "SocialForce2000": "social force, 2000",
-    "Moussaid": "Moussaïd",
-    "CollisionFreeSpeed": "collision-free speed",
-    "ReciprocalAvoidance": "reciprocal avoidance",
-}
 
 
 def checked_crowd(value: object) -> CrowdTrajectories:
@@ -86,8 +79,7 @@ def _group(person: Person) -> str:
 def _model(owner: Person | Source) -> str:
     if getattr(owner, "recording", None) is not None:
         return "recorded person"
-    name = type(owner.model).__name__
-    return f"person, {MODELS.get(name, name)}"
+    return f"person, {owner.model.TITLE}"
 
 
 def color_of(kinds: Iterable[str]) -> dict[str, str]:

@@ -1,11 +1,14 @@
 //! Collision-free speed model of Tordeux, Chraibi and Seyfried, Traffic and Granular Flow '15 (2016) 225, with the
 //! numbers of `JuPedSim`. People behind walls count, too.
 
+use crate::arguments::{Arguments, Named};
 use crate::crowd::agent::SHORTEST;
+use crate::crowd::models::Parameters;
 use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::neighbors::others::Each;
 use crate::crowd::pedestrian::{Around, Body, Pedestrian, Room, Walker};
 use crate::crowd::walls::pushes;
+use crate::error::Result;
 use crate::lanes::{Number, Planar, Real, Vector2, Zero};
 use numeric::elementary::exp;
 
@@ -26,6 +29,22 @@ pub struct CollisionFreeSpeed {
     pub wall_range: f64,
     /// Distance in m beyond which nobody acts; infinite for none.
     pub cutoff: f64,
+}
+
+impl Named for CollisionFreeSpeed {
+    const NAME: &'static str = "collision_free_speed";
+
+    fn made_of(given: &dyn Arguments) -> Result<Self> {
+        let given = Parameters(given);
+        Ok(Self {
+            time_gap: given.positive("time_gap")?,
+            strength: given.not_negative("strength")?,
+            range: given.positive("range")?,
+            wall_strength: given.not_negative("wall_strength")?,
+            wall_range: given.positive("wall_range")?,
+            cutoff: given.cutoff()?,
+        })
+    }
 }
 
 impl CollisionFreeSpeed {
@@ -78,6 +97,10 @@ fn spacing(ahead: Vector, bodies: &[Body]) -> f64 {
 }
 
 impl Pedestrian for CollisionFreeSpeed {
+    const LARGEST_STEP: f64 = 0.05;
+    const CAP: f64 = 1.0;
+    const IS_FORCE: bool = false;
+
     #[inline(always)]
     fn decide(&self, own: &mut Walker, around: &Around<'_>, room: &mut Room) -> Vector {
         if own.stays {

@@ -7,19 +7,106 @@ pub mod reciprocal_people;
 pub mod social_force_1995;
 pub mod social_force_2000;
 
-use crate::arguments::Arguments;
+use crate::arguments::{Arguments, Named};
+use crate::crowd::agent_lanes::{AgentLanes, LaneRoom, Vectors};
 use crate::crowd::models::collision_free_speed::CollisionFreeSpeed;
 use crate::crowd::models::moussaid::Moussaid;
 use crate::crowd::models::reciprocal_people::ReciprocalPeople;
 use crate::crowd::models::social_force_1995::SocialForce1995;
 use crate::crowd::models::social_force_2000::SocialForce2000;
-use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker};
-use crate::error::{Failure, Given, Result, finite, not_negative, positive};
+use crate::crowd::pedestrian::{Around, Decision, Pedestrian, Room, Walker};
+use crate::error::{Failure, Given, Result};
 use crate::lanes::Vector2;
 
-/// A model of people.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Model {
+/// The enum of all models, each variant with its documentation and type, and what hands on to the model of a variant.
+macro_rules! pedestrian_models {
+    ($($(#[$documentation:meta])* $variant:ident($model:ident),)*) => {
+        /// A model of people.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum Model {
+            $($(#[$documentation])* $variant($model),)*
+        }
+
+        /// Names of the models, as [`Model::named`] knows them.
+        pub const NAMES: &[&str] = &[$($model::NAME),*];
+
+        impl Model {
+            /// A model made of its parameters.
+            ///
+            /// # Errors
+            /// There is no such model, or a parameter is out of range.
+            pub fn named(name: &str, given: &impl Arguments) -> Result<Self> {
+                match name {
+                    $($model::NAME => $model::made_of(given).map(Self::$variant),)*
+                    other => {
+                        let rule = format!("be one of {}", NAMES.join(", "));
+                        Err(Failure::invalid("model", rule, Given::Word(other.into())))
+                    }
+                }
+            }
+
+            /// Distance in m beyond which nobody acts.
+            #[must_use]
+            pub fn cutoff(&self) -> f64 {
+                match self { $(Self::$variant(model) => model.cutoff,)* }
+            }
+
+            /// Largest step in s.
+            #[must_use]
+            pub fn largest_step(&self) -> f64 {
+                match self { $(Self::$variant(_) => $model::LARGEST_STEP,)* }
+            }
+
+            /// Largest speed as a multiple of the desired one, infinite for none.
+            #[must_use]
+            pub fn cap(&self) -> f64 {
+                match self { $(Self::$variant(_) => $model::CAP,)* }
+            }
+
+            /// Whether a decision is an acceleration, not a velocity.
+            #[must_use]
+            pub fn is_force(&self) -> bool {
+                match self { $(Self::$variant(_) => $model::IS_FORCE,)* }
+            }
+
+            /// Decision of one person: acceleration in m/s^2 of a force model, velocity in m/s of a velocity model.
+            #[inline(always)]
+            pub fn decide(&self, own: &mut Walker, around: &Around<'_>, room: &mut Room) -> Vector2<f64> {
+                match self { $(Self::$variant(model) => model.decide(own, around, room),)* }
+            }
+
+            /// Decides for everybody at once, if it can: pairs act on each other.
+            #[inline(always)]
+            pub(in crate::crowd) fn decide_together(
+                &self,
+                walkers: &[Walker],
+                around: &Around<'_>,
+                room: &mut Room,
+                decisions: &mut [Decision],
+            ) -> bool {
+                match self { $(Self::$variant(model) => model.decide_together(walkers, around, room, decisions),)* }
+            }
+
+            /// Whether people of worlds side by side can decide in lanes.
+            pub(in crate::crowd) fn fits_lanes(&self) -> bool {
+                match self { $(Self::$variant(_) => $model::LANES,)* }
+            }
+
+            /// Decides for the people of worlds side by side, if they fit lanes.
+            #[inline(always)]
+            pub(in crate::crowd) fn decide_in_lanes(
+                &self,
+                agents: &AgentLanes,
+                room: &mut LaneRoom,
+                decisions: &mut Vec<Vectors>,
+            ) {
+                match self { $(Self::$variant(model) => model.decide_in_lanes(agents, room, decisions),)* }
+            }
+        }
+    };
+}
+
+pedestrian_models! {
     /// Helbing and Molnar (1995).
     SocialForce1995(SocialForce1995),
     /// Helbing, Farkas and Vicsek (2000).
@@ -32,157 +119,34 @@ pub enum Model {
     ReciprocalAvoidance(ReciprocalPeople),
 }
 
-/// Names of the models, as [`Model::named`] knows them.
-pub const NAMES: [&str; 5] = [
-    "social_force_1995",
-    "social_force_2000",
-    "moussaid",
-    "collision_free_speed",
-    "reciprocal_avoidance",
-];
+/// Parameters of models by name, each by its rule.
+pub(in crate::crowd) struct Parameters<'a>(pub &'a dyn Arguments);
 
-/// Most neighbors that a person avoids.
-const MOST_NEIGHBORS: usize = 1 << 16;
+impl Parameters<'_> {
+    /// A positive parameter.
+    pub fn positive(&self, name: &str) -> Result<f64> {
+        crate::error::positive(name, self.0.number(name)?)
+    }
 
-impl Pedestrian for Model {
-    #[inline(always)]
-    fn decide(&self, own: &mut Walker, around: &Around<'_>, room: &mut Room) -> Vector2<f64> {
-        match self {
-            Self::SocialForce1995(model) => model.decide(own, around, room),
-            Self::SocialForce2000(model) => model.decide(own, around, room),
-            Self::Moussaid(model) => model.decide(own, around, room),
-            Self::CollisionFreeSpeed(model) => model.decide(own, around, room),
-            Self::ReciprocalAvoidance(model) => model.decide(own, around, room),
+    /// A parameter that is not negative.
+    pub fn not_negative(&self, name: &str) -> Result<f64> {
+        crate::error::not_negative(name, self.0.number(name)?)
+    }
+
+    /// A finite parameter.
+    pub fn finite(&self, name: &str) -> Result<f64> {
+        crate::error::finite(name, self.0.number(name)?)
+    }
+
+    /// Distance in m beyond which nobody acts, infinite for none.
+    pub fn cutoff(&self) -> Result<f64> {
+        let cutoff = self.0.number("cutoff")?;
+        if cutoff > 0.0 {
+            return Ok(cutoff);
         }
+        let rule = "be positive, or None for no cutoff";
+        Err(Failure::invalid("cutoff", rule, Given::Number(cutoff)))
     }
-}
-
-impl Model {
-    /// Distance in m beyond which nobody acts.
-    #[must_use]
-    pub fn cutoff(&self) -> f64 {
-        match self {
-            Self::SocialForce1995(model) => model.cutoff,
-            Self::SocialForce2000(model) => model.cutoff,
-            Self::Moussaid(model) => model.cutoff,
-            Self::CollisionFreeSpeed(model) => model.cutoff,
-            Self::ReciprocalAvoidance(model) => model.cutoff,
-        }
-    }
-
-    /// Largest step in s.
-    #[must_use]
-    pub fn largest_step(&self) -> f64 {
-        match self {
-            Self::SocialForce1995(_) => 0.1,
-            Self::SocialForce2000(_) => 0.01,
-            Self::Moussaid(_) | Self::CollisionFreeSpeed(_) => 0.05,
-            Self::ReciprocalAvoidance(_) => 0.25,
-        }
-    }
-
-    /// Largest speed as a multiple of the desired one, infinite for none.
-    #[must_use]
-    pub fn cap(&self) -> f64 {
-        match self {
-            Self::SocialForce1995(_) | Self::Moussaid(_) => 1.3,
-            Self::SocialForce2000(_) => f64::INFINITY,
-            Self::CollisionFreeSpeed(_) | Self::ReciprocalAvoidance(_) => 1.0,
-        }
-    }
-
-    /// Whether a decision is an acceleration, not a velocity.
-    #[must_use]
-    pub fn is_force(&self) -> bool {
-        match self {
-            Self::SocialForce1995(_) | Self::SocialForce2000(_) | Self::Moussaid(_) => true,
-            Self::CollisionFreeSpeed(_) | Self::ReciprocalAvoidance(_) => false,
-        }
-    }
-
-    /// A model made of its parameters.
-    ///
-    /// # Errors
-    /// There is no such model, or a parameter is out of range.
-    pub fn named(name: &str, given: &impl Arguments) -> Result<Self> {
-        let above = |name: &str| positive(name, given.number(name)?);
-        let least = |name: &str| not_negative(name, given.number(name)?);
-        let plain = |name: &str| finite(name, given.number(name)?);
-        let cutoff = reach(given.number("cutoff")?)?;
-        Ok(match name {
-            "social_force_1995" => Self::SocialForce1995(SocialForce1995 {
-                relaxation_time: above("relaxation_time")?,
-                strength: least("strength")?,
-                range: above("range")?,
-                step_time: least("step_time")?,
-                wall_strength: least("wall_strength")?,
-                wall_range: above("wall_range")?,
-                view_angle: least("view_angle")?,
-                behind: least("behind")?,
-                cutoff,
-            }),
-            "social_force_2000" => Self::SocialForce2000(SocialForce2000 {
-                relaxation_time: above("relaxation_time")?,
-                mass: above("mass")?,
-                strength: least("strength")?,
-                range: above("range")?,
-                stiffness: least("stiffness")?,
-                friction: least("friction")?,
-                anisotropy: least("anisotropy")?,
-                wall_strength: least("wall_strength")?,
-                cutoff,
-            }),
-            "moussaid" => Self::Moussaid(Moussaid {
-                relaxation_time: above("relaxation_time")?,
-                strength: least("strength")?,
-                gamma: above("gamma")?,
-                n: least("n")?,
-                n_prime: least("n_prime")?,
-                velocity_weight: least("velocity_weight")?,
-                side_bias: plain("side_bias")?,
-                wall_strength: least("wall_strength")?,
-                wall_range: above("wall_range")?,
-                gaze: least("gaze")?,
-                cohesion: least("cohesion")?,
-                separation: least("separation")?,
-                view_angle: least("view_angle")?,
-                contact_distance: least("contact_distance")?,
-                cutoff,
-            }),
-            "collision_free_speed" => Self::CollisionFreeSpeed(CollisionFreeSpeed {
-                time_gap: above("time_gap")?,
-                strength: least("strength")?,
-                range: above("range")?,
-                wall_strength: least("wall_strength")?,
-                wall_range: above("wall_range")?,
-                cutoff,
-            }),
-            "reciprocal_avoidance" => Self::ReciprocalAvoidance(ReciprocalPeople {
-                horizon: above("horizon")?,
-                wall_horizon: above("wall_horizon")?,
-                max_neighbors: crate::error::at_most(
-                    "max_neighbors",
-                    given.count("max_neighbors")?,
-                    MOST_NEIGHBORS,
-                )?,
-                margin: least("margin")?,
-                cutoff,
-            }),
-            other => {
-                let rule = format!("be one of {}", NAMES.join(", "));
-                return Err(Failure::invalid("model", rule, Given::Word(other.into())));
-            }
-        })
-    }
-}
-
-/// A cutoff in m, infinite for none.
-fn reach(cutoff: f64) -> Result<f64> {
-    if cutoff > 0.0 {
-        return Ok(cutoff);
-    }
-    let rule = "be positive, or None for no cutoff";
-    Err(Failure::invalid("cutoff", rule, Given::Number(cutoff)))
 }
 
 /// The models that look at pairs, for tests.

@@ -6,14 +6,17 @@
 
 use std::f64::consts::PI;
 
+use crate::arguments::{Arguments, Named};
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::agent_lanes::{AgentLanes, Pair, Vectors};
+use crate::crowd::agent_lanes::{AgentLanes, LaneRoom, Pair, Vectors};
+use crate::crowd::models::Parameters;
 use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::neighbors::others::Each;
 use crate::crowd::pedestrian::{
     Around, Decision, Pedestrian, Room, Walker, awareness_of, deciding, drive, drives,
 };
 use crate::crowd::walls::pushes;
+use crate::error::Result;
 use crate::lanes::{Planar, Real, Vector2};
 use numeric::angle::unsigned_angle;
 use numeric::elementary::fading;
@@ -53,6 +56,31 @@ pub struct Moussaid {
     pub contact_distance: f64,
     /// Distance in m beyond which nobody acts; infinite for none.
     pub cutoff: f64,
+}
+
+impl Named for Moussaid {
+    const NAME: &'static str = "moussaid";
+
+    fn made_of(given: &dyn Arguments) -> Result<Self> {
+        let given = Parameters(given);
+        Ok(Self {
+            relaxation_time: given.positive("relaxation_time")?,
+            strength: given.not_negative("strength")?,
+            gamma: given.positive("gamma")?,
+            n: given.not_negative("n")?,
+            n_prime: given.not_negative("n_prime")?,
+            velocity_weight: given.not_negative("velocity_weight")?,
+            side_bias: given.finite("side_bias")?,
+            wall_strength: given.not_negative("wall_strength")?,
+            wall_range: given.positive("wall_range")?,
+            gaze: given.not_negative("gaze")?,
+            cohesion: given.not_negative("cohesion")?,
+            separation: given.not_negative("separation")?,
+            view_angle: given.not_negative("view_angle")?,
+            contact_distance: given.not_negative("contact_distance")?,
+            cutoff: given.cutoff()?,
+        })
+    }
 }
 
 impl Moussaid {
@@ -138,16 +166,34 @@ impl Moussaid {
     }
 }
 
-impl Moussaid {
-    /// Decides for everybody in a world that does not repeat itself: two people push each other by opposite vectors.
+impl Pedestrian for Moussaid {
+    const LARGEST_STEP: f64 = 0.05;
+    const CAP: f64 = 1.3;
+    const IS_FORCE: bool = true;
+    const LANES: bool = true;
+
     #[inline(always)]
-    pub(in crate::crowd) fn decide_together(
+    fn decide(&self, own: &mut Walker, around: &Around<'_>, room: &mut Room) -> Vector {
+        let mut force = drive(own, self.relaxation_time);
+        let velocity: Vector2<Each> = Planar::<Each>::splat(own.agent.velocity.into());
+        let limits = (self.cutoff, own.awareness);
+        let neighbors = around.neighbors;
+        for others in neighbors.near(&own.agent, limits, Unnoticed::Skipped, &mut room.near) {
+            let relative = velocity - others.velocity();
+            let push = self.push(others.normal, others.distance, relative);
+            others.add(push * others.weight, &mut force);
+        }
+        self.beside_others(force, own, (around, true))
+    }
+
+    #[inline(always)]
+    fn decide_together(
         &self,
         walkers: &[Walker],
         around: &Around<'_>,
         room: &mut Room,
         decisions: &mut [Decision],
-    ) {
+    ) -> bool {
         let awareness = awareness_of(walkers);
         let Room { pairs, sums, .. } = room;
         sums.clear();
@@ -166,15 +212,14 @@ impl Moussaid {
             let decision = self.beside_others(sums[place], own, (around, grouped));
             decisions[own.agent.number as usize] = Decision::of(own, decision);
         }
+        true
     }
-}
 
-impl Moussaid {
-    /// Decides for the people of worlds side by side.
     #[inline(always)]
-    pub(in crate::crowd) fn decide_in_lanes(
+    fn decide_in_lanes(
         &self,
         agents: &AgentLanes,
+        _room: &mut LaneRoom,
         decisions: &mut Vec<Vectors>,
     ) {
         // A closure that is a function of its own would not get the instructions of the lanes.
@@ -187,21 +232,5 @@ impl Moussaid {
             },
             decisions,
         );
-    }
-}
-
-impl Pedestrian for Moussaid {
-    #[inline(always)]
-    fn decide(&self, own: &mut Walker, around: &Around<'_>, room: &mut Room) -> Vector {
-        let mut force = drive(own, self.relaxation_time);
-        let velocity: Vector2<Each> = Planar::<Each>::splat(own.agent.velocity.into());
-        let limits = (self.cutoff, own.awareness);
-        let neighbors = around.neighbors;
-        for others in neighbors.near(&own.agent, limits, Unnoticed::Skipped, &mut room.near) {
-            let relative = velocity - others.velocity();
-            let push = self.push(others.normal, others.distance, relative);
-            others.add(push * others.weight, &mut force);
-        }
-        self.beside_others(force, own, (around, true))
     }
 }

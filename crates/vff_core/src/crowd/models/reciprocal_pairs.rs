@@ -1,6 +1,6 @@
 //! A few people who avoid each other reciprocally, each pair of them looked at once.
 
-use crate::crowd::agent_lanes::{self, AgentLanes};
+use crate::crowd::agent_lanes::{self, AgentLanes, LaneRoom};
 use crate::crowd::models::reciprocal_people::{DiscPair, ReciprocalPeople, away, permitted};
 use crate::crowd::neighbors::mutual::Known;
 use crate::crowd::neighbors::pairs::Each;
@@ -16,7 +16,7 @@ impl ReciprocalPeople {
     /// Decides for a few people in a world that does not repeat itself: two of them who do not touch change their
     /// velocities by opposite vectors.
     #[inline(always)]
-    pub(in crate::crowd) fn decide_together(
+    pub(super) fn decide_in_pairs(
         &self,
         walkers: &[Walker],
         around: &Around<'_>,
@@ -65,13 +65,14 @@ impl ReciprocalPeople {
 
     /// Decides for the people of worlds side by side.
     #[inline(always)]
-    pub(in crate::crowd) fn decide_in_lanes(
+    pub(super) fn decide_pairs_in_lanes(
         &self,
         agents: &AgentLanes,
-        step: f64,
-        programs: &mut VelocityPrograms,
+        room: &mut LaneRoom,
         decisions: &mut Vec<agent_lanes::Vectors>,
     ) {
+        let LaneRoom { step, programs, .. } = room;
+        let step = *step;
         self.constrain_in_lanes(agents, step, programs);
         for (person, intention) in agents.intentions.iter().enumerate() {
             let own = &agents.all[person];

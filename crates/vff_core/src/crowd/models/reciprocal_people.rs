@@ -3,14 +3,21 @@
 //! The half-planes of discs stand here in the form that needs no outline; [`crate::laws::reciprocal::avoiding`] is
 //! the same for any shape. Half-planes of walls are never violated.
 
+use crate::arguments::{Arguments, Named};
 use crate::crowd::agent::SHORTEST;
+use crate::crowd::agent_lanes::{AgentLanes, LaneRoom, Vectors};
+use crate::crowd::models::Parameters;
 use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::neighbors::others::{Each, WIDTH, apart};
-use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker};
+use crate::crowd::pedestrian::{Around, Decision, Pedestrian, Room, Walker};
+use crate::error::{Result, at_most};
 use crate::lanes::{Planar, Real, Truth, Vector2};
 use crate::laws::planning::half_planes::HalfPlane;
 
 type Vector = Vector2<f64>;
+
+/// Most neighbors that a person avoids.
+const MOST_NEIGHBORS: usize = 1 << 16;
 
 /// Parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +32,25 @@ pub struct ReciprocalPeople {
     pub margin: f64,
     /// Distance in m beyond which nobody acts; infinite for none.
     pub cutoff: f64,
+}
+
+impl Named for ReciprocalPeople {
+    const NAME: &'static str = "reciprocal_avoidance";
+
+    fn made_of(given: &dyn Arguments) -> Result<Self> {
+        let given = Parameters(given);
+        Ok(Self {
+            horizon: given.positive("horizon")?,
+            wall_horizon: given.positive("wall_horizon")?,
+            max_neighbors: at_most(
+                "max_neighbors",
+                given.0.count("max_neighbors")?,
+                MOST_NEIGHBORS,
+            )?,
+            margin: given.not_negative("margin")?,
+            cutoff: given.cutoff()?,
+        })
+    }
 }
 
 /// Pairs of discs that are to avoid each other, side by side.
@@ -201,13 +227,44 @@ pub(in crate::crowd) fn away<R: Real>(
 }
 
 impl Pedestrian for ReciprocalPeople {
+    const LARGEST_STEP: f64 = 0.25;
+    const CAP: f64 = 1.0;
+    const IS_FORCE: bool = false;
+    const LANES: bool = true;
+
     #[inline(always)]
     fn decide(&self, own: &mut Walker, around: &Around<'_>, room: &mut Room) -> Vector {
         let hard = self.keep_off_walls(own, around, room);
         self.keep_off_others(own, around, room);
         permitted(own, hard, around.step, room)
     }
+
+    #[inline(always)]
+    fn decide_together(
+        &self,
+        walkers: &[Walker],
+        around: &Around<'_>,
+        room: &mut Room,
+        decisions: &mut [Decision],
+    ) -> bool {
+        let few = around.neighbors.are_few();
+        if few {
+            self.decide_in_pairs(walkers, around, room, decisions);
+        }
+        few
+    }
+
+    #[inline(always)]
+    fn decide_in_lanes(
+        &self,
+        agents: &AgentLanes,
+        room: &mut LaneRoom,
+        decisions: &mut Vec<Vectors>,
+    ) {
+        self.decide_pairs_in_lanes(agents, room, decisions);
+    }
 }
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,14 +3,17 @@
 //! A neighbor repels with a potential `V0 exp(-b/sigma)` whose lines are ellipses along the way `y` that the
 //! neighbor takes within `dt_s`: `2 b = sqrt((d + |r - y|)^2 - |y|^2)`. The force is its exact gradient.
 
+use crate::arguments::{Arguments, Named};
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::agent_lanes::{AgentLanes, Pair, Vectors};
+use crate::crowd::agent_lanes::{AgentLanes, LaneRoom, Pair, Vectors};
+use crate::crowd::models::Parameters;
 use crate::crowd::neighbors::others::Each;
 use crate::crowd::neighbors::{Neighbors, Unnoticed};
 use crate::crowd::pedestrian::{
     Around, Decision, Pedestrian, Room, Walker, awareness_of, deciding, drive, drives,
 };
 use crate::crowd::walls::pushes;
+use crate::error::Result;
 use crate::lanes::{Planar, Real, Truth, Vector2};
 use numeric::elementary::decay;
 
@@ -40,6 +43,25 @@ pub struct SocialForce1995 {
     pub behind: f64,
     /// Distance in m beyond which nobody acts; infinite for none.
     pub cutoff: f64,
+}
+
+impl Named for SocialForce1995 {
+    const NAME: &'static str = "social_force_1995";
+
+    fn made_of(given: &dyn Arguments) -> Result<Self> {
+        let given = Parameters(given);
+        Ok(Self {
+            relaxation_time: given.positive("relaxation_time")?,
+            strength: given.not_negative("strength")?,
+            range: given.positive("range")?,
+            step_time: given.not_negative("step_time")?,
+            wall_strength: given.not_negative("wall_strength")?,
+            wall_range: given.positive("wall_range")?,
+            view_angle: given.not_negative("view_angle")?,
+            behind: given.not_negative("behind")?,
+            cutoff: given.cutoff()?,
+        })
+    }
 }
 
 /// Neighbors as a person sees them, side by side.
@@ -100,36 +122,6 @@ impl SocialForce1995 {
         push * (weight * view)
     }
 
-    /// Decides for everybody in a world that does not repeat itself: what two people share is found once.
-    #[inline(always)]
-    pub(in crate::crowd) fn decide_together(
-        &self,
-        walkers: &[Walker],
-        around: &Around<'_>,
-        room: &mut Room,
-        decisions: &mut [Decision],
-    ) {
-        let neighbors = &around.neighbors;
-        let (people, robots) = (neighbors.people.agents(), neighbors.robots.agents());
-        let (ways, aheads) = (&mut room.ways, &mut room.aheads);
-        ways.clear();
-        ways.reserve(people.len() + robots.len());
-        aheads.clear();
-        aheads.reserve(people.len() + robots.len());
-        for agent in people.iter().chain(robots) {
-            ways.push(agent.direction * (agent.velocity.norm() * self.step_time));
-            aheads.push(agent.direction);
-        }
-        room.sums.clear();
-        room.sums.extend(drives(walkers, self.relaxation_time));
-        room.sums.resize(ways.len(), Vector::zeros());
-        self.push_together(neighbors, awareness_of(walkers), room);
-        for (place, own) in deciding(walkers) {
-            let decision = room.sums[place] + self.walls(own.agent.position, around);
-            decisions[own.agent.number as usize] = Decision::of(own, decision);
-        }
-    }
-
     /// Forces of the two of each pair: the second as the first sees him, `own` way and direction of the first, and
     /// the direction of the second.
     #[inline(always)]
@@ -150,37 +142,6 @@ impl SocialForce1995 {
             self.viewed(self.push(seen), ahead, limits),
             self.viewed(self.push(&reversed), back, limits),
         ]
-    }
-
-    /// Decides for the people of worlds side by side.
-    #[inline(always)]
-    pub(in crate::crowd) fn decide_in_lanes(
-        &self,
-        agents: &AgentLanes,
-        ways: &mut Vec<Vectors>,
-        decisions: &mut Vec<Vectors>,
-    ) {
-        let cosine = self.view_angle.cos();
-        ways.clear();
-        for agent in &agents.all {
-            let speed = Planar::<_>::length(agent.velocity);
-            ways.push(agent.direction * (speed * self.step_time));
-        }
-        agents.accelerations(
-            (self.relaxation_time, self.cutoff),
-            #[inline(always)]
-            |(one, other): (usize, usize), pair: &Pair| {
-                let seen = NeighborView {
-                    offset: pair.offset,
-                    distance: pair.distance,
-                    normal: pair.normal,
-                    way: ways[other],
-                };
-                let [first, second] = [one, other].map(|place| agents.all[place].direction);
-                self.both(&seen, (ways[one], first), second, (pair.weight, cosine))
-            },
-            decisions,
-        );
     }
 
     /// Adds the forces of all pairs to the sums of their people.
@@ -227,6 +188,11 @@ impl SocialForce1995 {
 }
 
 impl Pedestrian for SocialForce1995 {
+    const LARGEST_STEP: f64 = 0.1;
+    const CAP: f64 = 1.3;
+    const IS_FORCE: bool = true;
+    const LANES: bool = true;
+
     #[inline(always)]
     fn decide(&self, own: &mut Walker, around: &Around<'_>, room: &mut Room) -> Vector {
         let cosine = self.view_angle.cos();
@@ -246,5 +212,66 @@ impl Pedestrian for SocialForce1995 {
             others.add(push, &mut force);
         }
         force + self.walls(own.agent.position, around)
+    }
+
+    #[inline(always)]
+    fn decide_together(
+        &self,
+        walkers: &[Walker],
+        around: &Around<'_>,
+        room: &mut Room,
+        decisions: &mut [Decision],
+    ) -> bool {
+        let neighbors = &around.neighbors;
+        let (people, robots) = (neighbors.people.agents(), neighbors.robots.agents());
+        let (ways, aheads) = (&mut room.ways, &mut room.aheads);
+        ways.clear();
+        ways.reserve(people.len() + robots.len());
+        aheads.clear();
+        aheads.reserve(people.len() + robots.len());
+        for agent in people.iter().chain(robots) {
+            ways.push(agent.direction * (agent.velocity.norm() * self.step_time));
+            aheads.push(agent.direction);
+        }
+        room.sums.clear();
+        room.sums.extend(drives(walkers, self.relaxation_time));
+        room.sums.resize(ways.len(), Vector::zeros());
+        self.push_together(neighbors, awareness_of(walkers), room);
+        for (place, own) in deciding(walkers) {
+            let decision = room.sums[place] + self.walls(own.agent.position, around);
+            decisions[own.agent.number as usize] = Decision::of(own, decision);
+        }
+        true
+    }
+
+    #[inline(always)]
+    fn decide_in_lanes(
+        &self,
+        agents: &AgentLanes,
+        room: &mut LaneRoom,
+        decisions: &mut Vec<Vectors>,
+    ) {
+        let cosine = self.view_angle.cos();
+        let ways = &mut room.ways;
+        ways.clear();
+        for agent in &agents.all {
+            let speed = Planar::<_>::length(agent.velocity);
+            ways.push(agent.direction * (speed * self.step_time));
+        }
+        agents.accelerations(
+            (self.relaxation_time, self.cutoff),
+            #[inline(always)]
+            |(one, other): (usize, usize), pair: &Pair| {
+                let seen = NeighborView {
+                    offset: pair.offset,
+                    distance: pair.distance,
+                    normal: pair.normal,
+                    way: ways[other],
+                };
+                let [first, second] = [one, other].map(|place| agents.all[place].direction);
+                self.both(&seen, (ways[one], first), second, (pair.weight, cosine))
+            },
+            decisions,
+        );
     }
 }

@@ -3,11 +3,14 @@
 //! Bodies repel with `A exp(g/B)`, `g = rho_i + rho_j - d`; those that touch (`g > 0`) press with `k g` and rub with
 //! `kappa g` times the difference of their velocities along the tangent. Friction at walls brakes, as printed.
 
+use crate::arguments::{Arguments, Named};
 use crate::crowd::agent::SHORTEST;
+use crate::crowd::models::Parameters;
 use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::neighbors::others::Each;
 use crate::crowd::pedestrian::{Around, Pedestrian, Room, Walker, drive};
 use crate::crowd::walls::pushes;
+use crate::error::Result;
 use crate::lanes::{Number, Planar, Real, Truth, Vector2, Zero};
 use numeric::elementary::exp;
 
@@ -36,7 +39,30 @@ pub struct SocialForce2000 {
     pub cutoff: f64,
 }
 
+impl Named for SocialForce2000 {
+    const NAME: &'static str = "social_force_2000";
+
+    fn made_of(given: &dyn Arguments) -> Result<Self> {
+        let given = Parameters(given);
+        Ok(Self {
+            relaxation_time: given.positive("relaxation_time")?,
+            mass: given.positive("mass")?,
+            strength: given.not_negative("strength")?,
+            range: given.positive("range")?,
+            stiffness: given.not_negative("stiffness")?,
+            friction: given.not_negative("friction")?,
+            anisotropy: given.not_negative("anisotropy")?,
+            wall_strength: given.not_negative("wall_strength")?,
+            cutoff: given.cutoff()?,
+        })
+    }
+}
+
 impl Pedestrian for SocialForce2000 {
+    const LARGEST_STEP: f64 = 0.01;
+    const CAP: f64 = f64::INFINITY;
+    const IS_FORCE: bool = true;
+
     #[inline(always)]
     fn decide(&self, own: &mut Walker, around: &Around<'_>, room: &mut Room) -> Vector {
         let me = own.agent;
