@@ -15,10 +15,12 @@ from PIL import Image
 from hrsafety import navigation as nav
 from hrsafety import plotting, scenarios
 from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.navigation.crowd import pedestrians
 from hrsafety.plotting import style
 from hrsafety.plotting.crowds import world_scenes
 from pictures import assert_readable
 
+MODELS_OF_PEOPLE = [getattr(pedestrians, name) for name in pedestrians.__all__ if name != "Pedestrian"]
 LAW = nav.OptimalReciprocalCollisionAvoidance()
 
 
@@ -46,7 +48,7 @@ def groups() -> nav.crowd.CrowdTrajectories:
 
 def mixed() -> nav.crowd.CrowdTrajectories:
     """All models, a recorded person, and somebody from a source, among three robots."""
-    models = [kind() for kind in nav.crowd.Pedestrian.__subclasses__()]
+    models = [kind() for kind in MODELS_OF_PEOPLE]
     people = [
         nav.crowd.Person(start=(0.0, 1.2 * k), route=[(6.0, 1.2 * k)], model=each) for k, each in enumerate(models)
     ]
@@ -129,7 +131,7 @@ def test_contacts_are_marked_and_in_the_legend() -> None:
 def test_colors_tell_models_or_groups() -> None:
     words = legend(plotting.crowds.crowd_paths(mixed()))
     assert [each for each in words if "person" in each or "Moussa" in each]
-    for model in (*(kind.TITLE for kind in nav.crowd.Pedestrian.__subclasses__()), "recorded person"):
+    for model in (*(kind.TITLE for kind in MODELS_OF_PEOPLE), "recorded person"):
         assert any(model in each for each in words)
     words = legend(plotting.crowds.crowd_paths(groups(), color_by="group"))
     assert {"group 0", "group 7", "no group", "wall"} <= set(words)
