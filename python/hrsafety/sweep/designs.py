@@ -221,7 +221,7 @@ class Grid(Design):
 
     def _without(self, names: Collection[str]) -> Design:
         left = [axis for axis in self.axes if axis.name not in names]
-        return Grid(left) if left else self
+        return Grid(tuple(left)) if left else self
 
     def _block(self, start: int, stop: int) -> Array:
         places = np.unravel_index(np.arange(start, stop), self.shape)
