@@ -16,7 +16,7 @@ from hrsafety import arms
 from hrsafety._arguments import Array, meant, readable
 from hrsafety.cli import output, terminal
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.pages.report import Report, Section, Table
+from hrsafety.pages.report import Report, ReportTable, Section
 
 __all__ = ["show_arm"]
 
@@ -164,7 +164,7 @@ def _mass(value: float) -> str:
     return "unbounded" if math.isinf(value) else f"{value:.3f}"
 
 
-def _table(masses: arms.PointMasses, names: Sequence[str]) -> Table:
+def _table(masses: arms.PointMasses, names: Sequence[str]) -> ReportTable:
     rows = []
     for index, position in enumerate(masses.position[:, 0]):
         along = [_mass(value) for value in masses.effective_mass[index]]
@@ -172,7 +172,7 @@ def _table(masses: arms.PointMasses, names: Sequence[str]) -> Table:
         rows.append((index, *(f"{value:.3f}" for value in position), *along, *(_mass(each) for each in extremes)))
     header = ("pose", "x", "y", "z", *(f"along {name}" for name in names), "least", "worst")
     units = ("", "m", "m", "m", *("kg" for _ in names), "kg", "kg")
-    return Table(headers=(header, units), rows=rows, left=(), printed=True)
+    return ReportTable(headers=(header, units), rows=rows, left=(), printed=True)
 
 
 def _write(

@@ -14,7 +14,7 @@ from hrsafety.benchmarks.runs import case_of
 from hrsafety.cli import output, progress, terminal
 from hrsafety.errors import InvalidParameterError
 from hrsafety.pages import Picture
-from hrsafety.pages.report import Report, Section, Table
+from hrsafety.pages.report import Report, ReportTable, Section
 
 __all__ = ["run_suite"]
 
@@ -52,7 +52,7 @@ def run_suite(options: argparse.Namespace) -> None:
     except InvalidParameterError as error:
         name = OPTIONS.get(error.argument)
         raise error if name is None else error.renamed(name) from None
-    table = Table(headers=[HEAD], rows=result.cells(), printed=True)
+    table = ReportTable(headers=[HEAD], rows=result.cells(), printed=True)
     note = (
         "Shares in percent with 95 % Wilson intervals. A contact is at fault where the robot moves toward whom it "
         "touches."

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import hrsafety
 from hrsafety.cli import terminal
-from hrsafety.pages.report import Report, Section, Table
+from hrsafety.pages.report import Report, ReportTable, Section
 
 __all__ = ["print_info"]
 
@@ -24,7 +24,9 @@ _OWN = frozenset({"test", "dev", "docs", "all"})
 def print_info() -> None:
     """Print versions, machine and optional extras with what each of them still needs."""
     rows = [(extra, ", ".join(has) or "-", ", ".join(lacks) or "-", _command(lacks)) for extra, has, lacks in _extras()]
-    table = Table(headers=[("extra", "installed", "missing", "to install")], rows=rows, left=(0, 1, 2, 3), printed=True)
+    table = ReportTable(
+        headers=[("extra", "installed", "missing", "to install")], rows=rows, left=(0, 1, 2, 3), printed=True
+    )
     print(terminal.told(Report(title="hrsafety", facts=list(_facts()), sections=[Section("Extras", [table])])))
 
 

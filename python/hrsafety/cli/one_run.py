@@ -16,7 +16,7 @@ from hrsafety.cli import output, terminal, verdict
 from hrsafety.cli.output import decimal
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.trajectory import CONTACT_SPEED
-from hrsafety.pages.report import Report, Section, Table
+from hrsafety.pages.report import Report, ReportTable, Section
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -110,7 +110,7 @@ def _summary(score: nav.Performance) -> Iterator[tuple[str, str]]:
     yield "performance H", f"{score.total:.3f}  ({parts})"
 
 
-def _obstacle_table(run: nav.Trajectory) -> Table:
+def _obstacle_table(run: nav.Trajectory) -> ReportTable:
     of_contact = ("first contact", "robot speed then", "robot moved")
     names = ("obstacle", "kind", "r_3", "r_2", "least distance", "least clearance", *of_contact)
     units = ("", "", "m", "m", "m", "m", "s", "m/s", "")
@@ -128,7 +128,7 @@ def _obstacle_table(run: nav.Trajectory) -> Table:
         )
         for index, obstacle in enumerate(run.scenario.obstacles)
     ]
-    return Table(headers=(names, units), rows=rows, left=(1,), printed=True)
+    return ReportTable(headers=(names, units), rows=rows, left=(1,), printed=True)
 
 
 def _draw(run: nav.Trajectory) -> Iterator[tuple[str, Figure, str]]:

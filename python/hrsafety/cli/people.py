@@ -19,7 +19,7 @@ from hrsafety.cli.output import decimal
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.tables.runs import RunTable
-from hrsafety.pages.report import Report, Section, Table
+from hrsafety.pages.report import Report, ReportTable, Section
 from hrsafety.plausibility import ResultWarning, gathered
 from hrsafety.scenarios.laws import name_of
 from hrsafety.scenarios.recorded_people import ACTIVE_RADIUS, CRITICAL_RADIUS, PERSON_RADIUS
@@ -178,7 +178,7 @@ RUN_HEADER = (
 )
 
 
-def _run_table(crossings: Sequence[scenarios.Crossing], summary: RunTable) -> Table:
+def _run_table(crossings: Sequence[scenarios.Crossing], summary: RunTable) -> ReportTable:
     rows = [
         (
             row,
@@ -196,7 +196,7 @@ def _run_table(crossings: Sequence[scenarios.Crossing], summary: RunTable) -> Ta
         )
         for row, crossing in enumerate(crossings)
     ]
-    return Table(headers=RUN_HEADER, rows=rows, left=(4,), printed=True)
+    return ReportTable(headers=RUN_HEADER, rows=rows, left=(4,), printed=True)
 
 
 def _totals(summary: RunTable, met: _Encounters) -> Iterator[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import fields
 from typing import Annotated, Any
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, flag
+from hrsafety._display import fields_with_units
 from hrsafety._records import dataclass
 from hrsafety.contact.bodies import OWN, agreeing
 from hrsafety.contact.doubts import Doubts, covering_flags, flagged, implausible_numbers
@@ -30,33 +30,14 @@ _FOUND = (
     *("hic15", "hic36", "end_force"),
 )
 _FLAGS = ("rising", "outside_paraboloid", "beyond_pad", "edge")
-UNITS = {
-    "release_time": "s",
-    "peak_force": "N",
-    "peak_force_time": "s",
-    "peak_total_compression": "m",
-    "peak_body_deflection": "m",
-    "peak_covering_compression": "m",
-    "peak_pressure": "Pa",
-    "rebound_speed": "m/s",
-    "body_speed_end": "m/s",
-    "end_force": "N",
-    "time": "s",
-    "force": "N",
-    "total_compression": "m",
-    "covering_compression": "m",
-    "body_deflection": "m",
-    "body_acceleration": "m/s^2",
-}
-"""Units of the loads and of the motion; what has none is not here, and `_g` is a unit of its own."""
 
 
 def arrays_of(result: Any) -> Columns:
     """Return the arrays of a result flattened, under their names with units."""
-    named = {each.name: getattr(result, each.name) for each in fields(result)}
+    named = {name: (getattr(result, name), unit) for name, unit in fields_with_units(type(result)).items()}
     return {
-        f"{'t' if name == 'time' else name}{unit_suffix(UNITS.get(name, ''))}": values.ravel()
-        for name, values in named.items()
+        f"{'t' if name == 'time' else name}{unit_suffix(unit)}": values.ravel()
+        for name, (values, unit) in named.items()
         if isinstance(values, np.ndarray)
     }
 
@@ -120,12 +101,12 @@ class ContactImpact(Table):
     bottomed: bool
     rising: bool
     warnings: Doubts
-    time: Array
-    force: Array
-    total_compression: Array
-    covering_compression: Array
-    body_deflection: Array
-    body_acceleration: Array
+    time: Annotated[Array, "s"]
+    force: Annotated[Array, "N"]
+    total_compression: Annotated[Array, "m"]
+    covering_compression: Annotated[Array, "m"]
+    body_deflection: Annotated[Array, "m"]
+    body_acceleration: Annotated[Array, "m/s^2"]
 
     def columns(self) -> Columns:
         """Return the motion as columns by name.
@@ -139,10 +120,9 @@ class ContactImpact(Table):
 
     def __repr__(self) -> str:
         """Return how it ended with the loads, then the first steps and the warnings."""
+        units = fields_with_units(ContactImpact) | {"peak_body_acceleration_g": ""}
         loads = {name: getattr(self, name) for name in (*_FOUND, "peak_body_acceleration_g")}
-        shown = [
-            f"{name} {value:.6g} {UNITS.get(name, '')}".strip() for name, value in loads.items() if value is not None
-        ]
+        shown = [f"{name} {value:.6g} {units[name]}".strip() for name, value in loads.items() if value is not None]
         words = [self.status, *(name for name in ("bottomed", "rising") if getattr(self, name))]
         return "\n".join([f"ContactImpact: {', '.join(words)}", *(f"  {line}" for line in shown), Table.__repr__(self)])
 
@@ -203,20 +183,20 @@ class ContactBatch(Table):
     """
 
     status: npt.NDArray[np.str_]
-    release_time: Array
-    peak_force: Array
-    peak_force_time: Array
-    peak_total_compression: Array
-    peak_body_deflection: Array
-    peak_covering_compression: Array
+    release_time: Annotated[Array, "s"]
+    peak_force: Annotated[Array, "N"]
+    peak_force_time: Annotated[Array, "s"]
+    peak_total_compression: Annotated[Array, "m"]
+    peak_body_deflection: Annotated[Array, "m"]
+    peak_covering_compression: Annotated[Array, "m"]
     peak_strain: Array
-    peak_pressure: Array
-    rebound_speed: Array
+    peak_pressure: Annotated[Array, "Pa"]
+    rebound_speed: Annotated[Array, "m/s"]
     peak_body_acceleration_g: Array
-    body_speed_end: Array
+    body_speed_end: Annotated[Array, "m/s"]
     hic15: Array
     hic36: Array
-    end_force: Array
+    end_force: Annotated[Array, "N"]
     bottomed: npt.NDArray[np.bool_]
     rising: npt.NDArray[np.bool_]
     outside_paraboloid: npt.NDArray[np.bool_]

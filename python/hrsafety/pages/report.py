@@ -14,10 +14,10 @@ from hrsafety._records import dataclass
 from hrsafety.pages import Picture, written
 from hrsafety.plausibility import ResultWarning, unsafe_doubts
 
-__all__ = ["Cell", "Report", "Section", "Table", "json_text"]
+__all__ = ["Report", "ReportCell", "ReportTable", "Section", "json_text"]
 
 
-class Cell(NamedTuple):
+class ReportCell(NamedTuple):
     """A cell of a table with a look of its own on the page.
 
     Attributes
@@ -40,7 +40,7 @@ class Cell(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Table:
+class ReportTable:
     """A table of the terminal and of the page.
 
     Attributes
@@ -84,12 +84,12 @@ class Section(NamedTuple):
     ----------
     heading : str
         Above it; none if empty.
-    blocks : iterable of str, Table or Picture
+    blocks : iterable of str, ReportTable or Picture
         Paragraphs, tables and pictures in their order.
     """
 
     heading: str
-    blocks: Sequence[str | Table | Picture]
+    blocks: Sequence[str | ReportTable | Picture]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -135,10 +135,10 @@ class Report:
     source: str = ""
 
     @property
-    def printed(self) -> list[Table]:
+    def printed(self) -> list[ReportTable]:
         """Tables that the terminal shows."""
         blocks = (block for section in self.sections for block in section.blocks)
-        return [block for block in blocks if isinstance(block, Table) and block.printed]
+        return [block for block in blocks if isinstance(block, ReportTable) and block.printed]
 
     @property
     def messages(self) -> list[str]:

@@ -147,3 +147,16 @@ def test_allowed_speed_loads_and_thickness_are_of_one_contact(
         thicker = hit.thickness(0.99 * found.speed, limits).thickness
         assert thicker is not None
         assert thicker <= PAD.thickness * (1.0 + 1e-6)
+
+
+def test_columns_of_many_contacts_carry_their_units() -> None:
+    hit = contact.Contact(robot=8.0, body=40.0, region=25e3, covering=PAD)
+    speeds = hit.allowed_speeds({"force": 140.0}, robot_mass=[8.0, 9.0]).columns()
+    assert {"speed_m_per_s", "speed_force_m_per_s", "covering_compression_m", "governs"} <= set(speeds)
+    loads = hit.simulate_many([0.1, 0.2]).columns()
+    assert {"peak_force_N", "peak_pressure_Pa", "peak_body_acceleration_g", "hic15", "rebound_speed_m_per_s"} <= set(
+        loads
+    )
+    assert {"t_s", "force_N", "body_acceleration_m_per_s2"} <= set(hit.simulate(0.1).columns())
+    assert "peak_pressure" in repr(hit.simulate(0.1))
+    assert " Pa" in repr(hit.simulate(0.1))

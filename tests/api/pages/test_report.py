@@ -17,13 +17,13 @@ pytest.importorskip("jinja2")
 
 from hrsafety import pages
 from hrsafety.cli import terminal
-from hrsafety.pages.report import Cell, Report, Section, Table, json_text
+from hrsafety.pages.report import Report, ReportCell, ReportTable, Section, json_text
 from hrsafety.plausibility import ResultWarning
 
 DOUBT = ResultWarning("edge", "covering.radius", "an edge <b>")
-TABLE = Table(
+TABLE = ReportTable(
     headers=(("region", "speed"), ("", "m/s")),
-    rows=[("chest", Cell("0.1 !", "bad", "-3 %")), ("hand", 0.25), ("face", "-")],
+    rows=[("chest", ReportCell("0.1 !", "bad", "-3 %")), ("hand", 0.25), ("face", "-")],
     most=2,
     summary="All 3 regions",
     more="and 1 more",

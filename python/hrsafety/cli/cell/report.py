@@ -15,7 +15,7 @@ from hrsafety._keys import canonical
 from hrsafety.contact import Cell, ContactStudy
 from hrsafety.contact.cell.study import numbers_of
 from hrsafety.pages import versions
-from hrsafety.pages.report import Report, Section, Table
+from hrsafety.pages.report import Report, ReportTable, Section
 from hrsafety.standards.verdicts import VERDICT_WORDS
 
 __all__ = ["CONFIRM", "NOT_COVERED", "at_path", "report_of"]
@@ -95,7 +95,7 @@ def _facts(path: str, cell: Cell, values: Mapping[str, Any]) -> Iterator[tuple[s
     yield "", CONFIRM
 
 
-def _contacts(study: ContactStudy) -> Table:
+def _contacts(study: ContactStudy) -> ReportTable:
     rows = []
     for each in study.verdicts:
         numbers = [each[name] for name in ("planned_speed", "allowed_speed", "margin")]
@@ -106,7 +106,7 @@ def _contacts(study: ContactStudy) -> Table:
         rows.append((*place, area, VERDICT_WORDS[each["verdict"]], *shown, *words))
     names = ("region", "contact", "covering", "area", "verdict", "planned", "allowed", "margin", "governs", "doubts")
     units = ("", "", "", "cm2", "", "m/s", "m/s", "m/s", "", "")
-    return Table(headers=(names, units), rows=rows, left=(0, 1, 2, 4, 8, 9), printed=True)
+    return ReportTable(headers=(names, units), rows=rows, left=(0, 1, 2, 4, 8, 9), printed=True)
 
 
 def at_path(report: Any, path: str) -> Any:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hrsafety.pages import DASH, sentence
-from hrsafety.pages.report import Cell, Report, Section, Table
+from hrsafety.pages.report import Report, ReportCell, ReportTable, Section
 
 if TYPE_CHECKING:
     from hrsafety import impact
@@ -71,7 +71,7 @@ def report_of(source: str, found: FoundFoams) -> Report:
         f"Foam is linear up to {KILO * file.sought.linear_range:g} mm of {KILO * file.sought.thickness:g} mm; no limit "
         "counts as kept beyond that."
     )
-    boundaries = Table(
+    boundaries = ReportTable(
         headers=[["boundary", "damping", "stiffness", "meaning"], ["", "N s/m", "kN/m", ""]],
         rows=list(_statuses(found)),
         left=(0, 3),
@@ -122,27 +122,27 @@ def _verdict(found: FoundFoams) -> tuple[str, str]:
     return f"there are foams that fit; widest range at {found.widest.damping:g} N s/m: {words}", fastest
 
 
-def _foams(found: FoundFoams) -> Table:
+def _foams(found: FoundFoams) -> ReportTable:
     """Return the foams with what they make of each limit."""
     rows = []
     for judged in found.foams:
         # Loads of a foam outside its linear range are too low: none of them is a kept limit.
         known = judged.status in ("kept", "exceeded")
         checks = [
-            Cell(
+            ReportCell(
                 f"{check.value:.3f}{'' if check.kept else ' !'}",
                 "good" if check.kept and known else "bad",
                 f"{100.0 * check.margin:+.1f} % of {check.limit:g}",
             )
             for check in judged.checks
         ]
-        verdict = Cell(judged.verdict, "good" if judged.accepted else "bad")
+        verdict = ReportCell(judged.verdict, "good" if judged.accepted else "bad")
         numbers = (f"{judged.foam.stiffness / KILO:.2f}", f"{judged.foam.damping:.1f}")
         rows.append((judged.name, verdict, *numbers, *checks, f"{judged.max_closing_speed:.3f}"))
     checked = found.foams[0].checks
     names = ("foam", "verdict", "stiffness", "damping", *(check.name for check in checked), "fits up to")
     units = ("", "", "kN/m", "N s/m", *(check.unit for check in checked), "m/s")
-    return Table(headers=(names, units), rows=rows, left=(0, 1), printed=True)
+    return ReportTable(headers=(names, units), rows=rows, left=(0, 1), printed=True)
 
 
 def _statuses(found: FoundFoams) -> Iterator[tuple[str, str, str, str]]:

@@ -11,7 +11,7 @@ from hrsafety.cli.optimize.file import GainStudy
 from hrsafety.cli.optimize.found import METRIC_UNITS, MOST_COLUMNS, MOST_PATHS, NOT_EVERYWHERE, FoundGains, gain_words
 from hrsafety.cli.output import decimal
 from hrsafety.pages import Picture, sentence
-from hrsafety.pages.report import Report, Section, Table
+from hrsafety.pages.report import Report, ReportTable, Section
 
 __all__ = ["report_of"]
 
@@ -98,19 +98,19 @@ def _sections(found: FoundGains, pictures: Mapping[str, Picture]) -> Iterator[Se
         f"{100.0 * flatness.tolerance:g} % of the objective.{share}"
     )
     titles: tuple[str, ...] = ("gain", "best", "as good", "bounds", "sensitivity of mean H, average (%)", "largest (%)")
-    flat = Table(headers=[titles], rows=_flat_rows(found))
+    flat = ReportTable(headers=[titles], rows=_flat_rows(found))
     yield Section(
         "How flat the optimum is, and which gain matters",
         [told, flat, pictures["flatness"], pictures["sensitivity"]],
     )
-    history: list[str | Table | Picture] = [pictures["history"]]
+    history: list[str | ReportTable | Picture] = [pictures["history"]]
     if search.history:
         titles = ("grid", "gain sets", "failed", "best", "worst survivor", *GAIN_TITLES)
-        history.append(Table(headers=[titles], rows=_history_rows(search)))
+        history.append(ReportTable(headers=[titles], rows=_history_rows(search)))
     if search.local:
         titles = ("local search", "from", "to", *GAIN_TITLES, "gain sets", "ended")
         summary = f"All {len(search.local)} local searches"
-        history.append(Table(headers=[titles], rows=_local_rows(search), summary=summary))
+        history.append(ReportTable(headers=[titles], rows=_local_rows(search), summary=summary))
     yield Section("History", history)
     if front is not None:
         names = " and ".join(name.replace("_", " ") for name in front.objectives)
@@ -118,16 +118,16 @@ def _sections(found: FoundGains, pictures: Mapping[str, Picture]) -> Iterator[Se
             f"{len(front)} of {front.evaluations:,} gain sets are not beaten by another one in {names}. Hypervolume "
             f"over the ranges of the front: {front.hypervolume:.3f}."
         )
-        rows = Table(
+        rows = ReportTable(
             headers=[_front_titles(front)], rows=_front_rows(front), summary=f"All {len(front)} gain sets of the front"
         )
-        drawn: list[Table | Picture] = [pictures["front"], rows] if "front" in pictures else []
+        drawn: list[ReportTable | Picture] = [pictures["front"], rows] if "front" in pictures else []
         yield Section("Pareto front", [told, *drawn])
     settings = [
         (name.replace("_", " "), _shown(value))
         for name, value in optimize_record.settings(study, search.settings).items()
     ]
-    yield Section("Settings", [Table(headers=[("setting", "value")], rows=settings, left=(0, 1))])
+    yield Section("Settings", [ReportTable(headers=[("setting", "value")], rows=settings, left=(0, 1))])
 
 
 def scenario_words(study: GainStudy) -> str:
@@ -160,7 +160,7 @@ def confidence_words(search: nav.GainSearch) -> str:
     )
 
 
-def set_table(found: FoundGains) -> Table:
+def set_table(found: FoundGains) -> ReportTable:
     """Return the gain sets with their objectives and scores."""
     several = len(found.study.names) > MOST_COLUMNS
     scenarios = ("least H", "mean H") if several else tuple(f"H {name}" for name in found.study.names)
@@ -172,10 +172,10 @@ def set_table(found: FoundGains) -> Table:
         shown = (total.min(), total.mean()) if several else total
         gains = (f"{gain:.3f}" for gain in entry.law.gains)
         rows.append((entry.name, *gains, f"{entry.value:.5f}", *(f"{score:.4f}" for score in shown)))
-    return Table(headers=(names, units), rows=rows, printed=True)
+    return ReportTable(headers=(names, units), rows=rows, printed=True)
 
 
-def scenario_table(found: FoundGains) -> Table:
+def scenario_table(found: FoundGains) -> ReportTable:
     """Return the runs of the best gain set, or the nearest without one."""
     first = f"{found.sets[0].name} gains in"
     names = (first, "outcome", "arrival", "energy", "path", "clearance", "H", "H_T", "H_D", "H_E")
@@ -193,7 +193,7 @@ def scenario_table(found: FoundGains) -> Table:
         )
         for index, name in enumerate(found.study.names)
     ]
-    return Table(
+    return ReportTable(
         headers=(names, units),
         rows=rows,
         left=(0, 1),

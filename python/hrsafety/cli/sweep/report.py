@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from hrsafety.cli.sweep.file import SweepFile
 from hrsafety.cli.sweep.summary import Summary, summarized
 from hrsafety.pages import sentence
-from hrsafety.pages.report import Report, Section, Table
+from hrsafety.pages.report import Report, ReportTable, Section
 from hrsafety.sweep import Axis, SweepResult
 
 __all__ = ["report_of"]
@@ -59,9 +59,9 @@ def report_of(study: str, described: SweepFile, result: SweepResult, seconds: fl
     rest = [each for each in summary.numbers if each.column.name not in described.show]
     titles = ("quantity", "least", "mean", "largest", "without value")
     extremes = _extremes(summary, described.show)
-    blocks: list[str | Table] = [
-        Table(headers=[titles], rows=[(each.label, *each.numbers()) for each in shown], printed=True),
-        *([Table(headers=[titles], rows=[(each.label, *each.numbers()) for each in rest])] if rest else []),
+    blocks: list[str | ReportTable] = [
+        ReportTable(headers=[titles], rows=[(each.label, *each.numbers()) for each in shown], printed=True),
+        *([ReportTable(headers=[titles], rows=[(each.label, *each.numbers()) for each in rest])] if rest else []),
         *(f"{sentence(each.label)}: {each.shares()}." for each in summary.words),
     ]
     settings = json.dumps(source["settings"], indent=1, ensure_ascii=False)
@@ -88,7 +88,7 @@ def report_of(study: str, described: SweepFile, result: SweepResult, seconds: fl
     )
 
 
-def _extremes(summary: Summary, show: Sequence[str]) -> Table:
+def _extremes(summary: Summary, show: Sequence[str]) -> ReportTable:
     """Return where the columns that are drawn are least and largest."""
     drawn = [each for each in summary.numbers if each.column.name in show and each.finite]
     labels = {column.name: column.label for column in summary.result.columns}
@@ -98,7 +98,7 @@ def _extremes(summary: Summary, show: Sequence[str]) -> Table:
         for each in drawn
         for word, value, row in (("least", each.least, each.least_row), ("largest", each.largest, each.largest_row))
     ]
-    return Table(headers=[["quantity", "", "value", *(labels[name] for name in names)]], rows=rows, left=(0, 1))
+    return ReportTable(headers=[["quantity", "", "value", *(labels[name] for name in names)]], rows=rows, left=(0, 1))
 
 
 def _shown(value: object) -> str:
