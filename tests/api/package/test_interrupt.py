@@ -66,6 +66,10 @@ STATIC = """
 depth = np.linspace(0.0, 0.01, 2_000_000)
 force = 24e3 * depth + np.sin(np.arange(len(depth)))
 """
+SIGNALS = """
+instants = np.arange(20_000_000) * 1e-6
+signal = 30.0 * np.abs(np.sin(1e-4 * np.arange(20_000_000)))
+"""
 CELLS = "cells = np.random.default_rng(0).random((6000, 6000)) < 1e-4"
 ROOM = """
 corners = ((0.0, 0.0), (0.3, 0.0), (0.3, 0.3), (0.0, 0.3))
@@ -99,6 +103,8 @@ JOBS = {
     "one joint": (JOINT, DRIVEN),
     "bootstrap": (DROP, BOOTSTRAP),
     "boundary": (PARTS, BOUNDARY),
+    "head injury criteria": (SIGNALS, "[impact.hic(instants, signal) for _ in range(40)]"),
+    "recorded impacts": (SIGNALS, "[impact.recorded_metrics(instants, signal) for _ in range(20)]"),
     "distances of cells": (CELLS, "[nav.maps.distance_transform(cells) for _ in range(20)]"),
     "a map of cells": (CELLS, "[nav.maps.StaticMap.from_grid(cells, resolution=0.05) for _ in range(40)]"),
     "distances of points": (ROOM, "room.clearance(places)"),

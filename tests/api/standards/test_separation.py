@@ -8,6 +8,8 @@ import warnings
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from hrsafety import standards
 from hrsafety.errors import InvalidParameterError, ShapeError
@@ -70,9 +72,9 @@ def test_too_close_is_the_target_speed() -> None:
     ],
 )
 def test_numbers_that_are_hardly_meant_are_told(arguments: dict[str, object], words: str) -> None:
-    for call, given in ((standards.separation_distance, 1.0), (standards.separation_speed, 3.0)):
+    for call, value in ((standards.separation_distance, 1.0), (standards.separation_speed, 3.0)):
         with pytest.warns(ImplausibleWarning, match=words) as caught:
-            answer = call(given, **(RULES | arguments))
+            answer = call(value, **(RULES | arguments))
         assert len(caught) == 1
         assert caught[0].filename == __file__
         assert np.isfinite(answer).all()
@@ -190,6 +192,26 @@ def test_guards() -> None:
         standards.minimum_distance(0.0)
 
 
+@settings(max_examples=100, deadline=None)
+@given(
+    stop=st.floats(1e-4, 2.0),
+    capability=st.none() | st.floats(1e-3, 0.04),
+    height=st.none() | st.floats(0.0, 1.0),
+)
+def test_no_guard_is_nearer_than_a_tenth_of_a_meter(
+    stop: float, capability: float | None, height: float | None
+) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", HrsafetyWarning)
+        found = standards.minimum_distance(stop, capability=capability, height=height)
+        assert found.distance >= 0.1
+        assert found.distance <= standards.minimum_distance(stop + 0.1, capability=capability, height=height).distance
+    assert standards.minimum_distance(0.01, capability=0.014).distance == 0.1
+    for high in (300.0, 1.5):
+        with pytest.raises(InvalidParameterError, match=r"height must be at most 1.*give it in meters"):
+            standards.minimum_distance(0.3, height=high)
+
+
 def test_people_who_are_taken_to_stand_are_told() -> None:
     """Nobody has to stand still, and km/s are no m/s."""
     for speed in (0.0, 0.0016, [0.0, 0.0]):
@@ -208,6 +230,6 @@ def test_people_who_are_taken_to_stand_are_told() -> None:
 
 def test_contact_at_a_high_speed_is_told_by_every_function() -> None:
     rules = RULES | {"target_speed": 3.0}
-    for call, given in ((standards.separation_distance, 5.0), (standards.separation_speed, 8.0)):
+    for call, value in ((standards.separation_distance, 5.0), (standards.separation_speed, 8.0)):
         with pytest.warns(ImplausibleWarning, match="target_speed is 3 m/s, outside the plausible 0 to 2 m/s"):
-            call(given, **rules)
+            call(value, **rules)
