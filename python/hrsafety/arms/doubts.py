@@ -38,6 +38,8 @@ LEAST_PAYLOAD = 0.005
 """A payload below this, in kg, is hardly worth telling."""
 BEYOND_TURN = 7.0
 """Joints that turn are hardly beyond this, in rad."""
+BEYOND_SLIDE = 10.0
+"""Joints that slide are hardly beyond this, in m."""
 OF_PLATE = (0.85, 1.15)
 """Sum of all links as a share of the type plate that is plausible; of the moving links half of it."""
 
@@ -207,7 +209,7 @@ def doubts_of_payloads(payloads: Sequence[Payload], moving: float) -> Iterator[R
 
 
 def doubts_of_poses(poses: Array, names: Sequence[str], kinds: Sequence[str]) -> tuple[ResultWarning, ...]:
-    """Return a warning of joints that are turned too far: degrees make any other pose of the one that was meant.
+    """Return a warning of joints that are turned or slid too far: degrees and mm make another pose of the one meant.
 
     Parameters
     ----------
@@ -221,13 +223,14 @@ def doubts_of_poses(poses: Array, names: Sequence[str], kinds: Sequence[str]) ->
     tuple of ResultWarning
         One at most.
     """
-    turning = np.array([kind == "turning" for kind in kinds], dtype=bool)
-    farthest = np.abs(poses).reshape(-1, len(turning)).max(axis=0, initial=0.0)
-    far = np.flatnonzero(turning & (farthest > BEYOND_TURN)).tolist()
+    most = np.array([BEYOND_TURN if kind == "turning" else BEYOND_SLIDE for kind in kinds])
+    farthest = np.abs(poses).reshape(-1, len(most)).max(axis=0, initial=0.0)
+    far = np.flatnonzero(farthest > most).tolist()
     if not far:
         return ()
     named = several([names[index] for index in far])
-    message = f"{named} {'is' if len(far) == 1 else 'are'} at {farthest[far[0]]:g} rad: degrees given for radians?"
+    slip = "rad: degrees given for radians?" if kinds[far[0]] == "turning" else "m: mm given for m?"
+    message = f"{named} {'is' if len(far) == 1 else 'are'} at {farthest[far[0]]:g} {slip}"
     return (ResultWarning("implausible", "joints", message),)
 
 

@@ -183,6 +183,15 @@ def test_poses_in_degrees_are_told_where_no_limit_refuses_them() -> None:
     assert endless.extremes({"elbow": 80.0}, link="tool").warnings
 
 
+def test_slides_in_millimeters_are_told() -> None:
+    limits = '<limit lower="0" upper="800"/>'
+    text = robot(link("a"), link("b"), joint("turn", "base", "a"), joint("slide", "a", "b", limits, "prismatic"))
+    arm = arms.Arm.from_urdf(text, armature=0.1)
+    for value, told in ((350.0, ["implausible"]), (0.35, [])):
+        found = arm.effective_mass({"slide": value}, link="b", direction=(1, 0, 0))
+        assert [each.code for each in unsafe_doubts(found.warnings) if each.subject == "joints"] == told
+
+
 def test_lengths_in_millimeters_are_told() -> None:
     arm = arms.Arm.from_urdf(scaled(EXAMPLE, 1000.0, "origin xyz"), armature=1e4)
     assert "reach is 1" in doubt(arm, "implausible").message
