@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import importlib
 import os
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 from hrsafety.cli import exit_codes, font_cache
@@ -62,7 +63,11 @@ def _run(argv: Sequence[str] | None) -> int:
     try:
         options = parser().parse_args(argv)
         font_cache.keep_apart()
-        _COMMANDS[options.command](options)
+        work = _COMMANDS[options.command]
+        if isinstance(work, str):
+            module, _, name = work.partition(":")
+            work = getattr(importlib.import_module(f"hrsafety.cli.{module}"), name)
+        work(options)
     except SystemExit as request:
         code = request.code
     sys.stdout.flush()
@@ -126,24 +131,6 @@ def _simulate(options: argparse.Namespace) -> None:
         simulate_file(options)
 
 
-def _foam(options: argparse.Namespace) -> None:
-    from hrsafety.cli.foam.command import design_file
-
-    design_file(options)
-
-
-def _optimize(options: argparse.Namespace) -> None:
-    from hrsafety.cli.optimize.command import optimize_file
-
-    optimize_file(options)
-
-
-def _sweep(options: argparse.Namespace) -> None:
-    from hrsafety.cli.sweep.command import sweep_file
-
-    sweep_file(options)
-
-
 def _arm(options: argparse.Namespace) -> None:
     from hrsafety.cli.arm import show_arm
 
@@ -151,46 +138,17 @@ def _arm(options: argparse.Namespace) -> None:
         show_arm(options)
 
 
-def _contact(options: argparse.Namespace) -> None:
-    from hrsafety.cli.cell.command import report_cell
-
-    report_cell(options)
-
-
-def _benchmark(options: argparse.Namespace) -> None:
-    from hrsafety.cli.benchmark import run_suite
-
-    run_suite(options)
-
-
-def _init(options: argparse.Namespace) -> None:
-    from hrsafety.cli.init import write_starter
-
-    write_starter(options)
-
-
-def _validate(options: argparse.Namespace) -> None:
-    from hrsafety.cli.validate import validate_files
-
-    validate_files(options)
-
-
-def _info(_options: argparse.Namespace) -> None:
-    from hrsafety.cli.info import print_info
-
-    print_info()
-
-
-_COMMANDS = {
+_COMMANDS: dict[str, str | Callable[[argparse.Namespace], None]] = {
     "reproduce": _reproduce,
     "simulate": _simulate,
-    "foam": _foam,
-    "optimize": _optimize,
-    "sweep": _sweep,
+    "foam": "foam.command:design_file",
+    "optimize": "optimize.command:optimize_file",
+    "sweep": "sweep.command:sweep_file",
     "arm": _arm,
-    "contact": _contact,
-    "benchmark": _benchmark,
-    "init": _init,
-    "validate": _validate,
-    "info": _info,
+    "contact": "cell.command:report_cell",
+    "benchmark": "benchmark:run_suite",
+    "init": "init:write_starter",
+    "validate": "validate:validate_files",
+    "info": "info:print_info",
 }
+"""What each command calls: a function, or where one stands that is loaded only then."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import importlib.metadata
 import os
 import platform
@@ -21,8 +22,14 @@ _OF_EXTRA = re.compile(r"extra\s*==\s*['\"]([^'\"]+)['\"]")
 _OWN = frozenset({"test", "dev", "docs", "all"})
 
 
-def print_info() -> None:
-    """Print versions, machine and optional extras with what each of them still needs."""
+def print_info(_options: argparse.Namespace) -> None:
+    """Print versions, machine and optional extras with what each of them still needs.
+
+    Parameters
+    ----------
+    _options : argparse.Namespace
+        Of ``hrsafety info``, which has none.
+    """
     rows = [(extra, ", ".join(has) or "-", ", ".join(lacks) or "-", _command(lacks)) for extra, has, lacks in _extras()]
     table = ReportTable(
         headers=[("extra", "installed", "missing", "to install")], rows=rows, left=(0, 1, 2, 3), printed=True

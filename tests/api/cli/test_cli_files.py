@@ -100,7 +100,7 @@ def test_an_arm_is_checked_too(capsys: pytest.CaptureFixture[str]) -> None:
 def test_info_names_versions_and_every_extra(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["info"]) == 0
     shown = capsys.readouterr().out
-    assert f"hrsafety  {hrsafety.__version__} in " in shown
+    assert f"hrsafety       {hrsafety.__version__} in " in shown
     assert f"numpy {importlib.metadata.version('numpy')}" in shown
     offered = importlib.metadata.metadata("hrsafety").get_all("Provides-Extra") or []
     for extra in set(offered) - {"test", "dev", "docs", "all"}:

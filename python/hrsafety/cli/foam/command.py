@@ -15,15 +15,13 @@ from hrsafety.cli import output, terminal
 from hrsafety.cli.foam import report as foam_report
 from hrsafety.cli.foam.curves import Remembered
 from hrsafety.cli.foam.file import Array, FoamDesignFile, load
-from hrsafety.cli.foam.found import Check, FoundFoams, Judged, Range
+from hrsafety.cli.foam.found import LOADS, Check, FoundFoams, Judged, Range
 from hrsafety.plausibility import ResultWarning
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = ["design_file"]
-
-KILO = 1000.0
 
 
 def design_file(options: argparse.Namespace) -> None:
@@ -54,15 +52,6 @@ def design_file(options: argparse.Namespace) -> None:
 
 
 # ---- judging ----------------------------------------------------------------------------------------
-
-# Field of the limits: words, unit, how many of it an SI unit is, power of the closing speed.
-_LOADS = {
-    "peak_head_acceleration_g": ("head acceleration", "g", 1.0, 1.0),
-    "hic15": ("HIC15", "", 1.0, 2.5),
-    "hic36": ("HIC36", "", 1.0, 2.5),
-    "peak_contact_force": ("contact force", "N", 1.0, 1.0),
-    "max_compression": ("compression", "mm", KILO, 1.0),
-}
 
 
 def _design(file: FoamDesignFile) -> impact.FoamDesign:
@@ -122,7 +111,7 @@ def _judged(design: impact.FoamDesign, name: str, foam: impact.Foam) -> Judged:
     left = design.margin(foam)
     checks, speeds = [], []
     for key, limit in design.limits.given().items():
-        words, unit, scale, power = _LOADS[key]
+        words, unit, scale, power = LOADS[key]
         margin = getattr(left, key)
         checks.append(
             Check(name=words, unit=unit, value=scale * limit * (1.0 - margin), limit=scale * limit, margin=margin)

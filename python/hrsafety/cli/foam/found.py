@@ -9,7 +9,18 @@ from hrsafety._records import dataclass
 from hrsafety.cli.foam.file import FoamDesignFile
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["Check", "FoundFoams", "Judged", "Range"]
+__all__ = ["KILO", "LOADS", "Check", "FoundFoams", "Judged", "Range"]
+
+
+KILO = 1000.0
+LOADS = {
+    "peak_head_acceleration_g": ("head acceleration", "g", 1.0, 1.0),
+    "hic15": ("HIC15", "", 1.0, 2.5),
+    "hic36": ("HIC36", "", 1.0, 2.5),
+    "peak_contact_force": ("contact force", "N", 1.0, 1.0),
+    "max_compression": ("compression", "mm", KILO, 1.0),
+}
+"""Fields of the limits: words, unit, how many of it an SI unit is, power of the closing speed."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hrsafety.cli.foam.found import KILO, LOADS
 from hrsafety.pages import DASH, sentence
 from hrsafety.pages.report import Report, ReportCell, ReportTable, Section
 
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
 
 __all__ = ["CAPTION", "report_of"]
 
-KILO = 1000.0
 CAPTION = "Boundaries of the foam stiffness over the foam damping, and the foams of the file."
 HEADS = (
     "Acceleration and HIC are those with the lightest head on the softest neck, force and compression those with the "
@@ -36,16 +36,9 @@ STATUS_WORDS = {
 
 def limits_words(limits: impact.FoamLimits) -> str:
     """Return the limits in one line."""
-    parts = (
-        ("head acceleration", limits.peak_head_acceleration_g, 1.0, "g"),
-        ("HIC15", limits.hic15, 1.0, ""),
-        ("HIC36", limits.hic36, 1.0, ""),
-        ("contact force", limits.peak_contact_force, 1.0, "N"),
-        ("compression", limits.max_compression, KILO, "mm"),
-    )
-    return ", ".join(
-        f"{name} {scale * value:g} {unit}".rstrip() for name, value, scale, unit in parts if value is not None
-    )
+    given = limits.given()
+    parts = ((given[name], *load) for name, load in LOADS.items() if name in given)
+    return ", ".join(f"{words} {scale * value:g} {unit}".rstrip() for value, words, unit, scale, _ in parts)
 
 
 def range_words(found: Range) -> str:
