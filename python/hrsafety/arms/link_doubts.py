@@ -35,6 +35,8 @@ SAME = 4
 """So many links on a way from the base outwards, all of them, do not weigh the same."""
 ROD = 0.3
 """Radius of gyration of a rod as long as an arm reaches, as a share of that: no link has a larger one."""
+WHEELS = ("wheel", "caster", "castor")
+"""What links of bases that roll are called, also where their joints are locked, steered or on springs."""
 NOTHING = 1e-4
 """Share of the moving mass that nobody misses."""
 _NAMES = 4
@@ -75,6 +77,12 @@ def doubts_of_links(facts: Mapping[str, Any]) -> Iterator[ResultWarning]:
         if joints:
             message = f"{several(joints)} {what}, and the base is taken to stand still: one that rolls has other masses"
             yield ResultWarning("base_assumed_fixed", "base", message)
+    called = [str(name) for name in names if any(word in str(name).lower() for word in WHEELS)]
+    if called and not facts["wheels"]:
+        message = (
+            f"links are called {several(called)}, and the base is taken to stand still: one that rolls has other masses"
+        )
+        yield ResultWarning("base_assumed_fixed", "base", message)
     reach = float(facts["reach"])
     if facts["chained"] or reach > 1.0:
         yield from implausible({"reach": reach}, {"reach": "arm_reach"})

@@ -119,6 +119,18 @@ def test_four_equal_wheels_are_no_placeholder_but_a_base_that_rolls() -> None:
     assert codes(arms.Arm.from_urdf(rail, armature=1.0)) == ["base_assumed_fixed"]
 
 
+@pytest.mark.parametrize("name", ["front_left_wheel", "Caster_1", "rear_wheel_link"])
+def test_wheels_are_told_however_they_are_mounted(name: str) -> None:
+    """Locked, steered, on a spring, or with limits: by what they are called."""
+    arm = (link("a"), joint("one", "base", "a"))
+    for kind in ("fixed", "revolute"):
+        limit = "" if kind == "fixed" else '<limit lower="-1e6" upper="1e6"/>'
+        wheel = (link(name, inertial(1.5, (0.012, 0.012, 0.015))), joint("w", "base", name, limit, kind))
+        assert "base_assumed_fixed" in codes(arms.Arm.from_urdf(robot(*arm, *wheel), armature=0.1))
+    other = (link("wrist"), joint("w", "base", "wrist", kind="fixed"))
+    assert "base_assumed_fixed" not in codes(arms.Arm.from_urdf(robot(*arm, *other), armature=0.1))
+
+
 def test_three_equal_powers_of_ten_are_a_placeholder() -> None:
     for moment, told in ((1.0, True), (0.001, True), (0.0013, False)):
         parts = (link("a", inertial(3.0, (moment,) * 3)), link("b", inertial(4.0, (moment,) * 3)))
