@@ -11,6 +11,7 @@ import pytest
 from hrsafety import navigation as nav
 from hrsafety.benchmarks import benchmark
 from hrsafety.cli import exit_codes, main
+from hrsafety.plausibility import unsafe_doubts
 
 
 def shielded(**shield: Any) -> nav.SafeNavigation:
@@ -159,3 +160,48 @@ def test_a_benchmark_tells_what_its_shields_do_not_cover(capsys: pytest.CaptureF
     words = ["benchmark", "corridor", "--laws", "field+shield", "--cases", "1", "--strict"]
     assert main(words) == exit_codes.WARNED
     assert "people of corridor move at up to 2.2 m/s" in capsys.readouterr().err
+
+
+# ---- doubts of a world reach its tables ----------------------------------------------------------
+
+
+Person = nav.crowd.Person
+ROOM = [[(0.0, 0.0), (6.0, 0.0), (6.0, 6.0), (0.0, 6.0), (0.0, 0.0)]]
+PILLAR = nav.Disc(center=(3.0, 3.0), radius=0.5)
+DOUBTFUL: dict[str, tuple[dict[str, Any], str]] = {
+    "goal in a wall": ({"walls": [PILLAR], "goal": (3.0, 3.0)}, "goal_in_wall"),
+    "start in a wall": ({"walls": [PILLAR], "people": [Person(start=(3.0, 3.0), route=[(1.0, 1.0)])]}, "start_in_wall"),
+    "start on a line": ({"walls": ROOM, "people": [Person(start=(6.0, 3.0), route=[(1.0, 1.0)])]}, "start_in_wall"),
+    "millimeters": ({"people": [Person(start=(900.0, 3.0), route=[(1.0, 1.0)], radius=250.0)]}, "implausible"),
+    "a recording through a line": (
+        {"walls": ROOM, "people": [Person(start=(2.0, 3.0), recording=([0.0, 5.0], [(2.0, 3.0), (9.0, 3.0)]))]},
+        "recording_in_wall",
+    ),
+    "a recording in a solid": (
+        {"walls": [PILLAR], "people": [Person(start=(2.0, 3.0), recording=([0.0, 5.0], [(2.0, 3.0), (3.0, 3.0)]))]},
+        "recording_in_wall",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", DOUBTFUL)
+def test_doubts_of_a_world_reach_runs_tables_and_comparisons(name: str) -> None:
+    given, code = DOUBTFUL[name]
+    fields = dict(given)
+    robot = nav.crowd.CrowdRobot(start=(1.0, 5.0), goal=fields.pop("goal", (5.0, 5.0)))
+    world = nav.crowd.World(robots=[robot], time_limit=1.0, **fields)
+    laws = [nav.Khatib(), nav.Masoud()]
+    results = (
+        world,
+        nav.crowd.simulate_crowd(world),
+        nav.crowd.crowd_batch([world]),
+        nav.simulate_many([world], laws),
+        nav.compare([world], laws, seeds=2),
+    )
+    for result in results:
+        assert code in {each.code for each in unsafe_doubts(result.warnings)}, type(result).__name__
+
+
+def test_recordings_beside_walls_are_no_doubt() -> None:
+    walk = Person(start=(1.0, 1.0), recording=([0.0, 5.0], [(1.0, 1.0), (5.0, 5.0)]))
+    assert nav.crowd.World(people=[walk], walls=ROOM).warnings == ()

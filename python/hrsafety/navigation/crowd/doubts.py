@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from hrsafety.navigation.warnings.shields import SEES_LESS, Motion, Mover, of_or
 from hrsafety.plausibility import RANGES, ResultWarning, gathered, implausible
 
 __all__ = ["of_numbers", "of_people", "of_robots", "of_walls"]
+
+KEPT = 0.1
+"""Share of the radius of a person that the center keeps off walls."""
 
 
 def of_numbers(
@@ -96,9 +100,13 @@ _PUSHED = 1.3
 
 
 def of_walls(
-    people: Sequence[Person], sources: Sequence[Source], robots: Sequence[CrowdRobot], native: _hrsafety.CrowdWorld
+    people: Sequence[Person],
+    sources: Sequence[Source],
+    robots: Sequence[CrowdRobot],
+    native: _hrsafety.CrowdWorld,
+    walls: Sequence[object],
 ) -> tuple[ResultWarning, ...]:
-    """Return a warning about starts and goals inside walls, the first of each kind with the number of the others.
+    """Return a warning about starts, goals and recordings in walls, the first of each kind with how many follow.
 
     Parameters
     ----------
@@ -106,14 +114,17 @@ def of_walls(
         Who is in the world.
     native : CrowdWorld
         The world as the core has it.
+    walls : sequence
+        Its walls; polylines are tuples of points.
 
     Returns
     -------
     tuple of ResultWarning
-        With the codes ``"start_in_wall"`` and ``"goal_in_wall"``.
+        With the codes ``"start_in_wall"``, ``"goal_in_wall"`` and ``"recording_in_wall"``.
     """
     acting = [(f"people[{index}]", person) for index, person in enumerate(people) if person.recording is None]
-    starts = [(owner, "start", person.start, 0.0) for owner, person in acting]
+    # A center keeps a tenth of its radius off walls; on a line nobody knows on which side it is.
+    starts = [(owner, "start", person.start, KEPT * person.radius) for owner, person in acting]
     walking: list[tuple[str, Person | Source]] = [*acting]
     walking += [(f"sources[{index}]", source) for index, source in enumerate(sources)]
     goals = [
@@ -134,7 +145,45 @@ def of_walls(
         (owner, (ResultWarning("goal_in_wall", name, f"{said}: nobody passes a wall to get there"),))
         for owner, name, said in _in_walls(goals, native)
     ]
-    return (*gathered(inside, "starts"), *gathered(behind, "goals"))
+    through = [
+        (f"people[{index}]", tuple(_through_walls(person.recording, native, walls)))
+        for index, person in enumerate(people)
+        if person.recording is not None
+    ]
+    return (*gathered(inside, "starts"), *gathered(behind, "goals"), *gathered(through, "recordings"))
+
+
+def _through_walls(
+    recording: tuple[Sequence[float], Sequence[Pair]], native: _hrsafety.CrowdWorld, walls: Sequence[object]
+) -> Iterator[ResultWarning]:
+    """Yield a doubt about a recorded person who is inside a wall, or walks through a line of one."""
+    time, places = np.array(recording[0], dtype=np.float64), np.array(recording[1], dtype=np.float64)
+    inside = [(row, wall) for row, (gap, wall) in enumerate(native.nearest_walls(places.tolist())) if gap < 0.0]
+    found = inside[0] if inside else None
+    for index, wall in enumerate(walls if found is None else ()):
+        if isinstance(wall, tuple) and found is None:
+            crossed = _crossings(places, np.array(wall, dtype=np.float64))
+            found = (int(np.argmax(crossed)), index) if crossed.any() else None
+    if found is not None:
+        row, number = found
+        message = (
+            f"recording leads through walls[{number}] at {time[row]:.4g} s: walls and recording do not fit together, "
+            "or are in different units or frames"
+        )
+        yield ResultWarning("recording_in_wall", "recording", message)
+
+
+def _crossings(places: Array, line: Array) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    """Return which steps between places cross a polyline."""
+    begin, way = places[:-1, None], np.diff(places, axis=0)[:, None]
+    start, along = line[None, :-1], np.diff(line, axis=0)[None]
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        parallel = way[..., 0] * along[..., 1] - way[..., 1] * along[..., 0]
+        offset = start - begin
+        share = (offset[..., 0] * along[..., 1] - offset[..., 1] * along[..., 0]) / parallel
+        place = (offset[..., 0] * way[..., 1] - offset[..., 1] * way[..., 0]) / parallel
+        meets = (share >= 0.0) & (share <= 1.0) & (place >= 0.0) & (place <= 1.0)
+    return np.asarray(meets.any(axis=1), dtype=np.bool_)
 
 
 def _in_walls(
@@ -145,7 +194,7 @@ def _in_walls(
     for (owner, name, (x, y), least), (gap, wall) in zip(places, gaps, strict=True):
         if gap < least:
             there = f"{-gap:.3g} m inside" if gap < 0.0 else f"{gap:.3g} m from"
-            needed = "" if least == 0.0 else f", where a body that is to come within {least:.3g} m touches it"
+            needed = "" if least == 0.0 or gap < 0.0 else f", nearer than the {least:.3g} m that it needs"
             yield owner, name, f"{name} ({x:.6g}, {y:.6g}) is {there} walls[{wall}]{needed}"
 
 

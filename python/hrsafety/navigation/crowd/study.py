@@ -14,7 +14,6 @@ from hrsafety._bounds import MOST_TABLE_ROWS
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.crowd.contacts import Contacts, contacts_of
-from hrsafety.navigation.crowd.doubts import of_robots
 from hrsafety.navigation.crowd.episodes import outcome_of
 from hrsafety.navigation.crowd.scores import episodes_of, world_metrics
 from hrsafety.navigation.crowd.simulation import simulate_crowds
@@ -220,8 +219,7 @@ class CrowdStudy:
 
 def _doubts(world: World, law: Law) -> tuple[ResultWarning, ...]:
     """Return the doubts about a world whose robots are under a law."""
-    robots = [replace(robot, law=law) for robot in world.robots]
-    return of_robots(tuple(world.people), tuple(world.sources), robots, world.step, walls=len(world.walls) > 0)
+    return replace(world, robots=[replace(robot, law=law) for robot in world.robots]).warnings
 
 
 def _of_robots(pairs: np.ndarray[Any, np.dtype[Any]]) -> Iterator[ResultWarning]:

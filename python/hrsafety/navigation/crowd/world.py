@@ -150,7 +150,7 @@ class World(Parameters):
         if found is None:
             own = tuple(self.people), tuple(self.sources), tuple(self.robots)
             of_shields = of_robots(*own, self.step, walls=len(self.walls) > 0)
-            in_walls = of_walls(*own, self._native) if self.walls else ()
+            in_walls = of_walls(*own, self._native, self.walls) if self.walls else ()
             found = (*self.doubts, *of_numbers(*own, self.time_limit), *in_walls, *of_shields)
             self._set(_warnings=found)
         return found
