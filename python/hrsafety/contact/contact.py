@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any
 
 import numpy.typing as npt
@@ -24,6 +25,9 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import telling
 
 __all__ = ["Contact", "Support"]
+
+_NO_LIMITS: Mapping[str, None] = MappingProxyType({"force": None, "pressure": None})
+"""Limits of a collision: no load depends on them."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -164,6 +168,8 @@ class Contact:
                 if getattr(own, name) != getattr(limits, name):
                     rule = f"be of the region and class of body ({named(own)})"
                     raise InvalidParameterError("limits", rule, str(limits), "leave it out: body knows its limits")
+        if own is not None and limits is not _NO_LIMITS:
+            limits_of(own)  # what is not permitted is so with other limits, too
         arrays = given or {}
         body = body_of(source, self.region, None if own is not None else self.body, given=tuple(arrays))
         shared, values = self._row(spring_of(body.region, arrays), body.mass, tolerance, **more)
@@ -320,8 +326,7 @@ class Contact:
 
     def _loaded(self, tolerance: float, horizon: float, **more: Any) -> Prepared:
         """Return the contact without its limits, which no load depends on."""
-        nothing = {"force": None, "pressure": None}
-        return self._prepared(nothing, tolerance=tolerance, horizon=positive("horizon", horizon), **more)
+        return self._prepared(_NO_LIMITS, tolerance=tolerance, horizon=positive("horizon", horizon), **more)
 
     @telling()
     def simulate_many(

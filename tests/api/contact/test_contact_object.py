@@ -70,8 +70,15 @@ def test_a_body_that_is_a_limit_object_brings_its_limits() -> None:
     with pytest.raises(InvalidParameterError, match="region must have the spring constant of limits"):
         contact.Contact(robot=8.0, body=HAND, region={}).simulate(0.3)  # rigid
     face = standards.limits().contact("face", "transient")
-    with pytest.raises(InvalidParameterError, match="not_permitted"):
-        contact.Contact(robot=8.0, body=face).allowed_speed()
+    touched = contact.Contact(robot=8.0, body=face, covering=PAD)
+    assert touched.simulate(0.1).peak_force is not None
+    for call in (touched.allowed_speed, touched.allowed_speeds, touched.sensitivity):
+        for own in (None, {"force": 65.0}, face):
+            with pytest.raises(InvalidParameterError, match="not_permitted"):
+                call(own)
+    for speed in (touched.thickness, touched.probability):
+        with pytest.raises(InvalidParameterError, match="not_permitted"):
+            speed(0.1, {"force": 65.0})
 
 
 def test_limits_that_nobody_gives_are_not_checked() -> None:
