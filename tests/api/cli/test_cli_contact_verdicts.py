@@ -151,6 +151,17 @@ def test_doubts_of_an_arm_reach_the_verdict(judged: Judged) -> None:
     assert "implausible" in report["doubts"]
 
 
+def test_a_doubt_about_many_contacts_stands_once(judged: Judged) -> None:
+    regions = "".join(f'[[contacts]]\nregion = "{each}"\n' for each in ("chest", "pelvis", "thigh_knee"))
+    cell = GOOD[: GOOD.index("[[contacts]]")].replace("thickness = 0.02", "thickness = 20.0") + regions
+    _, report, _ = judged(cell)
+    assert [row["verdict"] for row in report["verdicts"]] == ["not_checked"] * 6
+    thick = [each for each in report["warnings"] if "thickness is 20 m" in each]
+    assert len(thick) == 1
+    assert thick[0].startswith("chest, quasi_static and 11 more: ")
+    assert len(report["warnings"]) == len(set(report["warnings"])) == 2
+
+
 # ---- drive --------------------------------------------------------------------------------------
 
 

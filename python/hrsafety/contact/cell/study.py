@@ -484,20 +484,23 @@ def _sensitivity(cell: Cell, judged: Judged) -> dict[str, Any] | None:
 def _warnings(
     cell: Cell, judged: list[Judged], impacts: Mapping[str, Mapping[str, ContactImpact]]
 ) -> Iterator[ResultWarning]:
+    """Yield each doubt once, with the first contact that it is about and how many others."""
     yield from cell.robot.warnings
+    places: dict[ResultWarning, list[str]] = {}
     for each in judged:
         limit = each.planned.limit
         careful = () if each.chosen is None else (doubt for doubt in each.chosen.warnings if doubt.safe_side)
         for found in (*each.doubts, *careful):
-            if found in cell.robot.warnings or found.code in {"not_permitted", "region_unknown"} or _told(found):
-                continue
-            place = f"{limit.region}, {limit.contact}"
-            yield replace(found, message=f"{place}: {found.message}")
+            if found not in cell.robot.warnings and found.code not in {"not_permitted", "region_unknown"}:
+                places.setdefault(found, []).append(f"{limit.region}, {limit.contact}")
     for region, by_label in impacts.items():
         for label, impact in by_label.items():
             for found in impact.warnings:
-                if not _told(found):
-                    yield replace(found, message=f"{region}, {label}, at the planned speed: {found.message}")
+                places.setdefault(found, []).append(f"{region}, {label}, at the planned speed")
+    for found, where in places.items():
+        if not _told(found):
+            more = "" if len(where) == 1 else f" and {len(where) - 1} more"
+            yield replace(found, message=f"{where[0]}{more}: {found.message}")
 
 
 def _told(doubt: ResultWarning) -> bool:
