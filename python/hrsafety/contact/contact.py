@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
@@ -17,7 +16,7 @@ from hrsafety.contact.cell.robot import ContactRobot
 from hrsafety.contact.chance import Exceedance, chance_of
 from hrsafety.contact.covering import Covering, Region, covering_of
 from hrsafety.contact.least_thickness import LeastThickness, thickness_of
-from hrsafety.contact.rows import HORIZON, TOLERANCE, Prepared, contact_row, limits_of, spring_of
+from hrsafety.contact.rows import HORIZON, TOLERANCE, Prepared, contact_row, limits_of, mass_of, spring_of
 from hrsafety.contact.sensitivities import sensitivities_of
 from hrsafety.contact.simulation import ContactBatch, ContactImpact, impact_of, impacts_of
 from hrsafety.contact.speed import AllowedSpeed, AllowedSpeeds, allowed_of, speeds_of
@@ -119,9 +118,9 @@ class Contact:
     def __post_init__(self) -> None:
         """Check the values."""
         if not isinstance(self.robot, ContactRobot):
-            object.__setattr__(self, "robot", _mass("robot", self.robot))
+            object.__setattr__(self, "robot", mass_of("robot", number("robot", self.robot)))
         if self.body is not None and not knows(self.body):
-            object.__setattr__(self, "body", _mass("body", self.body))
+            object.__setattr__(self, "body", mass_of("body", self.body))
         object.__setattr__(self, "covering", covering_of(self.covering))
         for name in ("drive", "support"):
             given = getattr(self, name)
@@ -509,9 +508,3 @@ class Contact:
         """
         self._at_rest("a sensitivity")
         return sensitivities_of(self._prepared(limits, tolerance=1e-10))
-
-
-def _mass(name: str, value: object) -> float:
-    """Return a mass, which may be infinite."""
-    given = number(name, value)
-    return given if given == math.inf else positive(name, given)

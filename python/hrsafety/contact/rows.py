@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, not_negative, number, numbers, positive
+from hrsafety._arguments import Array, number, numbers, positive
 from hrsafety._bounds import MOST_CONTACTS
 from hrsafety._words import meant
 from hrsafety.contact.covering import Covering, Region, covering_of, region_of
@@ -25,6 +25,7 @@ __all__ = [
     "contact_row",
     "in_order",
     "limits_of",
+    "mass_of",
     "missing_limits",
     "row_name",
     "spring_of",
@@ -105,7 +106,7 @@ def missing_limits(values: Mapping[str, float], *, bare: bool) -> tuple[str, ...
     )
 
 
-def _mass(name: str, value: object) -> float:
+def mass_of(name: str, value: object) -> float:
     """Return a mass, which may be infinite."""
     if value is None:
         return math.inf
@@ -120,25 +121,21 @@ def contact_row(
     region: Region | Mapping[str, object] | float | None,
     covering: Covering | Mapping[str, object] | None,
     tolerance: float,
+    stop: tuple[float, float] | None = None,
     **more: object,
 ) -> tuple[dict[str, object], dict[str, float]]:
     """Return what is no number, and the numbers by name."""
     spring, pad = region_of(region), covering_of(covering)
     shared: dict[str, object] = {"law": None, "strain": [], "stress": [], "outline": None}
     values = dict.fromkeys(NAMES, math.nan)
-    values |= {"robot_mass": _mass("robot_mass", robot_mass), "body_mass": _mass("body_mass", body_mass)}
+    values |= {"robot_mass": mass_of("robot_mass", robot_mass), "body_mass": mass_of("body_mass", body_mass)}
     values |= dict.fromkeys(_SUPPORTS, 0.0) | {"horizon": HORIZON}
     if pad is not None:
         shared, values = shared | pad.shared(), values | pad.numbers()
     if spring is not None:
         values |= spring.numbers()
     shared |= {"region": "rigid" if spring is None else spring.kind, "tolerance": number("tolerance", tolerance)}
-    for name in _SUPPORTS:
-        values[name] = not_negative(name, more.get(name, 0.0))
-    if more.get("closing_speed") is not None:
-        values["closing_speed"] = number("closing_speed", more["closing_speed"])
-    if more.get("horizon") is not None:
-        values["horizon"] = positive("horizon", more["horizon"])
+    values |= {name: number(name, more[name]) for name in (*_SUPPORTS, "closing_speed", "horizon") if name in more}
     if more.get("max_strain") is not None:
         if pad is None:
             raise InvalidParameterError("max_strain", "be None without a covering", more["max_strain"])
@@ -147,12 +144,8 @@ def contact_row(
         if pad is not None:
             raise InvalidParameterError("area", "be None with a covering, which has its own", more["area"])
         values["area"] = positive("area", more["area"])
-    stop = more.get("stop")
     if stop is not None:
-        if not isinstance(stop, (tuple, list)) or len(stop) != 2:
-            raise InvalidParameterError("stop", "be a time and a deceleration", stop)
-        values["stop_time"] = not_negative("stop.time", stop[0])
-        values["stop_deceleration"] = positive("stop.deceleration", stop[1])
+        values["stop_time"], values["stop_deceleration"] = stop
     return shared, values
 
 

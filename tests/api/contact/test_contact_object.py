@@ -27,6 +27,7 @@ DRIVE = contact.Support(stiffness=20e3, damping=200.0, stop=(0.01, 10.0))
         ({"robot": -1.0}, "robot must be finite and positive"),
         ({"robot": math.nan}, "robot must be"),
         ({"robot": HAND}, "robot must be a number"),
+        ({"robot": None}, "robot must be a number"),
         ({"body": 0.0}, "body must be finite and positive"),
         ({"drive": 20e3}, "drive must be a Support"),
         ({"support": DRIVE}, "support.stop must be None: a body does not brake"),
