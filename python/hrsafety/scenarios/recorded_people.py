@@ -14,6 +14,7 @@ from hrsafety._arguments import count as checked_count
 from hrsafety._arguments import followed, positive, word
 from hrsafety._bounds import MOST_REPEATS
 from hrsafety._display import displayed
+from hrsafety._doubts import LateDoubts
 from hrsafety._records import dataclass
 from hrsafety.datasets import Recording
 from hrsafety.errors import InvalidParameterError, Shown
@@ -175,6 +176,7 @@ def crossings(
     else:
         chosen, planned = _evenly(candidates, free, runs)
     counts = dict(zip(free.tolist(), traffic.tolist(), strict=True))
+    doubts = LateDoubts(lambda: recording.warnings)
     body = {"radius": person_radius, "critical_radius": critical_radius, "active_radius": active_radius}
     return [
         Crossing(
@@ -182,7 +184,7 @@ def crossings(
             planned_time=meant,
             traffic=counts[start_time],
             people=tuple(recording.present(start_time, duration=time_limit).tolist()),
-            scenario=_scenario(recording, route, robot, start_time, time_limit, body),
+            scenario=_scenario(recording, route, robot, start_time, time_limit, body, doubts),
         )
         for start_time, meant in followed(list(zip(chosen, planned, strict=True)), progress)
     ]
@@ -195,6 +197,7 @@ def _scenario(
     start_time: float,
     time_limit: float,
     body: dict[str, float],
+    doubts: LateDoubts,
 ) -> nav.Scenario:
     return nav.Scenario(
         start=_pair(route.start),
@@ -203,7 +206,7 @@ def _scenario(
         robot=robot,
         time_limit=time_limit,
         rest_time=time_limit,
-        doubts=recording.warnings,
+        doubts=doubts,
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import checked_seed, instance, number, positive
+from hrsafety._doubts import LateDoubts
 from hrsafety.datasets import Recording
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.crowd import CrowdRobot, Pedestrian, Person, World
@@ -102,7 +103,7 @@ def with_recording(
         robots=robots,
         seed=checked_seed("seed", seed),
         time_limit=limit,
-        doubts=recording.warnings,
+        doubts=LateDoubts(lambda: recording.warnings),
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import replace
 from pathlib import Path
 
@@ -202,3 +203,13 @@ def test_the_command_names_each_doubt_once(capsys: pytest.CaptureFixture[str], s
     main(["simulate", "--people", str(shared / "data/pedestrians/zara01.csv"), "--runs", "6"])
     lines = [line for line in capsys.readouterr().err.splitlines() if "warning:" in line]
     assert len(lines) < 4
+
+
+def test_doubts_of_a_recording_are_looked_for_when_asked_and_pickled_without_it(doubtful: Recording) -> None:
+    scene = scenarios.crossings(doubtful, runs=1)[0].scenario
+    world = scenarios.with_recording(doubtful, 0.0, time_limit=0.1)
+    assert doubtful._warnings is None
+    assert pickle.loads(pickle.dumps(scene)).warnings == scene.warnings
+    assert pickle.loads(pickle.dumps(world)).warnings == world.warnings
+    assert "broken_tracks" in codes(scene)
+    assert isinstance(pickle.loads(pickle.dumps(scene)).doubts, tuple)
