@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, instance, vector, word
+from hrsafety._arguments import Array, instance, positive, vector, word
 from hrsafety._records import dataclass
 from hrsafety.arms.arm import Arm
 from hrsafety.arms.doubts import DIRECTIONAL, doubts_of_point, for_rule, governs
 from hrsafety.arms.inputs import poses_of, vectors_of
 from hrsafety.arms.masses import RULES, mass_by_rule
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.plausibility import ResultWarning, telling, unsafe_doubts
+from hrsafety.plausibility import ResultWarning, implausible, telling, unsafe_doubts
 from hrsafety.standards import ContactLimit
 from hrsafety.tables import Columns, Table
 
 __all__ = ["MassHistory", "along", "plane_of"]
 
 Words = npt.NDArray[np.str_]
+
+LONGEST_STEP = 0.5
+"""Records of joints have shorter steps, in s."""
+FASTEST_TURN, FASTEST_SLIDE = 20.0, 10.0
+"""Rates that hardly any joint reaches, in rad/s and m/s."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -49,15 +55,16 @@ class MassHistory(Table):
     force : ndarray (n,) or None
         Predicted peak force in N of a contact without a covering, with a person at rest.
     margin : ndarray (n,) or None
-        Share of the force limit that is left, negative beyond it.
+        Share of the force limit that is left, with a contact area the smaller one of force and pressure; negative
+        beyond it.
     verdict : ndarray (n,) of str or None
-        ``"within_limits"``, ``"exceeds"``, ``"not_permitted"`` or ``"not_checked"`` for the force; the pressure is not
-        checked, for it needs a contact area. A doubt whose error may lie on the unsafe side leaves no
-        ``"within_limits"``; one about motor inertias does so at the instants whose mass depends on them.
+        ``"within_limits"``, ``"exceeds"``, ``"not_permitted"`` or ``"not_checked"``: a limit that is not checked, as
+        that of the pressure without a contact area, is not kept. A doubt whose error may lie on the unsafe side leaves
+        no ``"within_limits"``; one about motor inertias does so at the instants whose mass depends on them.
     limit : ContactLimit or None
         The limit of the forces.
     warnings : tuple of ResultWarning
-        Why masses may not be what they seem.
+        Why masses and loads may not be what they seem.
     """
 
     time: Annotated[Array, "s"]
@@ -107,6 +114,7 @@ def along(
     link: str,
     point: object = (0.0, 0.0, 0.0),
     limit: ContactLimit | None = None,
+    area: float | None = None,
     robot_mass: str = "larger",
     check_limits: bool = True,
     threads: int | None = None,
@@ -131,6 +139,8 @@ def along(
     limit : ContactLimit or None
         A limit of contact, for example ``standards.limits().contact("chest", "transient")``: predicted forces are
         those of a contact without a covering on its region.
+    area : float or None
+        Contact area in m^2; without it the pressure is not checked.
     robot_mass : {"larger", "iso", "directional"}
         Which mass the robot has in the contact.
     check_limits : bool
@@ -151,7 +161,7 @@ def along(
     >>> joints = {"shoulder": 0.3 * np.sin(time), "elbow": 1.4 - 0.5 * time}
     >>> limit = standards.limits().contact("chest", "transient")
     >>> arm = arms.Arm.example(armature=[1.2, 1.2, 1.0, 0.3, 0.3, 0.3])
-    >>> history = arms.along(arm, time, joints, link="tool", limit=limit)
+    >>> history = arms.along(arm, time, joints, link="tool", limit=limit, area=1e-4)
     >>> str(history.verdict[history.worst])
     'within_limits'
     """
@@ -159,6 +169,7 @@ def along(
     word("robot_mass", robot_mass, RULES)
     if limit is not None:
         instance("limit", limit, ContactLimit)
+    surface = None if area is None else positive("area", area)
     clock, poses = _instants(time), poses_of(joints, arm.joint_names)
     rates, spot = _rates_of(clock, poses), vectors_of("point", point)
     if spot.ndim != 1:
@@ -174,7 +185,13 @@ def along(
     force = None if limit is None else _bare_force(limit, speed, chosen)
     # Motors count where something moves: at rest there is no force.
     governs_where = moving & governs(robot_mass, mass, arm.iso_mass)
-    doubts = (*for_rule(arm.warnings, robot_mass, mass[moving], arm.iso_mass), *doubts_of_point(spot, arm.reach))
+    doubts = (
+        *for_rule(arm.warnings, robot_mass, mass[moving], arm.iso_mass),
+        *doubts_of_point(spot, arm.reach),
+        *_doubts_of_record(clock, rates, arm.joint_names, arm.joint_kinds),
+        *(() if limit is None or not limit.permitted else _doubts_of_limit(limit, surface)),
+    )
+    margin = None if limit is None or force is None else _margin(limit, force, surface)
     return MassHistory(
         time=clock,
         position=arm.position(poses, **place),
@@ -185,21 +202,64 @@ def along(
         robot_mass=chosen,
         status=np.where(moving, np.where(np.isinf(mass), "unbounded_mass", "moving"), "at_rest"),
         force=force,
-        margin=None if limit is None or force is None else limit.force_margin(force),
-        verdict=None if limit is None or force is None else _verdicts(limit, force, doubts, governs_where),
+        margin=margin,
+        verdict=None if limit is None or force is None else _verdicts(limit, margin, doubts, governs_where),
         limit=limit,
         warnings=doubts,
     )
 
 
+def _margin(limit: ContactLimit, force: Array, area: float | None) -> Array | None:
+    """Return which share of the limits is left; ``None`` where contact is not permitted or nothing is limited."""
+    margins = [limit.force_margin(force)]
+    if limit.permitted and limit.pressure is not None and area is not None:
+        margins.append(1.0 - force / area / limit.pressure)
+    found = [each for each in margins if each is not None]
+    return np.min(found, axis=0) if found else None
+
+
+def _doubts_of_limit(limit: ContactLimit, area: float | None) -> Iterator[ResultWarning]:
+    """Give what keeps no limit: a load that is not checked, a clamped contact of a robot whose drive is not known."""
+    if limit.force is None:
+        yield ResultWarning("not_checked", "limit", "the set has no limit of force: it is not checked")
+    if limit.pressure is None or area is None:
+        why = "the set has no limit of it" if limit.pressure is None else "no area of contact is given"
+        yield ResultWarning("not_checked", "area", f"the pressure is not checked: {why}")
+    if limit.body_mass is not None and np.isinf(limit.body_mass):
+        message = (
+            "a clamped contact is that of a robot without drive: one that is driven on until it has reacted and braked "
+            "presses harder; a cell file with [separation] looks at it"
+        )
+        yield ResultWarning("drive_not_given", "limit", message)
+    yield from implausible({} if area is None else {"area": area}, {"area": "contact_area"})
+
+
+def _doubts_of_record(time: Array, rates: Array, names: Sequence[str], kinds: Sequence[str]) -> Iterator[ResultWarning]:
+    """Give what is hardly meant of a record: milliseconds, degrees, millimeters."""
+    step = float(np.median(np.diff(time)))
+    if step > LONGEST_STEP:
+        message = (
+            f"time has steps of {step:g} s, longer than {LONGEST_STEP:g} s: ms given for s? Speeds are too low then"
+        )
+        yield ResultWarning("implausible", "time", message)
+    most = np.array([FASTEST_TURN if kind == "turning" else FASTEST_SLIDE for kind in kinds])
+    fastest = np.abs(rates).max(axis=0, initial=0.0)
+    far = np.flatnonzero(fastest > most).tolist()
+    if far:
+        turning = kinds[far[0]] == "turning"
+        unit, slip = ("rad/s", "degrees given for radians") if turning else ("m/s", "mm given for m")
+        message = f"{names[far[0]]} moves at {fastest[far[0]]:g} {unit}: {slip}, or a jump of the record?"
+        yield ResultWarning("implausible", "joints", message)
+
+
 def _verdicts(
-    limit: ContactLimit, force: Array, doubts: tuple[ResultWarning, ...], governed: npt.NDArray[np.bool_]
+    limit: ContactLimit, margin: Array | None, doubts: tuple[ResultWarning, ...], governed: npt.NDArray[np.bool_]
 ) -> Words:
-    """Return what forces mean for a limit beside the doubts about the masses that they come from."""
-    if not limit.permitted or limit.force is None:
-        return np.full(len(force), "not_checked" if limit.permitted else "not_permitted")
+    """Return what loads mean for a limit beside the doubts about the masses that they come from."""
+    if margin is None:
+        return np.full(len(governed), "not_checked" if limit.permitted else "not_permitted")
     # Small forces are those of slow instants here, and no other unit.
-    words = np.where(force <= limit.force, "within_limits", "exceeds")
+    words = np.where(margin >= 0.0, "within_limits", "exceeds")
     unsafe = unsafe_doubts(doubts)
     everywhere = any(each.code not in DIRECTIONAL for each in unsafe)
     doubted = np.full(len(words), everywhere) | (governed if unsafe else False)

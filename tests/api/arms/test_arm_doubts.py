@@ -296,15 +296,36 @@ def test_verdicts_along_a_record_know_the_doubts_of_the_arm() -> None:
     limit = standards.limits().contact("chest", "transient")
     words = {}
     for name, arm in {"known": ARM, "none": arms.Arm.example(), "rotor": arms.Arm.example(armature=1e-4)}.items():
-        history = arms.along(arm, time, joints, link="tool", limit=limit, robot_mass="directional")
+        history = arms.along(arm, time, joints, link="tool", limit=limit, area=1e-4, robot_mass="directional")
         words[name] = set(history.verdict.tolist())
     assert words == {"known": {"within_limits"}, "none": {"not_checked"}, "rotor": {"not_checked"}}
-    iso = arms.along(arms.Arm.example(), time, joints, link="tool", limit=limit, robot_mass="iso")
+    iso = arms.along(arms.Arm.example(), time, joints, link="tool", limit=limit, area=1e-4, robot_mass="iso")
     assert set(iso.verdict.tolist()) == {"within_limits"}
     assert [each.safe_side for each in iso.warnings] == [True]
     light = arms.Arm.from_urdf(scaled(EXAMPLE, 1e-3, "mass value", "ixx", "iyy", "izz"), armature=MOTORS)
-    spoiled = arms.along(light, time, joints, link="tool", limit=limit, robot_mass="iso")
+    spoiled = arms.along(light, time, joints, link="tool", limit=limit, area=1e-4, robot_mass="iso")
     assert set(spoiled.verdict.tolist()) == {"not_checked"}
+
+
+def test_records_and_limits_along_them_are_doubted() -> None:
+    time = np.linspace(0.0, 2.0, 41)
+    joints = {"shoulder": 0.4 + 0.05 * time, "elbow": np.full(41, 1.4)}
+    chest, clamped = (standards.limits().contact("chest", kind) for kind in ("transient", "quasi_static"))
+    given = {"link": "tool", "limit": chest, "area": 1e-4, "robot_mass": "iso"}
+    sound = arms.along(ARM, time, joints, **given)
+    assert (unsafe_doubts(sound.warnings), set(sound.verdict.tolist())) == ((), {"within_limits"})
+    assert sound.margin == pytest.approx(1.0 - sound.force / min(280.0, 240.0))
+    endless = arms.Arm.from_urdf(EXAMPLE.replace('type="revolute"', 'type="continuous"'), armature=MOTORS)
+    degrees = {"shoulder": 23.0 + 30.0 * time, "elbow": np.full(41, 80.0)}
+    for arm, instants, poses, more, code in (
+        (ARM, time, joints, {"area": None}, "not_checked"),
+        (ARM, time, joints, {"limit": clamped}, "drive_not_given"),
+        (ARM, 1000.0 * time, joints, {}, "implausible"),
+        (endless, time, degrees, {}, "implausible"),
+    ):
+        found = arms.along(arm, instants, poses, **given | more)
+        assert [each.code for each in unsafe_doubts(found.warnings)] == [code]
+        assert "within_limits" not in found.verdict.tolist()
 
 
 # ---- inertias that no body has, other formats -----------------------------------------------
