@@ -148,7 +148,7 @@ def measurement_doubts(name: str, unit: str, shape: SignalShape) -> Iterator[Res
     if shape.flat:
         message = (
             f"{name} stays at its largest value of {most:g} {unit} for {shape.flat} samples: the channel is saturated, "
-            "and the true loads are larger; measure with a larger range"
+            "and the true loads are larger, or its digits are too coarse to tell; measure with another range"
         )
         yield ResultWarning("saturated", name, message)
     if shape.width < _SAMPLES_OF_WIDTH * shape.sampled:
