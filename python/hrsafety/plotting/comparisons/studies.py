@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from hrsafety._arguments import numbers
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.plotting import notes, style
+from hrsafety.plotting.axis_numbers import blank_where_infinite
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,6 +22,8 @@ if TYPE_CHECKING:
 __all__ = ["clearances", "outcomes"]
 
 Array = npt.NDArray[np.float64]
+MOST_COUNTED = 2.0**53
+"""Numbers up to this are whole without rounding."""
 Counts = npt.NDArray[np.int64]
 
 # From harmless to harmful; order of the bars and of the legend.
@@ -83,7 +87,7 @@ def clearances(
         raise InvalidParameterError("clearances", "hold at least one finite value", Shown("only infinite values"))
     figure = style.new_figure(3.8, title=title)
     axes = figure.subplots()
-    low, high = min(0.0, float(finite.min())), float(finite.max())
+    low, high = min(0.0, float(finite.min())), max(0.0, float(finite.max()))
     pad = 0.03 * max(high - low, 0.1)
     axes.axvspan(low - 2.0 * pad, 0.0, color=style.CONTACT_COLOR, alpha=0.07, zorder=0.5)
     axes.axvline(0.0, color=style.CONTACT_COLOR, linewidth=1.2, zorder=1.5)
@@ -127,6 +131,7 @@ def _checked_clearances(name: str, values: object) -> Array:
         raise ShapeError(argument, "(n,)", array.shape)
     if len(array) == 0 or np.isnan(array).any():
         raise InvalidParameterError(argument, "be numbers without NaN, at least one", array)
+    blank_where_infinite(argument, array)  # how large they are
     return np.sort(array)
 
 
@@ -232,11 +237,19 @@ def _checked_contacts(
     for argument, counts in (("contacts_moving", moving), ("contacts_standing", standing)):
         if name not in counts:
             raise InvalidParameterError(argument, f"hold the group {name!r}", sorted(counts))
-        array = np.asarray(counts[name], dtype=np.int64)
+        array = _whole(f"{argument}[{name!r}]", counts[name])
         if array.shape != (count,):
             raise ShapeError(f"{argument}[{name!r}]", f"({count},)", array.shape)
         found.append(array)
     return found[0], found[1]
+
+
+def _whole(name: str, values: npt.ArrayLike) -> npt.NDArray[np.int64]:
+    """Return counts as such, or say what they should have been."""
+    found = numbers(name, values)
+    if not ((found >= 0.0) & (found <= MOST_COUNTED) & (found == np.floor(found))).all():
+        raise InvalidParameterError(name, "be whole numbers that are not negative", values)
+    return found.astype(np.int64)
 
 
 def _counts(words: npt.NDArray[np.str_], contacts: tuple[Counts, ...] | None) -> dict[str, int]:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import instance, vector
 from hrsafety.contact import ContactImpact
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.plotting import notes, style
+from hrsafety.plotting.axis_numbers import blank_where_infinite, shown_number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -114,17 +114,17 @@ def forces_over_speed(
     >>> found = contact.Contact(robot=8.0, body=0.6, region=75e3).simulate_many(speeds)
     >>> figure = plotting.contacts.forces_over_speed(speeds, {"bare": found.peak_force}, planned=0.25)
     """
-    over = vector("speed", speed)
+    over = blank_where_infinite("speed", vector("speed", speed))
     figure = style.new_figure(3.6, title=title)
     axes = figure.subplots()
     for index, (label, values) in enumerate(forces.items()):
-        drawn = np.asarray(values, dtype=np.float64)
+        drawn = blank_where_infinite(f"forces[{label!r}]", values)
         if drawn.shape != over.shape:
             raise ShapeError(f"forces[{label!r}]", str(over.shape), drawn.shape)
         axes.plot(over, drawn, label=_plain(label), **style.run_look(index))
     _draw_limits(axes, limits)
     if planned is not None:
-        axes.axvline(planned, color=style.NEUTRAL, linewidth=1.1, label="planned speed")
+        axes.axvline(shown_number("planned", planned), color=style.NEUTRAL, linewidth=1.1, label="planned speed")
     axes.set_xlabel("closing speed (m/s)")
     _finish(axes)
     return figure
@@ -139,6 +139,8 @@ def _draw_limits(axes: Axes, limits: Mapping[str, float] | None) -> None:
     """Draw limits, with room for them only where loads come near."""
     top = axes.get_ylim()[1]
     for label, value in (limits or {}).items():
+        if not value >= 0.0:
+            raise InvalidParameterError(f"limits[{label!r}]", "be a force in N, not negative", value)
         if value <= 2.5 * top:
             axes.axhline(value, **LIMIT_LOOK)
             axes.annotate(

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import instance, vector
+from hrsafety._arguments import instance, pair
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.plotting import notes, style
+from hrsafety.plotting.axis_numbers import along_axis, blank_where_infinite, shown_number
 from hrsafety.standards import SpeedCurve
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ def speed_map(
     strength : array_like, shape (k,)
         Number of the law, rising; both axes are logarithmic.
     speed : array_like, shape (n, k)
-        Allowed closing speeds in m/s, of `Contact.allowed_speeds`; NaN is left blank.
+        Allowed closing speeds in m/s, of `Contact.allowed_speeds`; what is not finite is left blank.
     quantity : str
         Label of the number with its unit.
     wanted : float or None
@@ -60,7 +61,9 @@ def speed_map(
     Raises
     ------
     ShapeError
-        If ``speed`` has another shape.
+        If ``speed`` has another shape, or an axis has less than two points.
+    InvalidParameterError
+        If an axis does not rise, or a number cannot be drawn.
     MissingExtraError
         If matplotlib is not installed.
 
@@ -69,8 +72,8 @@ def speed_map(
     >>> from hrsafety import plotting
     >>> figure = plotting.contacts.speed_map([0.01, 0.02], [1e5, 2e5], [[0.3, 0.4], [0.5, 0.6]], wanted=0.45)
     """
-    rows, columns = vector("thickness", thickness), vector("strength", strength)
-    table = np.asarray(speed, dtype=np.float64)
+    rows, columns = along_axis("thickness", thickness, log=True), along_axis("strength", strength, log=True)
+    table = blank_where_infinite("speed", speed)
     if table.shape != (len(rows), len(columns)):
         raise ShapeError("speed", f"({len(rows)}, {len(columns)})", table.shape)
     figure = style.new_figure(4.4, title=title)
@@ -82,6 +85,7 @@ def speed_map(
         axes.contour(columns, MILLI * rows, table, levels=[wanted], colors="white", linewidths=1.8)
         bar.ax.axhline(wanted, color="white", linewidth=1.8)
     if own is not None:
+        own = _own(own)
         axes.plot([own[1]], [MILLI * own[0]], "o", color="white", markeredgecolor="black", label="planned covering")
         axes.legend(loc="lower right", frameon=True)
     axes.set_xscale("log")
@@ -93,6 +97,15 @@ def speed_map(
     axes.set_yticks(ticks, labels=words)
     axes.yaxis.set_minor_formatter("")
     return figure
+
+
+def _own(place: tuple[float, float]) -> tuple[float, float]:
+    """Return thickness and number of a covering, which logarithmic axes show."""
+    found = pair("own", place)
+    for name, value in zip(("own[0]", "own[1]"), found, strict=True):
+        if not shown_number(name, value) > 0.0:
+            raise InvalidParameterError(name, "be positive, since the axes are logarithmic", value)
+    return found
 
 
 @notes.picture
@@ -113,6 +126,8 @@ def speed_over_distance(curve: SpeedCurve, *, title: str | None = None) -> Figur
 
     Raises
     ------
+    ShapeError, InvalidParameterError
+        If there are less than two distances, or they cannot be drawn.
     MissingExtraError
         If matplotlib is not installed.
 
@@ -126,6 +141,7 @@ def speed_over_distance(curve: SpeedCurve, *, title: str | None = None) -> Figur
     'distance to the person (m)'
     """
     instance("curve", curve, SpeedCurve)
+    distance = along_axis("curve.distance", curve.distance, rising=False)
     figure = style.new_figure(3.6, title=title)
     axes = figure.subplots()
     for index, (mode, words) in enumerate(MODES.items()):
@@ -140,7 +156,7 @@ def speed_over_distance(curve: SpeedCurve, *, title: str | None = None) -> Figur
         axes.plot(curve.distance, drawn, color=style.NEUTRAL, linestyle=(0, (1, 1)), label="largest speed of the robot")
     axes.set_xlabel("distance to the person (m)")
     axes.set_ylabel("speed (m/s)")
-    axes.set_xlim(float(curve.distance[0]), float(curve.distance[-1]))
+    axes.set_xlim(float(distance.min()), float(distance.max()))
     axes.set_ylim(bottom=0.0)
     axes.legend(loc="best")
     return figure
@@ -165,7 +181,7 @@ def contact_sensitivity(values: Mapping[str, float], *, title: str | None = None
     Raises
     ------
     InvalidParameterError
-        If there is no value.
+        If there is no value, or one cannot be drawn.
     MissingExtraError
         If matplotlib is not installed.
 
@@ -176,11 +192,12 @@ def contact_sensitivity(values: Mapping[str, float], *, title: str | None = None
     """
     if not values:
         raise InvalidParameterError("values", "hold at least one sensitivity", Shown("none"))
+    lengths = {name: float(blank_where_infinite(f"values[{name!r}]", value)) for name, value in values.items()}
     names = list(values)[::-1]
     figure = style.new_figure(0.9 + 0.3 * len(names), title=title)
     axes = figure.subplots()
-    colors = [style.RUN_COLORS[0] if values[name] > 0.0 else style.PERSON_COLORS[0] for name in names]
-    axes.barh([name.replace("_", " ") for name in names], [values[name] for name in names], color=colors, height=0.65)
+    colors = [style.RUN_COLORS[0] if lengths[name] > 0.0 else style.PERSON_COLORS[0] for name in names]
+    axes.barh([name.replace("_", " ") for name in names], [lengths[name] for name in names], color=colors, height=0.65)
     axes.axvline(0.0, color=style.NEUTRAL, linewidth=0.8)
     axes.set_xlabel("change of the allowed speed in % for 1 % more")
     axes.grid(visible=False, axis="y")

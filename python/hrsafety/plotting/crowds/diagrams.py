@@ -11,6 +11,7 @@ import numpy.typing as npt
 from hrsafety._arguments import vector
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.plotting import floor, notes, style
+from hrsafety.plotting.axis_numbers import blank_where_infinite
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -72,6 +73,9 @@ def fundamental_diagram(
     wrong = not len(places) or not np.isfinite(places).all() or places[0] <= 0.0 or (np.diff(places) <= 0.0).any()
     if wrong:
         raise InvalidParameterError("density", "be positive and increasing", places.tolist())
+    places = blank_where_infinite("density", places)
+    if not places[-1] > 0.0:
+        raise InvalidParameterError("density", "be large enough to be drawn", density)
     if not isinstance(speeds, Mapping) or not (speeds or reference is not None):
         rule = "be a mapping of names to speeds, with one at least"
         raise InvalidParameterError("speeds", rule, Shown(type(speeds).__name__) if speeds else speeds)
@@ -101,4 +105,4 @@ def _checked(name: str, values: npt.ArrayLike, count: int) -> Array:
         raise ShapeError(name, f"({count},)", found.shape)
     if np.isinf(found).any():
         raise InvalidParameterError(name, "be finite or NaN", found.tolist())
-    return found
+    return blank_where_infinite(name, found)

@@ -10,6 +10,7 @@ import numpy as np
 from hrsafety._arguments import pair
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plotting import floor, inputs, notes, style
+from hrsafety.plotting.axis_numbers import shown_number
 from hrsafety.plotting.crowds import world_scenes
 
 if TYPE_CHECKING:
@@ -72,11 +73,12 @@ def space_time(
     """
     run = world_scenes.checked_crowd(run)
     names = inputs.checked_labels(labels, len(run.world.robots), stem="robot")
-    given = np.array(pair("along", along))
+    given = np.array([shown_number("along", each) for each in pair("along", along)])
     length = float(np.hypot(*given))
     if length == 0.0:
         raise InvalidParameterError("along", "be a direction", tuple(given.tolist()))
-    direction, start = given / length, np.array(pair("origin", origin))
+    direction = given / length
+    start = np.array([shown_number("origin", each) for each in pair("origin", origin)])
     period = _period(run, direction)
     figure = style.new_figure(HEIGHT + 0.3 * bool(names), title=title)
     axes = figure.subplots()

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety.errors import InvalidParameterError, ShapeError, Shown
+from hrsafety.errors import ShapeError
 from hrsafety.plotting import inputs, labels, notes, style
+from hrsafety.plotting.axis_numbers import along_axis, blank_where_infinite, near_axis, shown_number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -162,13 +163,13 @@ def foam_map(
     stiffness : array_like, shape (k,)
         Foam stiffness in N/m, rising.
     value : array_like, shape (k, n)
-        Metric; a row for each stiffness. NaN is left blank.
+        Metric; a row for each stiffness. What is not finite is left blank.
     quantity : str
         Label of the color bar, with unit.
     limit : float or None
         Limit in the unit of ``value``: a white line where it is met.
     foams : mapping of str to Foam or None
-        Foams to mark, by name.
+        Foams to mark, by name, on the map or near it.
     title : str or None
         Title of the figure.
 
@@ -182,7 +183,7 @@ def foam_map(
     ShapeError
         If ``value`` has another shape.
     InvalidParameterError
-        If an axis does not rise.
+        If an axis does not rise, a number cannot be drawn, or a foam is far from the map.
     MissingExtraError
         If matplotlib is not installed.
 
@@ -192,18 +193,21 @@ def foam_map(
     >>> figure = plotting.foam_map([0.0, 100.0], [1e4, 2e4], [[3.0, 2.8], [5.0, 4.6]], quantity="peak (g)")
     """
     columns, rows = _rising(damping), _rising(stiffness, "stiffness")
-    table = np.asarray(value, dtype=np.float64)
+    table = blank_where_infinite("value", value)
     if table.shape != (len(rows), len(columns)):
         raise ShapeError("value", f"({len(rows)}, {len(columns)})", table.shape)
     figure = style.new_figure(4.8, title=title)
     axes = figure.subplots()
     colors = axes.pcolormesh(columns, rows / KILO, table, shading="gouraud" if np.isfinite(table).all() else "nearest")
     bar = figure.colorbar(colors, ax=axes, label=quantity)
-    if limit is not None and np.nanmin(table) < limit < np.nanmax(table):
+    known = table[np.isfinite(table)]
+    if limit is not None and known.size and known.min() < shown_number("limit", limit) < known.max():
         axes.contour(columns, rows / KILO, table, levels=[limit], colors="white", linewidths=1.8)
         bar.ax.axhline(limit, color="white", linewidth=1.8)
     named = []
     for name, foam in (foams or {}).items():
+        near_axis(f"foams[{name!r}].damping", foam.damping, columns)
+        near_axis(f"foams[{name!r}].stiffness", foam.stiffness, rows)
         axes.plot([foam.damping], [foam.stiffness / KILO], "o", color="white", markeredgecolor="black", clip_on=False)
         named.append(labels.label(axes, name, (foam.damping, foam.stiffness / KILO), color="white", **_shadow()))
     axes.grid(visible=False)
@@ -269,12 +273,7 @@ def _shadow() -> style.Properties:
 
 
 def _rising(values: npt.ArrayLike, name: str = "damping") -> inputs.Array:
-    array = np.asarray(values, dtype=np.float64)
-    if array.ndim != 1 or len(array) < 2:
-        raise ShapeError(name, "(n,) with n >= 2", array.shape)
-    if not (np.diff(array) > 0.0).all():
-        raise InvalidParameterError(name, "rise from point to point", Shown("an array that does not"))
-    return array
+    return along_axis(name, values)
 
 
 def _stiffness(name: str, boundary: FoamBoundary | None, grid: inputs.Array) -> inputs.Array:

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from hrsafety._arguments import pair
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.plotting import inputs, notes, style
 from hrsafety.plotting import labels as placing
+from hrsafety.plotting.axis_numbers import along_axis, blank_where_infinite, near_axis, shown_number
 from hrsafety.plotting.impacts.boundaries import BEYOND_MARKS, STATUS_WORDS
 
 if TYPE_CHECKING:
@@ -246,10 +248,10 @@ def impact_study(
     >>> from hrsafety import plotting
     >>> figure = plotting.impact_study([5.0, 10.0, 20.0], {"Foam 1": [5.9, 6.6, 7.1]}, parameter="mass (kg)")
     """
-    grid = _measured("values", values)
-    lines = {name: _measured(f"curves[{name!r}]", curve) for name, curve in curves.items()}
+    lines = {name: blank_where_infinite(f"curves[{name!r}]", curve) for name, curve in curves.items()}
     if not lines:
         raise InvalidParameterError("curves", "hold at least one curve", Shown("none"))
+    grid = along_axis("values", values, log=log_parameter, rising=False)
     for name, line in lines.items():
         if line.shape != grid.shape:
             raise ShapeError(f"curves[{name!r}]", f"({len(grid)},)", line.shape)
@@ -258,9 +260,11 @@ def impact_study(
     for index, (name, line) in enumerate(lines.items()):
         axes.plot(grid, line, label=name, **style.run_look(index))
     if limit is not None:
-        axes.axhline(limit, label=f"limit {limit:g}", **LIMIT_LOOK)
+        axes.axhline(shown_number("limit", limit), label=f"limit {limit:g}", **LIMIT_LOOK)
     named = []
-    for name, (x, y) in (marks or {}).items():
+    for name, place in (marks or {}).items():
+        x, y = (shown_number(f"marks[{name!r}]", each) for each in pair(f"marks[{name!r}]", place))
+        near_axis(f"marks[{name!r}]", x, grid)
         axes.plot([x], [y], marker="*", markersize=12.0, color="black", linestyle="none", zorder=5.0)
         named.append(placing.label(axes, name, (x, y)))
     if log_parameter:
@@ -307,7 +311,7 @@ def _checked_indices(peaks: Sequence[int], count: int) -> frozenset[int]:
 
 def _measured(name: str, values: npt.ArrayLike) -> inputs.Array:
     """Return values as one-dimensional numbers."""
-    array = np.asarray(values, dtype=np.float64)
+    array = blank_where_infinite(name, values)
     if array.ndim != 1 or array.size == 0:
         raise ShapeError(name, "(n,)", array.shape)
     return array
@@ -371,4 +375,4 @@ def _finish(axes: Axes, quantity: str, limits: Mapping[str, float] | None) -> No
     axes.set_ylabel(QUANTITIES[quantity][0])
     axes.axhline(0.0, color=style.NEUTRAL, linewidth=0.8)
     if limits is not None and quantity in limits:
-        axes.axhline(limits[quantity], gid=LIMIT_GID, **LIMIT_LOOK)
+        axes.axhline(shown_number(f"limits[{quantity!r}]", limits[quantity]), gid=LIMIT_GID, **LIMIT_LOOK)

@@ -69,6 +69,8 @@ def follower_runs(
     """
     if not runs:
         raise InvalidParameterError("runs", "hold at least one run", Shown("none"))
+    for name, run in runs.items():
+        check_rows(f"runs[{name!r}]", run)
     limits = view_of(list(runs.values()))
     titles = [f"{name}\n{_ending(run)}" for name, run in runs.items()]
     places: dict[str, int] = {"columns": MOST_COLUMNS, "entries": 6, "legend_columns": 3}
@@ -77,6 +79,13 @@ def follower_runs(
         label for axes, run in zip(panels, runs.values(), strict=True) for label in _draw_run(axes, run, times, limits)
     ]
     return floor.finish(figure, _handles(list(runs.values()), panels), columns=3, named=named)
+
+
+def check_rows(name: str, run: FollowerRun) -> None:
+    """Refuse a run that ended before its first row."""
+    if not len(run.time):
+        rule = "have a row at least, which a robot that begins in a contact has not"
+        raise InvalidParameterError(name, rule, Shown("a run without rows"))
 
 
 def view_of(runs: Sequence[FollowerRun]) -> style.Limits:

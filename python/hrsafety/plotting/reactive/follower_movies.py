@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hrsafety.plotting import movies, notes, style
-from hrsafety.plotting.reactive.follower import LEADER_COLOR, ROBOT_COLOR, patch_of, view_of
+from hrsafety.plotting.reactive.follower import LEADER_COLOR, ROBOT_COLOR, check_rows, patch_of, view_of
 from hrsafety.plotting.runs.animation import DPI
 
 if TYPE_CHECKING:
@@ -79,6 +79,7 @@ def animate_follower(
     True
     """
     target = movies.checked_target(path)
+    check_rows("run", run)
     instants = movies.checked_instants(target, float(run.time[-1]), frames_per_second, speed)
     rows = np.searchsorted(run.time, instants - 1e-9).tolist()
     frames = _frames(run, [*rows, len(run) - 1], title)

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.plotting import floor, notes, style
+from hrsafety.plotting.axis_numbers import shown_number
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -66,7 +67,8 @@ def skirt_ring(
     _draw_chassis(axes, skirt)
     _draw_beams(axes, skirt)
     handles = _distance_circles(axes, skirt, size)
-    for name, angle in (directions or {}).items():
+    for name, given in (directions or {}).items():
+        angle = shown_number(f"directions[{name!r}]", given)
         x, y = (0.55 * skirt.chassis_radius * part for part in (math.cos(angle), math.sin(angle)))
         axes.annotate("", (x, y), (0.0, 0.0), arrowprops={"arrowstyle": "->", "color": style.NEUTRAL, "linewidth": 1.1})
         look: style.Properties = {"fontsize": style.SMALL_FONT_SIZE, "color": style.NEUTRAL}

@@ -142,7 +142,9 @@ def sound_likeness(
     for index, (axes, pair) in enumerate(zip(figure.subplots(2, 1), ("12", "13"), strict=True)):
         for place, (name, curve) in enumerate(curves.items()):
             where, values = _curve(curve, pair)
-            axes.plot(where, values / values.max(), label=name, marker="." if span else None, **style.run_look(place))
+            # What is alike nowhere, as in silence, stays at 0.
+            highest = float(values.max()) or 1.0
+            axes.plot(where, values / highest, label=name, marker="." if span else None, **style.run_look(place))
         if lags is not None:
             axes.axvline(lags[index], label="true lag", **TRUE_LOOK)
         where, values = _curve(next(iter(curves.values())), pair)

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hrsafety._arguments import sequence
+from hrsafety._arguments import instance, sequence
 from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.navigation.robots.wheel_identification import WheelFit
 from hrsafety.plotting import inputs, notes, style
 
 if TYPE_CHECKING:
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from hrsafety.navigation.robots.wheel_identification import OpenLoopTest, WheelFit
+    from hrsafety.navigation.robots.wheel_identification import OpenLoopTest
     from hrsafety.navigation.robots.wheels import WheelRun
 
 __all__ = ["wheel_identification", "wheel_tracking"]
@@ -119,6 +120,7 @@ def wheel_identification(tests: Sequence[OpenLoopTest], fit: WheelFit, *, title:
     'angle (rad)'
     """
     each = sequence("tests", "be the tests of the fit", tests)
+    instance("fit", fit, WheelFit)
     if [test.command for test in each] != fit.command.tolist():
         raise InvalidParameterError("tests", "be the tests of the fit", Shown(f"{len(each)} tests"))
     figure = style.new_figure(4.8, title=title)

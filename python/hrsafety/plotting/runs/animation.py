@@ -180,7 +180,9 @@ class _Stage:
             active, _ = shapes.region_radii(run.scenario.obstacles[index])
             met = present and bool(run.distance[row, index] < active)
             body.set_visible(present)
-            text.set_visible(present)
+            # Letters far beside the picture are more than the fonts can place.
+            (left, right), (bottom, top) = text.axes.get_xlim(), text.axes.get_ylim()
+            text.set_visible(present and left <= place[0] <= right and bottom <= place[1] <= top)
             for ring in rings:
                 ring.set_visible(met)
             if present:

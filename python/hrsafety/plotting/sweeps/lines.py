@@ -10,6 +10,7 @@ import numpy as np
 from hrsafety._arguments import instance, word
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.plotting import notes, style
+from hrsafety.plotting.axis_numbers import along_axis, blank_where_infinite
 from hrsafety.plotting.inputs import Array
 from hrsafety.sweep import Axis, Column, Grid, SweepResult
 
@@ -61,13 +62,13 @@ def sweep_lines(result: SweepResult, column: str, *, title: str | None = None) -
     drawn = drawn_column(result, column)
     (axis,) = varying_axes(result, 1)
     found = result.to_numpy([axis.name, column])
-    along, values = (found[name].reshape(-1, max(len(result.cases), 1)) for name in (axis.name, column))
+    along, values = (finite(found[name], name).reshape(-1, max(len(result.cases), 1)) for name in (axis.name, column))
     order = np.argsort(along[:, 0], kind="stable")
     figure = style.new_figure(4.2, title=title)
     axes = figure.subplots()
     for index, (name, line) in enumerate(by_case(result, values)):
         marker = "o" if len(order) <= 30 else ""
-        axes.plot(along[order, 0], finite(line)[order], marker=marker, ms=4, label=name, **style.run_look(index))
+        axes.plot(along[order, 0], line[order], marker=marker, ms=4, label=name, **style.run_look(index))
     if len(result.cases) > 1:
         figure.legend(loc="outside lower center", ncols=MOST_CASES)
     label_axis(axes, axis, "x")
@@ -120,8 +121,7 @@ def sweep_map(result: SweepResult, column: str, *, title: str | None = None) -> 
         raise InvalidParameterError("result", "be a complete grid", result)
     first, second = varying_axes(result, 2)
     across, up = first.levels(), second.levels()
-    values = result[column].reshape(len(across), len(up), -1)
-    panels = [(name, finite(values)) for name, values in by_case(result, values)]
+    panels = by_case(result, finite(result[column], column).reshape(len(across), len(up), -1))
     shown = np.concatenate([panel[np.isfinite(panel)] for _, panel in panels])
     low, high = (float(shown.min()), float(shown.max())) if len(shown) else (0.0, 1.0)
     columns = panels_beside(len(panels))
@@ -166,6 +166,8 @@ def varying_axes(result: SweepResult, number: int | None = None) -> list[Axis]:
         raise InvalidParameterError(
             "result", f"vary {least}", Shown(", ".join(axis.name for axis in varying) or "none")
         )
+    for axis in varying:
+        along_axis(f"axis {axis.name!r}", ends(axis), rising=False)
     return varying
 
 
@@ -176,10 +178,9 @@ def by_case(result: SweepResult, values: Array) -> list[tuple[str, Array]]:
     return [(name, values[..., index]) for index, name in enumerate(result.cases or ("",))]
 
 
-def finite(values: Array) -> Array:
-    """Return values as numbers, NaN where they are not finite."""
-    numbers = np.asarray(values, dtype=np.float64)
-    return np.where(np.isfinite(numbers), numbers, np.nan)
+def finite(values: Array, name: str) -> Array:
+    """Return values of a column as numbers, NaN where they are not finite; too large ones are refused."""
+    return blank_where_infinite(f"column {name!r}", values)
 
 
 def panels_beside(panels: int) -> int:

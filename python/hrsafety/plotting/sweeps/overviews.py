@@ -86,7 +86,7 @@ def sweep_scatter(result: SweepResult, column: str, *, most: int = MOST_POINTS, 
         for index, (name, values) in enumerate(cases):
             color = style.run_look(index)["color"]
             along = points[axis.name][:, 0]
-            axes.scatter(along, finite(values), s=size, alpha=0.5, linewidths=0, color=color, label=name)
+            axes.scatter(along, values, s=size, alpha=0.5, linewidths=0, color=color, label=name)
         label_axis(axes, axis, "x")
         if place % columns == 0:
             axes.set_ylabel(drawn.label)
@@ -184,7 +184,7 @@ def _thinned(result: SweepResult, names: list[str], most: int) -> dict[str, Arra
         rows = len(chunk[names[0]]) // cases
         kept = chance.random(rows) < share
         for name in names:
-            parts[name].append(np.asarray(chunk[name], dtype=np.float64).reshape(rows, cases)[kept])
+            parts[name].append(finite(chunk[name], name).reshape(rows, cases)[kept])
     return {name: np.concatenate(values) for name, values in parts.items()}
 
 
