@@ -122,7 +122,7 @@ def _simulate(options: argparse.Namespace) -> None:
         with _as_options("step", "runs", "selection", "fps"):
             simulate_people(options)
         return
-    for name in ("fps", "runs", "selection", "animate_run", "json"):
+    for name in ("fps", "runs", "selection", "animate_run"):
         if getattr(options, name) is not None:
             raise UsageError(f"--{name.replace('_', '-')} goes with --people only (see hrsafety simulate --help)")
     from hrsafety.cli.one_run import simulate_file

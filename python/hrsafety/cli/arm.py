@@ -35,6 +35,7 @@ def show_arm(options: argparse.Namespace) -> None:
     """
     output.planned_folder(options.out)
     output.require_matplotlib("arm")
+    output.check_json(options)
     arm = _arm(options)
     link = arm.moved_links[-1] if options.link is None and arm.moved_links else options.link
     poses = _poses(arm, options)
@@ -51,7 +52,8 @@ def show_arm(options: argparse.Namespace) -> None:
         source=options.robot,
     )
     print(terminal.told(report))
-    output.say_written(list(_write(arm, poses, masses, list(directions), place, Path(options.out))))
+    written = list(_write(arm, poses, masses, list(directions), place, Path(options.out)))
+    output.say_written(written, report, options)
     output.report_warnings(masses.warnings, options.strict)
 
 

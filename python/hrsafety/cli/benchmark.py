@@ -32,6 +32,7 @@ def run_suite(options: argparse.Namespace) -> None:
         Of ``hrsafety benchmark``.
     """
     place = None if options.out is None else output.planned_folder(options.out)
+    output.check_json(options)
     if place is not None:
         output.require_page("benchmark --out")
     try:
@@ -65,8 +66,8 @@ def run_suite(options: argparse.Namespace) -> None:
         warned="What a shield does not cover here",
     )
     print(terminal.told(report))
-    if place is not None:
-        output.say_written(_write(options, result, report, Path(options.out)))
+    written = [] if place is None else _write(options, result, report, place)
+    output.say_written(written, report, options)
     output.report_warnings(result.warnings, options.strict)
 
 

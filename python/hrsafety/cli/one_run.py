@@ -61,7 +61,7 @@ def simulate_file(options: argparse.Namespace) -> None:
         written = output.write_report(report, place, _draw(run), [run.to_csv(place / "trajectory.csv")])
     if options.animate is not None:
         written.append(output.animation(run, options.animate))
-    output.say_written(written)
+    output.say_written(written, report, options)
     verdict.end(said, verdict.counted(run), found, options, 1)
 
 

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "animation",
+    "check_json",
     "check_targets",
     "decimal",
     "folder",
@@ -235,6 +236,11 @@ def check_targets(options: argparse.Namespace) -> None:
         require_page("--out")
     if options.animate is not None:
         planned_animation(options.animate)
+    check_json(options)
+
+
+def check_json(options: argparse.Namespace) -> None:
+    """Refuse before the work a file of ``--json`` that could not be written after it."""
     if options.json is not None:
         target("--json", options.json)
 
@@ -303,8 +309,10 @@ def write_report(
     return [*written, write_text(place / f"{name}.html", whole.page())]
 
 
-def say_written(paths: Sequence[Path]) -> None:
-    """Print which files were written."""
+def say_written(paths: Sequence[Path], report: Report, options: argparse.Namespace) -> None:
+    """Print which files were written, the report as JSON among them if ``--json`` asks for it."""
+    if options.json is not None:
+        paths = [*paths, write_text(Path(options.json), report.json())]
     if paths:
         print()
         print("\n".join(f"wrote {path}" for path in paths))

@@ -134,6 +134,12 @@ def _exit_codes() -> str:
     return "\n".join(["exit codes:", *(f"  {code:>3}  {meaning}" for code, meaning in MEANINGS.items())])
 
 
+def _add_shared(parser: argparse.ArgumentParser) -> None:
+    """Add what every command has that reports: its results as JSON, and warnings as an exit code."""
+    parser.add_argument("--json", metavar="FILE", help="all results as JSON")
+    _add_strict(parser)
+
+
 def _add_strict(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--strict",
@@ -173,7 +179,7 @@ def _add_simulate(commands: Any) -> None:
     )
     parser.add_argument("scenario", nargs="?", metavar="SCENARIO.toml", help="scenario file")
     parser.add_argument("--out", metavar="DIR", help="folder for a page, tables (CSV) and pictures")
-    _add_strict(parser)
+    _add_shared(parser)
     parser.add_argument("--animate", metavar="FILE", help="animation of a run, .gif or .mp4")
     parser.add_argument(
         "--fail-on",
@@ -216,7 +222,6 @@ def _add_simulate(commands: Any) -> None:
     people.add_argument(
         "--animate-run", type=_count, metavar="K", help="animate run K, not the one that met most people"
     )
-    people.add_argument("--json", metavar="FILE", help="all results as JSON")
 
 
 def _add_foam(commands: Any) -> None:
@@ -228,7 +233,7 @@ def _add_foam(commands: Any) -> None:
     )
     parser.add_argument("design", metavar="DESIGN.toml", help="foam design file")
     parser.add_argument("--out", metavar="DIR", default="foam", help="folder to write into [%(default)s]")
-    _add_strict(parser)
+    _add_shared(parser)
 
 
 def _add_optimize(commands: Any) -> None:
@@ -241,7 +246,7 @@ def _add_optimize(commands: Any) -> None:
     parser.add_argument("study", metavar="STUDY.toml", help="gain study file")
     parser.add_argument("--out", metavar="DIR", default="gains", help="folder to write into [%(default)s]")
     parser.add_argument("--resume", action="store_true", help="resume an interrupted search, if there is one")
-    _add_strict(parser)
+    _add_shared(parser)
     parser.add_argument("--threads", type=_count, metavar="N", help="number of threads [all cores]")
 
 
@@ -269,7 +274,7 @@ def _add_sweep(commands: Any) -> None:
         help="compute only the chunks A to B-1, or the I-th of N parts; several processes fill one folder",
     )
     parser.add_argument("--dry-run", action="store_true", help="show rows, size and time, and write nothing")
-    _add_strict(parser)
+    _add_shared(parser)
     parser.add_argument(
         "--threads", type=_count, metavar="N", help="threads of one chunk [all cores; one with workers]"
     )
@@ -286,7 +291,7 @@ def _add_arm(commands: Any) -> None:
     )
     parser.add_argument("robot", metavar="ROBOT.urdf", help="URDF of the arm, macros expanded")
     parser.add_argument("--out", metavar="DIR", default="arm", help="folder to write into [%(default)s]")
-    _add_strict(parser)
+    _add_shared(parser)
     place = parser.add_argument_group("point")
     place.add_argument("--link", metavar="NAME", help="link that the point is fixed to [the last one that moves]")
     place.add_argument(
@@ -326,7 +331,7 @@ def _add_contact(commands: Any) -> None:
     parser.add_argument("--init", action="store_true", help="write a commented cell file to start from")
     parser.add_argument("--out", metavar="DIR", default="report", help="folder to write into [%(default)s]")
     parser.add_argument("--date", metavar="YYYY-MM-DD", help="date that the page prints [SOURCE_DATE_EPOCH, else none]")
-    _add_strict(parser)
+    _add_shared(parser)
 
 
 def _add_benchmark(commands: Any) -> None:
@@ -336,7 +341,7 @@ def _add_benchmark(commands: Any) -> None:
         summary="run laws through a fixed protocol and show the shares of success, contact and fault",
         example=examples.BENCHMARK,
     )
-    _add_strict(parser)
+    _add_shared(parser)
     parser.add_argument("suite", choices=SUITE_NAMES, metavar="SUITE", help=", ".join(SUITE_NAMES))
     parser.add_argument(
         "--laws",

@@ -84,8 +84,6 @@ def simulate_people(options: argparse.Namespace) -> None:
     )
     print(f"{terminal.told(report)}\n\n{totals}")
     written = []
-    if options.json is not None:
-        written.append(output.write_text(Path(options.json), report.json()))
     if options.out is not None or options.animate is not None:
         index = int(np.argmax(summary.entered_active)) if shown is None else shown
         trajectory = nav.simulate(crossings[index].scenario, law, **stepping)
@@ -96,7 +94,7 @@ def simulate_people(options: argparse.Namespace) -> None:
         if options.animate is not None:
             print(f"\nanimated run  {index}")
             written.append(output.animation(trajectory, options.animate))
-    output.say_written(written)
+    output.say_written(written, report, options)
     verdict.end(said, counts, found, options, len(summary))
 
 

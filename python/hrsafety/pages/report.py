@@ -164,8 +164,18 @@ class Report:
         return written(template, title=self.title, report=self, good=good, **content)
 
     def json(self, *, sort: bool = False) -> str:
-        """Return title, every value and the warnings as JSON, in their order or in that of their names."""
-        return json_text({"title": self.title, **self.values, "warnings": self.messages}, sort=sort)
+        """Return title, every value and the warnings as JSON, in their order or in that of their names.
+
+        Without values by name these are the facts, the verdict and the tables.
+        """
+        tables = [
+            {"heading": section.heading, "columns": block.titles, "rows": block.rows}
+            for section in self.sections
+            for block in section.blocks
+            if isinstance(block, ReportTable)
+        ]
+        shown = {"source": self.source, "facts": dict(self.facts), "verdict": self.said, "tables": tables}
+        return json_text({"title": self.title, **(self.values or shown), "warnings": self.messages}, sort=sort)
 
 
 def json_text(values: Mapping[str, Any], *, sort: bool = False) -> str:
@@ -179,6 +189,8 @@ def _plain(value: Any) -> Any:
         return {str(name): _plain(entry) for name, entry in value.items()}
     if isinstance(value, (np.ndarray, np.generic)):
         return _plain(value.tolist())
+    if isinstance(value, ReportCell):
+        return str(value)
     if isinstance(value, (list, tuple)):
         return [_plain(entry) for entry in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value

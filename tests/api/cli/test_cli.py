@@ -261,7 +261,6 @@ BAD_COMMANDS = {
     "out below a file": (["simulate", "SCENE", "--out", "SCENE/below"], "c1.toml"),
     "film of unknown kind": (["simulate", "SCENE", "--animate", "run.txt"], "must"),
     "runs with scenario": (["simulate", "SCENE", "--runs", "3"], "--runs goes with --people only"),
-    "json with scenario": (["simulate", "SCENE", "--json", "a.json"], "--json goes with --people only"),
     "no runs": (["simulate", "--people", "PEOPLE", "--runs", "0"], "--runs must be an integer from 1 to 100000, got 0"),
     "many runs": (["simulate", "--people", "PEOPLE", "--runs", "9999"], "runs must be at most"),
     "film of no run": (

@@ -16,10 +16,11 @@ from hypothesis import strategies as st
 pytest.importorskip("jinja2")
 
 from hrsafety import pages
-from hrsafety.cli import terminal
+from hrsafety.cli import main, terminal
 from hrsafety.pages.report import Report, ReportCell, ReportTable, Section, json_text
 from hrsafety.plausibility import ResultWarning
 
+EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 DOUBT = ResultWarning("edge", "covering.radius", "an edge <b>")
 TABLE = ReportTable(
     headers=(("region", "speed"), ("", "m/s")),
@@ -89,6 +90,43 @@ def test_doubts_that_may_be_unsafe_make_a_good_verdict_unsure(
 def test_json_has_every_value_and_warning_and_no_number_that_is_none() -> None:
     found = json.loads(report(warnings=[DOUBT, DOUBT]).json())
     assert found == {"title": "A <cell>", "speed": [0.1, None], "count": 3, "warnings": [DOUBT.message]}
+
+
+def test_json_without_values_by_name_is_what_the_terminal_shows() -> None:
+    found = json.loads(report(values={}, source="cell.toml", warnings=[DOUBT]).json())
+    assert found["facts"] == {"cell": "cell.toml", "limits": "ISO"}
+    assert (found["verdict"], found["source"], found["warnings"]) == ("within limits", "cell.toml", [DOUBT.message])
+    (table,) = found["tables"]
+    assert table["columns"] == ["region", "speed (m/s)"]
+    assert table["rows"] == [["chest", "0.1 !"], ["hand", 0.25], ["face", "-"]]
+
+
+COMMANDS = {
+    "simulate": ["simulate", str(EXAMPLES / "my_first_crossing.toml")],
+    "foam": ["foam", str(EXAMPLES / "foam_design.toml"), "--out", "out"],
+    "arm": ["arm", str(EXAMPLES / "cell_arm.urdf"), "--out", "out"],
+    "contact": ["contact", "cell.toml", "--out", "out"],
+}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_gives_its_report_as_json(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("matplotlib")
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", "contact", "cell.toml"]) == 0
+    file = tmp_path / "kept" / "report.json"
+    main([*COMMANDS[name], "--json", str(file)])
+    captured = capsys.readouterr()
+    assert f"wrote {file}" in captured.out
+    found = json.loads(file.read_text(encoding="utf-8"))
+    assert found["title"]
+    assert len(found["warnings"]) == len({line for line in captured.err.splitlines() if "warning: " in line})
+    if name != "contact":
+        assert all(f"{fact:<15}{words}" in captured.out for fact, words in found["facts"].items())
+    assert main([*COMMANDS[name], "--json", str(tmp_path)]) == 2
+    assert "--json must name a file" in capsys.readouterr().err
 
 
 def test_no_command_renders_by_itself() -> None:

@@ -49,6 +49,7 @@ def report_cell(options: argparse.Namespace) -> None:
     date = _date(options.date)
     output.planned_folder(options.out)
     output.require_page("contact")
+    output.check_json(options)
     with output.located(options.cell), progress.live() as shown:
         cell = contact.load_cell(options.cell)
         told = None if shown is None else lambda done, total: shown("map of allowed speeds", done, total, None)
@@ -61,7 +62,7 @@ def report_cell(options: argparse.Namespace) -> None:
     page = cell_page.html(report, cell_pictures.drawings(cell, study))
     place = output.folder(options.out)
     texts = {"report.json": report.json(sort=True), "report.html": page}
-    output.say_written([output.write_text(place / name, text) for name, text in texts.items()])
+    output.say_written([output.write_text(place / name, text) for name, text in texts.items()], report, options)
     output.report_warnings(study.warnings, strict=False)
     _end(study)
     output.leave_if_strict(study.warnings, options.strict)

@@ -34,6 +34,7 @@ def design_file(options: argparse.Namespace) -> None:
     """
     output.planned_folder(options.out)
     output.require_page("foam")
+    output.check_json(options)
     with output.located(options.design):
         described = load(options.design)
     place = output.folder(options.out)
@@ -47,7 +48,7 @@ def design_file(options: argparse.Namespace) -> None:
     print(terminal.told(report))
     table = output.write_csv(place / "boundaries.csv", ["damping_N_s_per_m", *_COLUMNS], _rows(found))
     drawn = [("boundaries", _picture(found, design, curves), foam_report.CAPTION)]
-    output.say_written(output.write_report(report, place, drawn, [table]))
+    output.say_written(output.write_report(report, place, drawn, [table]), report, options)
     output.report_warnings(found.warnings, options.strict)
 
 

@@ -67,6 +67,7 @@ def optimize_file(options: argparse.Namespace) -> None:
     """
     output.planned_folder(options.out)
     output.require_page("optimize")
+    output.check_json(options)
     study = _loaded(options.study)
     new = not Path(options.out).exists()
     place = output.folder(options.out)
@@ -78,7 +79,7 @@ def optimize_file(options: argparse.Namespace) -> None:
                 (place / LOCK).unlink()
                 place.rmdir()
             raise _located(options.study, error) from None
-        _show(found, place)
+        _show(options, found, place)
         for path in (*_checkpoints(study, place), place / SO_FAR):
             path.unlink(missing_ok=True)
     search, doubts = found.search, output.warnings_of(found.search)
@@ -274,7 +275,7 @@ def _sensitivity(study: GainStudy, law: nav.Law, threads: int | None) -> nav.gai
 # ---- files ------------------------------------------------------------------------------------------
 
 
-def _show(found: FoundGains, place: Path) -> None:
+def _show(options: argparse.Namespace, found: FoundGains, place: Path) -> None:
     """Print what was found, and write values, pictures and page."""
     pictures = output.pictures(place, optimize_pictures.make(found))
     report = optimize_report.report_of(found, {each.name: each for each in pictures})
@@ -283,4 +284,4 @@ def _show(found: FoundGains, place: Path) -> None:
     if found.front is not None:
         files.append(found.front.to_csv(place / "front.csv"))
     files.append(output.write_text(place / "results.json", report.json()))
-    output.say_written(output.write_report(report, place, (), files))
+    output.say_written(output.write_report(report, place, (), files), report, options)

@@ -45,6 +45,7 @@ def sweep_file(options: argparse.Namespace) -> None:
     if not options.dry_run:
         output.planned_folder(options.out)
         output.require_page("sweep")
+    output.check_json(options)
     if options.table is not None:
         output.target("--table", options.table, _FORMATS)
     if options.workers is not None and options.workers < 1:
@@ -69,7 +70,8 @@ def sweep_file(options: argparse.Namespace) -> None:
         target = Path(options.table)
         target.parent.mkdir(parents=True, exist_ok=True)
         tables = [result.to_parquet(target) if target.suffix == ".parquet" else result.to_npz(target)]
-    output.say_written(output.write_report(report, place, make(result, described.show), tables))
+    written = output.write_report(report, place, make(result, described.show), tables)
+    output.say_written(written, report, options)
     output.report_warnings(output.warnings_of(result), options.strict)
 
 
