@@ -169,3 +169,23 @@ def extras_of_the_first_command(document: str) -> str:
 def test_extras_of_the_first_command_are_enough_to_reproduce(extras: str, tmp_path: Path) -> None:
     printed = run_python("-c", WITH_THESE_ONLY, extras, ",".join(REPRODUCED), folder=tmp_path)
     assert printed.split() == ["summary.html"]
+
+
+def test_no_page_installs_the_package_from_an_index() -> None:
+    """It is on none: pages install it from its source tree."""
+    found = [
+        f"{title(document)}: {line.strip()}"
+        for document in DOCUMENTS
+        for line in document.read_text(encoding="utf-8").splitlines()
+        if re.search(r"pip install ['\"]?hrsafety\b", line)
+    ]
+    assert found == []
+
+
+def test_modes_of_environments_are_called_as_in_the_code() -> None:
+    vector = pytest.importorskip("gymnasium.vector")
+    words = {mode.value for mode in vector.AutoresetMode}
+    text = (REPOSITORY / "docs" / "guides" / "gymnasium.md").read_text(encoding="utf-8")
+    line = next(line for line in text.splitlines() if "`autoreset_mode`" in line)
+    assert words <= set(re.findall(r'"(\w+)"', line))
+    assert not re.search("|".join(mode.name for mode in vector.AutoresetMode if mode.name != mode.value), text)
