@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from os import PathLike
 from pathlib import Path
 
@@ -11,17 +11,19 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import meant, positive, readable
+from hrsafety._tracks import Ways
 from hrsafety.datasets.recording import Recording
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.plausibility import telling
+from hrsafety.plausibility import ResultWarning, telling
 
-__all__ = ["load_pedestrians", "load_track"]
+__all__ = ["load_pedestrians", "load_track", "track_doubts"]
 
 Array = npt.NDArray[np.float64]
 
 PEDESTRIAN_COLUMNS = ("frame", "t_s", "ped_id", "x_m", "y_m")
 FRAME_COLUMNS = ("frame", "ped_id", "x_m", "y_m")
 TRACK_COLUMNS = ("t_s", "x_m", "y_m")
+FRAMED_TRACK_COLUMNS = ("frame", "x_m", "y_m")
 
 _INTEGER_COLUMNS = frozenset({"frame", "ped_id"})
 
@@ -99,16 +101,33 @@ def _timed(path: Path, columns: tuple[str, ...], table: Array, rate: float) -> A
     return seconds
 
 
-def load_track(path: str | PathLike[str]) -> tuple[Array, Array]:
+def track_doubts(name: str, time: Array, position: Array, *, person: bool = True) -> tuple[ResultWarning, ...]:
+    """Return the doubts about a recorded way; of a thing only those about its times."""
+    ways = Ways(time, np.zeros(len(time), dtype=np.int64), position)
+    remedy = "load_track(..., fps=), fps in a scenario file, or divide the times by the frames per second"
+    smoothing = "datasets.Recording(...).smoothed(0.6) takes the noise out"
+    found = ways.doubts(lambda _: name, moving=name, of_frames=f"give {remedy}", smoothing=smoothing)
+    return tuple(each for each in found if person or each.subject == "time_s" or remedy in each.message)
+
+
+def _doubts_of_track(path: str | PathLike[str], *, fps: float | None = None) -> Iterable[ResultWarning]:
+    return track_doubts(Path(path).name, *load_track(path, fps=fps), person=False)
+
+
+@telling(_doubts_of_track)
+def load_track(path: str | PathLike[str], *, fps: float | None = None) -> tuple[Array, Array]:
     r"""Read the recorded way of one person or thing.
 
     The file is comma-separated UTF-8 text with the columns ``t_s`` (s, strictly increasing),
-    ``x_m`` and ``y_m`` (m) in any order and no others.
+    ``x_m`` and ``y_m`` (m) in any order and no others. Times that are numbers of frames are no seconds: with ``fps``
+    they are divided by it, and the column may be called ``frame``.
 
     Parameters
     ----------
     path : path-like
         The file.
+    fps : float or None
+        Frames per second of a file whose times are numbers of frames.
 
     Returns
     -------
@@ -133,9 +152,19 @@ def load_track(path: str | PathLike[str]) -> tuple[Array, Array]:
     >>> time.tolist()
     [0.0, 0.4]
     """
+    rate = None if fps is None else positive("fps", fps)
     readable("path", path)
-    table = np.array(_read(Path(path), [TRACK_COLUMNS], _check_track_rows)[1], dtype=np.float64)
-    return table[:, 0].copy(), table[:, 1:].copy()
+    layouts = [TRACK_COLUMNS, *([FRAMED_TRACK_COLUMNS] if rate else [])]
+    table = np.array(_read(Path(path), layouts, _check_track_rows)[1], dtype=np.float64)
+    time = table[:, 0].copy()
+    if rate is not None:
+        if (time != np.floor(time)).any():
+            wrong = float(time[time != np.floor(time)][0])
+            raise InvalidParameterError(
+                f"{Path(path).name}, column t_s", "hold frames where fps is given", wrong, "leave out fps"
+            )
+        time = time / rate
+    return time, table[:, 1:].copy()
 
 
 Row = tuple[float, ...]
@@ -169,10 +198,10 @@ def _check_pedestrian_rows(line: str, first: str, before: Row, row: Row) -> None
         raise InvalidParameterError(f"{line}, column ped_id", f"follow {before[2]} within the frame", row[2])
 
 
-def _check_track_rows(line: str, _first: str, before: Row, row: Row) -> None:
-    """Check the order of two rows (t_s, x_m, y_m)."""
+def _check_track_rows(line: str, first: str, before: Row, row: Row) -> None:
+    """Check the order of two rows (t_s or frame, x_m, y_m)."""
     if not row[0] > before[0]:
-        raise InvalidParameterError(f"{line}, column t_s", f"be later than {before[0]}, the time before", row[0])
+        raise InvalidParameterError(f"{line}, column {first}", f"be later than {before[0]}, the time before", row[0])
 
 
 def _read(path: Path, layouts: Sequence[tuple[str, ...]], check_order: OrderCheck) -> tuple[tuple[str, ...], list[Row]]:

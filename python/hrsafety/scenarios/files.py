@@ -8,11 +8,14 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from hrsafety import _keys as kind
 from hrsafety import navigation as nav
 from hrsafety._display import displayed
 from hrsafety._keys import Keys, checked, located, parsed
 from hrsafety.datasets import load_track
+from hrsafety.datasets.tables import track_doubts
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.obstacles.moving_rectangle import Mobile
 from hrsafety.scenarios.laws import law_of, safe_of
@@ -118,7 +121,7 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
       three is either ``velocity`` with ``stop`` (not a person: or ``acceleration``), or ``segments``, an array
       of ``{duration, velocity, acceleration}``, or a recording: ``time`` and ``position``
       arrays, or ``path``, a CSV file with the columns t_s, x_m, y_m, relative to the scenario
-      file;
+      file, with ``fps`` if its times are numbers of frames;
     - ``[measurement]`` with the fields of `Measurement`;
     - ``[safe]``, which puts parts around the law: ``preferred_speed``, ``takeover`` and
       ``critical_distance`` of `SafeNavigation`, and the tables ``[safe.shield]`` and ``[safe.yielding]`` with
@@ -166,9 +169,16 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
         with located("measurement"):
             fields["measurement"] = nav.Measurement(**given)
     described = fields.pop("obstacles", [])
+    recorded = [isinstance(table, dict) and "path" in table for table in described]
     obstacles = [_obstacle(f"obstacles[{index}]", table, place.parent) for index, table in enumerate(described)]
+    doubts = [
+        doubt
+        for index, (each, read) in enumerate(zip(obstacles, recorded, strict=True))
+        if read and isinstance(each, Mobile) and each.path is not None
+        for doubt in track_doubts(f"obstacles[{index}]", *map(np.array, each.path), person=isinstance(each, nav.Human))
+    ]
     with located(""):
-        return ScenarioFile(nav.Scenario(obstacles=tuple(obstacles), **fields), law)
+        return ScenarioFile(nav.Scenario(obstacles=tuple(obstacles), doubts=doubts, **fields), law)
 
 
 def _robot(table: dict[str, Any]) -> nav.HolonomicRobot | nav.DifferentialDriveRobot:
@@ -233,7 +243,7 @@ def _moving(
     known: dict[str, kind.Kind]
     needed: tuple[str, ...]
     if "path" in table:
-        known, needed = {**outline, "path": kind.word}, ("path",)
+        known, needed = {**outline, "path": kind.word, "fps": kind.number}, ("path",)
     elif "time" in table or "position" in table:
         known, needed = {**outline, "time": kind.numbers, "position": kind.pairs}, ("time", "position")
     elif "segments" in table:
@@ -248,7 +258,7 @@ def _moving(
     given = checked(path, table, known, required=(*needed, *required))
     del given["type"]
     if "path" in given:
-        given["time"], given["position"] = _track(path, folder / given.pop("path"))
+        given["time"], given["position"] = _track(path, folder / given.pop("path"), given.pop("fps", None))
     with located(path):
         if "time" in given:
             return body.from_path(given.pop("time"), given.pop("position"), **given)
@@ -257,11 +267,13 @@ def _moving(
         return body(**given)
 
 
-def _track(path: str, file: Path) -> tuple[object, object]:
+def _track(path: str, file: Path, fps: float | None) -> tuple[object, object]:
     """Read a recording that an obstacle refers to."""
     try:
-        return load_track(file)
+        return load_track(file, fps=fps)
     except InvalidParameterError as error:
+        if error.argument == "fps":
+            raise error.renamed(f"{path}.fps") from None
         argument = f"{path}.path" if error.argument == "path" else f"{path}.path: {error.argument}"
         raise error.renamed(argument) from None
 

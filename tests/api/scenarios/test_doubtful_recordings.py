@@ -13,9 +13,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hrsafety import datasets, scenarios
+from hrsafety import navigation as nav
 from hrsafety.cli import main
 from hrsafety.datasets import Recording
 from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import UnitWarning, unsafe_doubts
 
 
 def crowd(
@@ -247,3 +249,43 @@ def test_a_recording_is_pickled_by_its_rows() -> None:
     again = pickle.loads(pickle.dumps(recording))
     assert len(pickle.dumps(recording)) == before
     np.testing.assert_array_equal(again.position, recording.position)
+
+
+# ---- one recorded way ----------------------------------------------------------------------------
+
+
+@settings(max_examples=25, deadline=None)
+@given(fps=st.sampled_from([10.0, 15.0, 25.0, 30.0, 50.0]), every=st.integers(1, 10), speed=st.floats(0.9, 1.6))
+def test_a_way_by_frames_is_doubted_in_scenes_and_fps_takes_the_doubt_away(
+    fps: float, every: int, speed: float, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    folder = tmp_path_factory.mktemp("scene")
+    frames = every * np.arange(60)
+    rows = "".join(f"{frame},{-3.0 + speed * frame / fps!r},1.5\n" for frame in frames.tolist())
+    (folder / "walk.csv").write_text(f"t_s,x_m,y_m\n{rows}")
+    (folder / "frames.csv").write_text(f"frame,x_m,y_m\n{rows}")
+    head = 'start = [0.0, 0.0]\ngoal = [4.0, 0.0]\n[[obstacles]]\ntype = "human"\n'
+    for name, more, doubted in (
+        ("walk", "", True),
+        ("walk", f"fps = {fps}\n", False),
+        ("frames", f"fps = {fps}\n", False),
+    ):
+        scene = folder / "scene.toml"
+        scene.write_text(f'{head}path = "{name}.csv"\n{more}')
+        found = scenarios.load(scene)
+        said = [each.message for each in found.scenario.warnings if each.code == "implausible"]
+        assert any("look like frames" in message and "fps" in message for message in said) == doubted
+        run = nav.simulate(found.scenario, found.law)
+        assert any("look like frames" in each.message for each in unsafe_doubts(run.warnings)) == doubted
+    with pytest.warns(UnitWarning, match="fps"):
+        datasets.load_track(folder / "walk.csv")
+    assert datasets.load_track(folder / "frames.csv", fps=fps)[0][-1] == frames[-1] / fps
+
+
+def test_a_scene_with_a_way_by_frames_does_not_pass(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = "".join(f"{10 * k},{3.0 - 0.5 * k},30.0\n" for k in range(40))
+    (tmp_path / "walk.csv").write_text(f"t_s,x_m,y_m\n{rows}")
+    text = 'start = [0.0, 0.0]\ngoal = [4.0, 0.0]\n[[obstacles]]\ntype = "human"\npath = "walk.csv"\n'
+    (tmp_path / "scene.toml").write_text(text)
+    assert main(["simulate", str(tmp_path / "scene.toml"), "--fail-on", "contact"]) == 5
+    assert "NOT CHECKED" in capsys.readouterr().out
