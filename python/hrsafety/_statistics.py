@@ -212,9 +212,17 @@ class Mean:
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """That the mean is of less than ten runs: its interval holds for numbers of the normal distribution only."""
-        if type(self.runs) is not int or not 0 < self.runs < _FEW_RUNS:
+        """That the mean is of less than ten runs, or of equal numbers, whose spread nobody has seen."""
+        if type(self.runs) is not int or not self.runs:
             return ()
+        if self.runs >= _FEW_RUNS:
+            if self.low != self.high:
+                return ()
+            message = (
+                f"all {self.runs} numbers are equal: an interval without width holds for what never differs only; of a "
+                "rare event it takes more runs, or shares with their intervals"
+            )
+            return (ResultWarning("few_runs", "runs", message),)
         runs = "1 run" if self.runs == 1 else f"{self.runs} runs"
         interval = (
             "nothing is known of how far off it is"

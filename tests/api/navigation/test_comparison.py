@@ -328,6 +328,15 @@ def test_means_of_few_runs_say_so() -> None:
     assert mean_interval([]).warnings == ()
 
 
+def test_equal_numbers_have_no_interval_to_be_relied_on() -> None:
+    """Ten runs without a rare event of 10 % are as likely as not: [0, 0] covers its mean in two of three cases."""
+    never = nav.metrics.mean_interval(np.zeros(10))
+    assert (never.low, never.high) == (0.0, 0.0)
+    assert [each.code for each in never.warnings] == ["few_runs"]
+    assert "all 10 numbers are equal" in never.warnings[0].message
+    assert nav.metrics.mean_interval([0.0] * 9 + [1.0]).warnings == ()
+
+
 def test_interval_of_one_value_is_the_value() -> None:
     found = mean_interval([2.5])
     assert found == Mean(1, 2.5, 2.5, 2.5)
