@@ -3,7 +3,7 @@
 
 use crate::arguments::{Arguments, Named};
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::models::Parameters;
+use crate::crowd::models::parameters::Parameters;
 use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::neighbors::others::Each;
 use crate::crowd::pedestrian::{Around, Body, Pedestrian, Room, Walker};

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use crate::arguments::{Arguments, Named};
 use crate::crowd::agent::SHORTEST;
 use crate::crowd::agent_lanes::{AgentLanes, LaneRoom, Pair, Vectors};
-use crate::crowd::models::Parameters;
+use crate::crowd::models::parameters::Parameters;
 use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::neighbors::others::Each;
 use crate::crowd::pedestrian::{

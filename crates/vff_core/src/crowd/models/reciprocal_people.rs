@@ -6,7 +6,7 @@
 use crate::arguments::{Arguments, Named};
 use crate::crowd::agent::SHORTEST;
 use crate::crowd::agent_lanes::{AgentLanes, LaneRoom, Vectors};
-use crate::crowd::models::Parameters;
+use crate::crowd::models::parameters::Parameters;
 use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::neighbors::others::{Each, WIDTH, apart};
 use crate::crowd::pedestrian::{Around, Decision, Pedestrian, Room, Walker};

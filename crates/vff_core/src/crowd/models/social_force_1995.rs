@@ -6,7 +6,7 @@
 use crate::arguments::{Arguments, Named};
 use crate::crowd::agent::SHORTEST;
 use crate::crowd::agent_lanes::{AgentLanes, LaneRoom, Pair, Vectors};
-use crate::crowd::models::Parameters;
+use crate::crowd::models::parameters::Parameters;
 use crate::crowd::neighbors::others::Each;
 use crate::crowd::neighbors::{Neighbors, Unnoticed};
 use crate::crowd::pedestrian::{
