@@ -123,9 +123,15 @@ def episode(
     wheels: bool = False,
     period: float | None = None,
     set_back: tuple[float, float] | None = None,
+    takes_all: bool = False,
     length: float = 3.0,
 ) -> Outcome:
-    """Return how one adversarial episode went, in some of which the clock is set back by seconds between two bounds."""
+    """Return how one adversarial episode went.
+
+    In some the clock is set back by seconds between two bounds, by 1 ms as often as by 1 s. A robot that
+    ``takes_all`` carries out the plan of each answer from the update on, also of those that did not count, instead of
+    going on with the last one that did.
+    """
     draw = random.Random(seed)
     period = draw.choice(PERIODS) if period is None else period
     fastest, most = draw.uniform(0.3, 1.5), draw.uniform(1.0, 10.0)
@@ -163,7 +169,7 @@ def episode(
                 due += draw.uniform(0.0, 2.0) * period
             if set_back and resets and draw.random() < 0.08:
                 # In half of all cases it is set right again with the next update.
-                clock = -draw.uniform(*set_back)
+                clock = -math.exp(draw.uniform(*map(math.log, set_back)))
             elif clock and draw.random() < 0.5:
                 clock = 0.0
             if found.updates == 0 or draw.random() >= DROPPED:
@@ -191,7 +197,7 @@ def episode(
                 found.updates += 1
                 found.off_plan += getattr(answer, "robot_off_plan", None) is not None
                 # What runs on is the plan, counted from the last update that was accepted.
-                if answer.timing != "out_of_order":
+                if takes_all or answer.timing != "out_of_order":
                     command, ordered = answer, time
         step = min(0.005, 0.25 * period, due - time if due > time else 0.005)
         body.drive(command, time - ordered, step, wheels)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, NoReturn
 
 import numpy as np
@@ -10,13 +11,14 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, count, instance, number, numbers, pair, positive, sequence
-from hrsafety.errors import InvalidParameterError, ShapeError, Shown, SimulationError
+from hrsafety.errors import InvalidParameterError, ShapeError, SimulationError
 from hrsafety.navigation.free_space import stands
 from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation
 from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.measured_people import MeasuredPeople
+from hrsafety.navigation.named_people import NamedPeople, Told
 from hrsafety.navigation.obstacles.base import Obstacle
 from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.robot_command import Command, Sighting
@@ -40,8 +42,16 @@ class Controller:
     told: whoever is not measured again stays where he was, with an age that grows, and the shield reckons
     with wherever he can be by then; so it does with the points of a scan. What is told without its instant
     can be as old as the ``latency`` of the shield when it is told. Somebody is forgotten when ``gone`` names
-    him, or after 2 s if a scan sees his place to be empty. Measurements older than what is known of somebody
-    count for nothing.
+    him, or after 2 s if a scan sees his place to be empty, or after ``age_limit``. Measurements older than what is
+    known of somebody count for nothing.
+
+    Names are those of a tracker that keeps them. Somebody with a new one is somebody more. Where three updates in a row
+    have no name in common, or there is no room, who is new counts as the nearest of those who were not measured and can
+    have got there (``renamed``): people are then judged by their places only.
+
+    Give the times of a clock that nobody sets. After one that was set back the robot executes the plan that it has, and
+    rests. It goes on when the clock shows a later time again, or has run for as long as the plan lasts; whoever is not
+    measured then may be anywhere.
 
     Parameters
     ----------
@@ -68,6 +78,9 @@ class Controller:
         Time between updates in s.
     arrival_tolerance : float
         The robot has arrived this close to the goal, in m.
+    age_limit : float or None
+        After so many seconds without a measurement somebody is lost for good: he counts no more, and commands name him
+        in ``lost``. ``None``: never, and the robot may stand for all time.
     seed : int
         Of laws that draw.
 
@@ -106,6 +119,7 @@ class Controller:
         lidar: Lidar | None = None,
         control_period: float = 0.06,
         arrival_tolerance: float = 0.12,
+        age_limit: float | None = 30.0,
         seed: int = 0,
     ) -> None:
         self._law = _with_map(as_law(law), map)
@@ -125,9 +139,11 @@ class Controller:
             "arrival_tolerance": positive("arrival_tolerance", arrival_tolerance),
             "seed": seed,
         }
-        self._names: dict[Hashable, int] = {}
+        limit = None if age_limit is None else positive("age_limit", age_limit)
         shield = _shield(self._law)
         most = speed if shield is None or shield.person_speed is None else shield.person_speed
+        error = 0.0 if shield is None else shield.position_error
+        self._names = NamedPeople(self._capacity, most, _latency(self._law), error, limit)
         self._measured = None if shield is None else MeasuredPeople(shield, most)
         self._last: Command | None = None
         self._native: _hrsafety.Controller | None = None
@@ -149,18 +165,14 @@ class Controller:
         lidar = None if self._lidar is None else self._lidar._lidar
         return _hrsafety.Controller(scenario._native, self._law._native, lidar, _latency(self._law))
 
-    def _refuted(
-        self, now: float, seen: list[tuple[int, Pair, Pair, float | None]], gone: Iterable[Hashable]
-    ) -> dict[str, tuple[Hashable, ...]]:
+    def _refuted(self, now: float, told: Mapping[Hashable, Told]) -> dict[str, tuple[Hashable, ...]]:
         """Return for whom measurements refute what the shield assumes, by the fields of the command."""
-        found: dict[str, tuple[Hashable, ...]] = {"faster": (), "accelerated": ()}
+        found: dict[str, tuple[Hashable, ...]] = dict.fromkeys(_OF_PEOPLE, ())
         if self._measured is None:
             return found
-        self._measured.forget(gone)
-        names = {index: name for name, index in self._names.items()}
-        for index, position, velocity, time in seen:
-            for field in self._measured.refuted(names[index], now, position, velocity, time):
-                found[field] = (*found[field], names[index])
+        for name, (position, velocity, time) in told.items():
+            for field in self._measured.refuted(name, now, position, velocity, time):
+                found[field] = (*found[field], name)
         return found
 
     @property
@@ -169,7 +181,7 @@ class Controller:
         if self._native is None:
             return ()
         present = self._native.present()
-        return tuple(name for name, index in self._names.items() if present[index])
+        return tuple(name for name, index in self._names.indices.items() if present[index])
 
     def update(
         self,
@@ -187,7 +199,8 @@ class Controller:
         Parameters
         ----------
         time : float
-            Now, in s; an update that is not after the last one counts for nothing.
+            Now, in s; an update that is not after the last one counts for nothing, and so does one whose robot is
+            farther on in its plan than the time tells.
         position, velocity : array_like of shape (2,), or None
             The robot, in m and m/s; ``None`` where its place is not known: it brakes.
         heading : float or None
@@ -200,7 +213,7 @@ class Controller:
             Names of those who are known to have left.
         scan : array_like of shape (beams,), or None
             Ranges of the lidar in m; infinite where nothing was hit, which some drivers report as 0: here 0 is
-            something that touches the lidar, and the robot stands.
+            something that touches the lidar, and the robot stands. NaN: not known, neither hit nor free.
 
         Returns
         -------
@@ -227,44 +240,61 @@ class Controller:
         angle = 0.0 if heading is None else number("heading", heading)
         if self._native is None:
             if robot is None:
-                return self._told(_NOTHING, {"faster": (), "accelerated": ()})
+                return self._told(_NOTHING, dict.fromkeys((*_OF_PEOPLE, "renamed"), ()))
             self._native = self._made(robot[0])
-        seen = [] if people is None else self._seen(people)
+        told = {} if people is None else self._seen(people)
         ranges = None if scan is None else _ranges(scan)
-        gone = sequence("gone", "be names in a list, a tuple or a set", gone)
-        left = self._left(gone, people)
-        fields = self._native.update(now, robot, angle, seen=seen, gone=left, scan=ranges)
+        names = self._left(gone, told)
+        before = self._names.copy()
+        try:
+            present = self._native.present()
+            left = [*self._names.left(names), *self._names.outlived(now, told, present)]
+            renamed = self._names.place(now, told, present)
+            places = self._names.indices
+            seen = [(places[name], who.position, who.velocity or (0.0, 0.0), who.time) for name, who in told.items()]
+            fields = self._native.update(now, robot, angle, seen=seen, gone=left, scan=ranges)
+        except BaseException:
+            self._names = before
+            raise
         last = self._last
         if fields["timing"] == "out_of_order" and last is not None:
-            refuted = {"faster": last.faster, "accelerated": last.accelerated}
+            # It counts for nothing.
+            self._names = before
+            found = {field: getattr(last, field) for field in (*_OF_PEOPLE, "renamed")}
         else:
-            refuted = dict(self._refuted(now, seen, gone))
-        self._last = self._told(fields, refuted)
+            if self._measured is not None:
+                self._measured.forget(names)
+                for name, former in renamed.items():
+                    self._measured.rename(name, former)
+            found = self._refuted(now, told) | {"renamed": tuple(renamed)}
+        self._last = self._told(fields, found)
         return self._last
 
-    def _told(self, fields: Mapping[str, Any], refuted: Mapping[str, Any]) -> Command:
+    def _told(self, fields: Mapping[str, Any], found: Mapping[str, tuple[Hashable, ...]]) -> Command:
         rules, robot = self._rules, self._rules["robot"]
         limits = {"period": rules["control_period"], "max_acceleration": robot.guaranteed_acceleration}
-        told = dict(fields)
+        told = {**fields, **found, "lost": tuple(self._names.lost)}
         told["plan"] = tuple((time, (rates[0], rates[1])) for time, rates in told["plan"])
         if isinstance(robot, DifferentialDriveRobot) and told["speed"] is None:
             # Two wheels that were never told where they are stand.
             told |= {"speed": 0.0, "turn_rate": 0.0}
-        return Command(**refuted, **limits, **told)
+        shield = _shield(self._law)
+        told["refuted"] = tuple(name for name in _assumed(shield) if told[name])
+        command = Command(**limits, **told)
+        if shield is not None and command.doubts and command.status in ("kept", "changed"):
+            return replace(command, status="not_guaranteed")
+        return command
 
-    def _seen(
-        self, people: Mapping[Hashable, Sequence[float | None]] | npt.ArrayLike
-    ) -> list[tuple[int, Pair, Pair, float | None]]:
-        """Return who was measured, by the places of the core."""
+    def _seen(self, people: Mapping[Hashable, Sequence[float | None]] | npt.ArrayLike) -> dict[Hashable, Told]:
+        """Return who was measured."""
         if not isinstance(people, Mapping):
             rows = numbers("people", people)
             if rows.size and (rows.ndim != 2 or rows.shape[1] not in (4, 5)):
                 raise ShapeError("people", "(n, 4) or (n, 5)", rows.shape)
             people = dict(enumerate(rows.reshape(-1, max(1, rows.shape[-1])).tolist() if rows.size else []))
-        told = {name: self._sighting(name, given) for name, given in people.items()}
-        return [(self._place(name, told), *sighting) for name, sighting in told.items()]
+        return {name: self._sighting(name, given) for name, given in people.items()}
 
-    def _sighting(self, name: Hashable, given: Sequence[float | None]) -> tuple[Pair, Pair, float | None]:
+    def _sighting(self, name: Hashable, given: Sequence[float | None]) -> Told:
         """Return place, velocity and instant of somebody who was measured."""
         label = f"people[{name!r}]"
         if isinstance(given, (str, Mapping)) or not (hasattr(given, "__len__") and hasattr(given, "__getitem__")):
@@ -275,9 +305,10 @@ class Controller:
         x, y = (number(label, value) for value in given[:2])
         vx, vy = (self._speed(label, value) for value in given[2:4])
         instant = given[4] if len(given) == 5 else None
-        return (x, y), (vx, vy), None if instant is None else number(f"{label}.time", instant)
+        velocity = None if vx is None or vy is None else (vx, vy)
+        return Told((x, y), velocity, None if instant is None else number(f"{label}.time", instant))
 
-    def _speed(self, name: str, value: float | None) -> float:
+    def _speed(self, name: str, value: float | None) -> float | None:
         """Return a component of a velocity; who is not known to move may not be taken to stand."""
         if value is not None:
             return number(name, value)
@@ -286,40 +317,19 @@ class Controller:
             rule = "have a velocity, as the shield assumes one to be known to velocity_error"
             remedy = "give vx and vy, or a shield without velocity_error and person_acceleration"
             raise InvalidParameterError(name, rule, None, remedy)
-        return 0.0
+        return None
 
-    def _left(self, gone: Iterable[Hashable], seen: Mapping[Hashable, object] | npt.ArrayLike | None) -> list[int]:
-        """Return the places of those who left; nobody can have left who is measured in the same update."""
+    def _left(self, gone: Iterable[Hashable], told: Mapping[Hashable, Told]) -> list[Hashable]:
+        """Return the names of those who left; nobody can have left who is measured in the same update."""
         names = sequence("gone", "be names in a list, a tuple or a set", gone)
         for name in names:
             try:
                 hash(name)  # a tuple, or a number of NumPy with fields, may hold what has none
             except TypeError:
                 raise InvalidParameterError("gone", "hold names as they stand in people", name) from None
-            if isinstance(seen, Mapping) and name in seen:
+            if name in told:
                 raise InvalidParameterError("gone", "name nobody who is measured in the same update", name)
-        return [self._names[name] for name in names if name in self._names]
-
-    def _place(self, name: Hashable, told: Mapping[Hashable, object]) -> int:
-        """Return the place of somebody in the core, a free one for who is new.
-
-        Who is told of in the same update keeps his place, though the core does not know of him yet.
-        """
-        if name in self._names:
-            return self._names[name]
-        taken = set(self._names.values())
-        free = next((index for index in range(self._capacity) if index not in taken), None)
-        if free is None:
-            present = [] if self._native is None else self._native.present()
-            absent = (known for known, index in self._names.items() if not present[index] and known not in told)
-            left = next(absent, None)
-            if left is None:
-                rule = f"name at most {self._capacity} who are there at once"
-                who = Shown(f"one more, {name!r}")
-                raise InvalidParameterError("people", rule, who, f"give the controller people={self._capacity + 1}")
-            free = self._names.pop(left)
-        self._names[name] = free
-        return free
+        return list(names)
 
     def __repr__(self) -> str:
         """Return law, goal and who is there."""
@@ -344,8 +354,22 @@ _NOTHING: Mapping[str, Any] = {
     "timing": "lost",
     "arrived": False,
     "oldest": 0.0,
+    "clock_set_back": None,
+    "unknown_beams": 0,
 }
 """What a robot is told that does not know yet where it is."""
+
+
+_OF_PEOPLE = ("faster", "accelerated", "velocity_off")
+"""Fields of a command that name people for whom measurements refute something."""
+
+
+def _assumed(shield: Shield | None) -> tuple[str, ...]:
+    """Return the fields of a command that tell of a refuted assumption of a shield."""
+    if shield is None:
+        return ()
+    velocities = () if shield.velocity_error is None else ("velocity_off",)
+    return ("faster", "accelerated", *velocities, "robot_off_plan")
 
 
 def _ranges(scan: npt.ArrayLike) -> Array:

@@ -47,19 +47,28 @@ class Command:
         To have a control period from now, within the limits, in m/s.
     speed, turn_rate : float or None
         The same for a robot with two wheels, in m/s and rad/s.
-    status : {"kept", "changed", "braking"} or None
-        What the shield has done with the wanted velocity; ``None`` without parts around the law.
+    status : {"kept", "changed", "braking", "not_guaranteed"} or None
+        What the shield has done with the wanted velocity: commanded it, commanded the nearest verified one, or let
+        the robot brake as its last plan ends; ``None`` without parts around the law. ``"not_guaranteed"`` stands
+        for the first two where `doubts` is not empty: what is commanded is the best that is known, and a person may be
+        moved into.
     taken_over : bool
         Whether the robot heads for its (local) goal by itself.
     timing : {"regular", "late", "out_of_order", "lost"}
         What became of the update: in time; more than one and a half control periods after the last one; not
         after the last one, so that it counted for nothing and the robot brakes as its last plan ends (as much time
-        went by as the clock came on, a control period where it went back or stands); or without the place of the
-        robot, which then brakes alike.
+        went by as the clock came on, a control period where it went back or stands, and at least as much as the
+        robot is farther on); or without the place of the robot, which then brakes alike. Out of order is, too, an
+        update whose robot is farther on in its plan than the time tells, as after a clock that was set back. The
+        robot goes on with the plan that it has.
     arrived : bool
         Whether the robot is within the arrival tolerance of the goal.
     oldest : float
-        Age of the oldest measurement of somebody that counts, in s.
+        Age of the oldest measurement of somebody that counts, in s; infinite where it is not known, since the clock
+        may have been set back: the robot then stays where it is until he is measured again, or is gone.
+    clock_set_back : float or None
+        By how much the clock was seen to be set back, at least, in s. The plan that the robot executes, and what the
+        shield guarantees, hold on.
     robot_off_plan : (float, float) or None
         How far the robot was measured to be from the plan that it was to execute, in m and m/s beyond the
         ``margin``, ``position_tracking`` and ``velocity_tracking`` of the shield; ``None`` where no measurement
@@ -77,6 +86,24 @@ class Command:
     accelerated : tuple of hashable
         Names of those whose measured velocity changed faster than the ``person_acceleration`` of the shield; what
         it guarantees does not hold for them.
+    velocity_off : tuple of hashable
+        Names of those whose places do not fit the velocities that were told: by more than the ``velocity_error`` and
+        ``person_acceleration`` of a shield allow, or, for a shield that assumes nothing of velocities, by more than
+        0.3 m/s over at least 0.5 s; then yielding and the law are misled, and the shield is not.
+    lost : tuple of hashable
+        Names of those who were not measured within the ``age_limit`` of the controller: until then they were reckoned
+        with wherever they could be, now they count no more. They may be anywhere, until they are measured again or
+        ``gone`` names them.
+    renamed : tuple of hashable
+        Names of those who were taken for others, who had other names and were not measured any more, since nobody
+        keeps his name or there is no room for more: so many are there as before, but who is who is not known.
+    unknown_beams : int
+        How many beams of the last scan read NaN: there may be something in their directions. What was seen there
+        before counts on, ever older.
+    refuted : tuple of str
+        Names of the fields that tell of an assumption of the shield that the measurements of this update refute:
+        ``"faster"``, ``"accelerated"``, ``"velocity_off"`` (if the shield assumes anything of velocities) and
+        ``"robot_off_plan"``.
     before : (float, float)
         Velocity at the update as the plan has it, in m/s.
     period, max_acceleration : float
@@ -87,24 +114,30 @@ class Command:
     velocity: Pair
     speed: float | None
     turn_rate: float | None
-    status: Literal["kept", "changed", "braking"] | None
+    status: Literal["kept", "changed", "braking", "not_guaranteed"] | None
     taken_over: bool
     timing: Literal["regular", "late", "out_of_order", "lost"]
     arrived: bool
     oldest: float
+    clock_set_back: float | None
     robot_off_plan: Pair | None
     plan: tuple[tuple[float, Pair], ...]
     heading: float
     faster: tuple[Hashable, ...]
     accelerated: tuple[Hashable, ...]
+    velocity_off: tuple[Hashable, ...]
+    lost: tuple[Hashable, ...]
+    renamed: tuple[Hashable, ...]
+    unknown_beams: int
+    refuted: tuple[str, ...]
     before: Pair
     period: float
     max_acceleration: float
 
     @property
-    def refuted(self) -> tuple[str, ...]:
-        """Names of the assumptions of the shield that the measurements of this update refute."""
-        return tuple(name for name in ("faster", "accelerated", "robot_off_plan") if getattr(self, name))
+    def doubts(self) -> tuple[str, ...]:
+        """Names of all fields for which the shield guarantees nothing: `refuted`, and what is not known."""
+        return (*self.refuted, *(name for name in ("lost", "renamed", "unknown_beams") if getattr(self, name)))
 
     def velocity_after(self, seconds: float) -> Pair:
         """Return the velocity to have some time after the update if no other update comes.

@@ -110,6 +110,8 @@ fn fields_of<'py>(py: Python<'py>, order: &Order) -> PyResult<Bound<'py, PyDict>
     fields.value("taken_over", order.taken_over)?;
     fields.value("timing", order.timing.word())?;
     fields.value("arrived", order.arrived)?;
+    fields.value("clock_set_back", order.clock_set_back)?;
     fields.value("oldest", order.oldest)?;
+    fields.value("unknown_beams", order.unknown_beams)?;
     Ok(fields.finish())
 }

@@ -1,7 +1,7 @@
 //! What the parts around a law did.
 
 use crate::lanes::Vector2;
-use crate::laws::shield::{Course, Deviation, Status};
+use crate::laws::shield::{Course, Deviation, Shield, Status};
 
 /// What the parts did in the last control period.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,4 +18,6 @@ pub struct Trace {
     pub course: Option<Course>,
     /// How far it was measured to be from the plan before, if that refutes what the shield assumes.
     pub off_plan: Option<Deviation>,
+    /// What the shield assumes, if there is one.
+    pub shield: Option<Shield>,
 }

@@ -4,9 +4,14 @@
 //! counts with its age, what comes out of order does not count, and what does not come leaves the last
 //! of it standing, ever older.
 
+mod clock;
+mod told;
+
+pub use told::{Observation, Order, Sighting, Timing};
+
 use crate::error::{Failure, Given, Result, finite, finite_pair, not_negative};
 use crate::lanes::Vector2;
-use crate::laws::shield::{Course, Deviation, Limits, Status};
+use crate::laws::shield::{Course, Limits, Status};
 use crate::laws::{Situation, Stop};
 use crate::robots::differential::Twist;
 use crate::run::any_law::{AnyLaw, BoxedLaw};
@@ -17,96 +22,10 @@ use crate::world::geometry::{Body, RobotState};
 use crate::world::motion::BodyState;
 use crate::world::scenario::Scenario;
 use crate::world::shape::PlacedShape;
+use clock::{ANY, Held, LATE, Last, Reckoned, STANDS};
 
 /// Whoever was not seen for so long is forgotten once his place is seen to be empty, in s.
 const FORGOTTEN: f64 = 2.0;
-
-/// A clock that comes on by less than this share of a period stands.
-const STANDS: f64 = 0.01;
-
-/// An update later than this share of a period after the last one is late.
-const LATE: f64 = 1.5;
-
-/// Where somebody was measured to be.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sighting {
-    /// Which obstacle of the scenario.
-    pub index: usize,
-    /// Center in m.
-    pub position: [f64; 2],
-    /// Velocity in m/s.
-    pub velocity: [f64; 2],
-    /// When, in s; `None` where only the update that tells of it is known.
-    pub time: Option<f64>,
-}
-
-/// What is told to a controller at an instant.
-#[derive(Clone, Copy, Debug)]
-pub struct Observation<'a> {
-    /// When, in s.
-    pub time: f64,
-    /// The robot, `None` where it is not known.
-    pub robot: Option<RobotState<f64>>,
-    /// Its heading in rad.
-    pub heading: f64,
-    /// Whom a sensor has measured.
-    pub seen: &'a [Sighting],
-    /// Who is known to have left.
-    pub gone: &'a [usize],
-    /// Ranges of the beams of the lidar in m, if it has scanned.
-    pub scan: Option<&'a [f64]>,
-}
-
-/// What became of an update.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Timing {
-    /// It came in time.
-    Regular,
-    /// It came later than a period after the last one: the robot has to have braked until then.
-    Late,
-    /// It is not later than the last one, and counts for nothing: the plan runs on to its end.
-    OutOfOrder,
-    /// The place of the robot is not known: it brakes.
-    Lost,
-}
-
-impl Timing {
-    /// Its word.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Regular => "regular",
-            Self::Late => "late",
-            Self::OutOfOrder => "out_of_order",
-            Self::Lost => "lost",
-        }
-    }
-}
-
-/// What a robot is to do until the next update.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Order {
-    /// Force in N.
-    pub force: Vector2<f64>,
-    /// Velocity at the next sample in m/s.
-    pub velocity: Vector2<f64>,
-    /// The same for two wheels.
-    pub twist: Option<Twist>,
-    /// The plan that the robot executes, and its time at the update, in s.
-    pub course: Option<(Course, f64)>,
-    /// How far the robot was measured to be from the plan before, if that refutes what the shield assumes.
-    pub off_plan: Option<Deviation>,
-    /// What the shield has done, if there is one.
-    pub status: Option<Status>,
-    /// Whether the law was taken over from.
-    pub taken_over: bool,
-    /// What became of the update.
-    pub timing: Timing,
-    /// Whether the robot is within the arrival tolerance of the goal.
-    pub arrived: bool,
-    /// Age of the oldest measurement that counts, in s.
-    pub oldest: f64,
-}
 
 /// A law on a robot, with what it remembers.
 pub struct Controller {
@@ -119,23 +38,16 @@ pub struct Controller {
     measured: Vec<f64>,
     /// Whether the instant of that was told.
     dated: Vec<bool>,
-    /// When the last scan was told, in s.
-    scanned: f64,
+    /// How much longer ago than the clock tells each of them may have been measured, in s, then each point scanned.
+    hidden: Vec<f64>,
+    hidden_points: f64,
     /// Age in s, at most, of what is told without its instant.
     latency: f64,
     /// How old what is known of each body can be, in s.
     ages: Vec<f64>,
+    /// What a clock that was set back for good lacks, in s.
+    lacking: f64,
     last: Option<Last>,
-}
-
-/// The last update.
-#[derive(Clone, Copy, Debug)]
-struct Last {
-    /// When the last one that counted came, in s.
-    time: f64,
-    /// What the clock showed at the last one of any kind, in s.
-    clock: f64,
-    order: Order,
 }
 
 impl Controller {
@@ -172,12 +84,14 @@ impl Controller {
             law: law.erased().steering(&known)?,
             measured: vec![f64::NEG_INFINITY; scenario.obstacles.len()],
             dated: vec![true; scenario.obstacles.len()],
-            scanned: f64::NEG_INFINITY,
+            hidden: vec![0.0; scenario.obstacles.len()],
+            hidden_points: 0.0,
             latency,
             ages: vec![0.0; known.obstacles.len()],
             bodies: bodies.collect(),
             scans,
             scenario,
+            lacking: 0.0,
             last: None,
         })
     }
@@ -189,20 +103,41 @@ impl Controller {
     /// scan does not suit the lidar, or the law answers no finite force.
     pub fn update(&mut self, told: &Observation<'_>, stop: Stop<'_>) -> Result<Order> {
         self.check(told)?;
-        if let Some(last) = self.last
-            && told.time <= last.time
-        {
-            return Ok(self.run_on(last, told.time));
-        }
-        self.learn(told);
+        let mut now = told.time + self.lacking;
+        let more = match self.reckon(now, told.robot) {
+            Reckoned::Counts(more) => more,
+            Reckoned::Held(held) => return Ok(self.run_on(held, now, told.robot)),
+            Reckoned::Restarts(lacking) => {
+                self.lacking += lacking;
+                now += lacking;
+                ANY
+            }
+        };
+        let by_own_clock = |seen: &Sighting| Sighting {
+            time: seen.time.map(|time| time + self.lacking),
+            ..*seen
+        };
+        let seen: Vec<Sighting> = told.seen.iter().map(by_own_clock).collect();
+        let told = Observation {
+            time: now,
+            seen: &seen,
+            ..*told
+        };
+        self.learn(&told, more);
         let order = match told.robot {
-            Some(robot) => self.decide(told, robot, stop)?,
+            Some(robot) => self.decide(&told, robot, stop)?,
             None => self.brake(told.time),
         };
+        let before = self.last.map(|last| last.time);
+        let trace = self.law.trace();
         self.last = Some(Last {
             time: told.time,
+            spacing: before.map_or(f64::INFINITY, |before| told.time - before),
             clock: told.time,
+            restarted: told.time,
+            set_back: false,
             order,
+            shield: trace.and_then(|trace| trace.shield),
         });
         Ok(order)
     }
@@ -235,8 +170,13 @@ impl Controller {
         Ok(())
     }
 
-    /// Takes down what is new, and how old all of it is.
-    fn learn(&mut self, told: &Observation<'_>) {
+    /// Takes down what is new; so much more time than the clock tells may have gone by since the last update, in s.
+    fn learn(&mut self, told: &Observation<'_>, more: f64) {
+        let before = self.last.map_or(f64::NEG_INFINITY, |last| last.time);
+        for hidden in &mut self.hidden {
+            *hidden = hidden.max(more);
+        }
+        self.hidden_points = self.hidden_points.max(more);
         for seen in told.seen {
             // An older measurement of somebody who is there tells nothing.
             let there = self.bodies[seen.index].state.present;
@@ -246,6 +186,7 @@ impl Controller {
             }
             self.measured[seen.index] = time;
             self.dated[seen.index] = seen.time.is_some();
+            self.hidden[seen.index] = if time < before { more } else { 0.0 };
             self.bodies[seen.index].state = BodyState {
                 position: seen.position,
                 velocity: seen.velocity,
@@ -262,17 +203,20 @@ impl Controller {
     /// that is known, and then it was measured some time before.
     fn date(&mut self, now: f64) {
         let (people, points) = self.ages.split_at_mut(self.measured.len());
-        let told = self.measured.iter().zip(&self.dated);
-        for ((age, (measured, dated)), placed) in
+        let told = self.measured.iter().zip(&self.dated).zip(&self.hidden);
+        for ((age, ((measured, dated), hidden)), placed) in
             people.iter_mut().zip(told).zip(&self.scenario.obstacles)
         {
             *age = if placed.stationary {
                 0.0
             } else {
-                (now - measured).max(0.0) + if *dated { 0.0 } else { self.latency }
+                (now - measured).max(0.0) + if *dated { 0.0 } else { self.latency } + hidden
             };
         }
-        points.fill((now - self.scanned).max(0.0) + self.latency);
+        let instants = self.scans.iter().flat_map(Scans::instants);
+        for (age, scanned) in points.iter_mut().zip(instants) {
+            *age = (now - scanned).max(0.0) + self.latency + self.hidden_points;
+        }
     }
 
     /// How long ago each obstacle was measured, in s.
@@ -302,8 +246,10 @@ impl Controller {
             let given = Given::Found("ranges".into());
             return Err(Failure::invalid("scan", rule, given));
         };
-        scans.read(ranges, frame, &mut self.bodies[people..])?;
-        self.scanned = now;
+        scans.read(ranges, now, frame, &mut self.bodies[people..])?;
+        if scans.instants().iter().all(|scanned| *scanned == now) {
+            self.hidden_points = 0.0;
+        }
         let bodies = self.bodies[..people].iter_mut();
         for (body, since) in bodies.zip(since) {
             let placed = PlacedShape {
@@ -362,7 +308,9 @@ impl Controller {
             taken_over: trace.is_some_and(|trace| trace.taken_over),
             timing: if late { Timing::Late } else { Timing::Regular },
             arrived: to_goal.norm() <= self.scenario.rules.arrival_tolerance,
+            clock_set_back: None,
             oldest: self.oldest(told.time),
+            unknown_beams: self.unknown_beams(),
         })
     }
 
@@ -392,20 +340,41 @@ impl Controller {
         }
     }
 
-    /// The rest of the last plan after an update that is not later than the last one. Nobody knows how much time went
-    /// by: as much as the clock came on since the update before, a control period where it went back or stands.
-    fn run_on(&mut self, last: Last, clock: f64) -> Order {
+    /// The rest of the last plan after an update that counts for nothing. Nobody knows how much time went by: as much as
+    /// the clock came on since the update before, a control period where it went back or stands, and at least as much
+    /// as the robot can be farther on in its plan.
+    fn run_on(&mut self, held: Held, now: f64, robot: Option<RobotState<f64>>) -> Order {
+        let last = held.last;
         let period = self.scenario.rules.control_period;
-        let gone = clock - last.clock;
+        let gone = now - last.clock;
         let gone = if gone < STANDS * period { period } else { gone };
         let course = last.order.course;
+        let by_clock = course.map(|(course, _)| (course, course.since(now)));
+        let off = by_clock
+            .zip(robot)
+            .zip(last.shield)
+            .filter(|_| now > last.time);
+        let run_on = |(course, since): (Course, f64)| {
+            let latest = held.latest.unwrap_or(since).min(course.end());
+            (course, latest.max(since + gone))
+        };
         let order = Order {
             timing: Timing::OutOfOrder,
+            off_plan: off.and_then(|(((course, since), robot), shield)| {
+                shield.refuted(&course, since, &robot)
+            }),
+            clock_set_back: held.set_back,
             oldest: last.order.oldest + gone,
-            ..self.rest(course.map(|(course, since)| (course, since + gone)))
+            ..self.rest(course.map(run_on))
         };
         self.last = Some(Last {
-            clock,
+            clock: now,
+            restarted: if now < last.clock {
+                now
+            } else {
+                last.restarted.min(now)
+            },
+            set_back: last.set_back || held.set_back.is_some(),
             order,
             ..last
         });
@@ -432,13 +401,21 @@ impl Controller {
             taken_over: false,
             timing: Timing::Lost,
             arrived: self.last.is_some_and(|last| last.order.arrived),
+            clock_set_back: None,
             oldest: 0.0,
+            unknown_beams: self.unknown_beams(),
         }
     }
 
     fn oldest(&self, now: f64) -> f64 {
-        let people = self.bodies.iter().zip(self.since(now));
+        let known = self.since(now).zip(&self.hidden);
+        let ages = known.map(|(since, hidden)| if *hidden < ANY { since } else { f64::INFINITY });
+        let people = self.bodies.iter().zip(ages);
         let present = people.filter(|(body, _)| body.state.present);
-        present.map(|(_, since)| since).fold(0.0, f64::max)
+        present.map(|(_, age)| age).fold(0.0, f64::max)
+    }
+
+    fn unknown_beams(&self) -> usize {
+        self.scans.as_ref().map_or(0, Scans::unknown)
     }
 }

@@ -31,7 +31,8 @@ class ShieldDecision:
     velocity : ndarray, shape (2,)
         Velocity in m/s that is commanded.
     status : str
-        ``"kept"``, ``"changed"`` or ``"braking"``.
+        ``"kept"``, ``"changed"`` or ``"braking"``; ``"not_guaranteed"`` in place of the first two where somebody is
+        `faster`.
     wanted_gap, gap : float
         Least distance in m between the half disc ahead of the robot and everywhere that people can be,
         over the plans behind the wanted velocity, as far as it is reached, and behind the commanded one;
@@ -211,6 +212,8 @@ class Shield(Parameters):
         )
         most = self.person_speed + (self.velocity_error or 0.0)
         faster = tuple(index for index, speed in enumerate(speeds.tolist()) if math.hypot(*speed) > most)
+        if faster and status != "braking":
+            status = "not_guaranteed"
         return ShieldDecision(velocity=np.array(found), status=status, wanted_gap=gaps[0], gap=gaps[1], faster=faster)
 
 

@@ -114,6 +114,7 @@ impl SafeLaw {
                 status: Status::Kept,
                 course: None,
                 off_plan: None,
+                shield: family.shield,
             },
         })
     }
@@ -169,6 +170,7 @@ impl SafeLaw {
             status: decision.status,
             course: self.course,
             off_plan: now.off,
+            ..self.trace
         };
         let turned = self.twist_guard.is_some();
         let kept = decision.status == Status::Kept && wanted == asked && !turned;

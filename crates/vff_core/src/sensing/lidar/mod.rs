@@ -115,6 +115,21 @@ impl Lidar {
         (beam as f64 / gaps as f64 - 0.5) * self.field_of_view
     }
 
+    /// The beam that looks nearest to a point in the world from a pose; `None` outside the field of view.
+    fn beam_toward(&self, pose: &Frame, point: Vector2<f64>) -> Option<usize> {
+        let whole = self.field_of_view >= std::f64::consts::TAU;
+        let gaps = if whole { self.beams } else { self.beams - 1 };
+        let seen = pose.inward(point - pose.position);
+        let bearing = seen.y.atan2(seen.x);
+        let place = (bearing / self.field_of_view + 0.5) * gaps as f64;
+        if gaps == 0 {
+            return (bearing.abs() <= 0.5 * self.field_of_view).then_some(0);
+        }
+        let within = place >= -0.5 && place <= gaps as f64 + 0.5;
+        // The last beam of a whole turn is beside the first.
+        within.then(|| place.round() as usize % self.beams)
+    }
+
     /// Exact range of a beam along a unit vector among shapes that move, in m.
     #[must_use]
     pub fn range(&self, from: Vector2<f64>, along: Vector2<f64>, shapes: &[PlacedShape]) -> f64 {

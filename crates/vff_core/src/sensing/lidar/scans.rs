@@ -27,6 +27,12 @@ pub(crate) struct Scans {
     ranges: Vec<f64>,
     points: Vec<Vector2<f64>>,
     boundary: Vec<[f64; 2]>,
+    /// Points of scans that were told, with their instants in s.
+    told: Vec<(Vector2<f64>, f64)>,
+    /// When each point that a law is told of was scanned, in s.
+    instants: Vec<f64>,
+    /// How many beams of the last scan that was told read nothing at all.
+    unknown: usize,
 }
 
 impl Scans {
@@ -49,6 +55,9 @@ impl Scans {
             ranges: Vec::with_capacity(options.beams),
             points: Vec::with_capacity(options.beams),
             boundary: Vec::with_capacity(MOST_POINTS),
+            told: Vec::new(),
+            instants: Vec::new(),
+            unknown: 0,
             options,
         })
     }
@@ -71,6 +80,7 @@ impl Sensor for Scans {
         let actual = truth.frame();
         let options = &self.options;
         options.scan(&actual, &self.shapes, &mut self.noise, &mut self.ranges);
+        options.points(known, &self.ranges, &mut self.points);
         self.tell(known, bodies);
     }
 }
@@ -81,11 +91,28 @@ impl Scans {
         &self.obstacles
     }
 
-    /// Tells of a scan that was made elsewhere, in m.
+    /// When each point that a law is told of was scanned, in s.
+    pub fn instants(&self) -> &[f64] {
+        &self.instants
+    }
+
+    /// How many beams of the last scan that was told read nothing at all.
+    pub fn unknown(&self) -> usize {
+        self.unknown
+    }
+
+    /// Tells of a scan that was made elsewhere at a time in s; ranges in m, NaN where it is not known whether
+    /// anything was hit. What was seen there before stays, as old as it is, until another beam looks there.
     ///
     /// # Errors
     /// It has not one range for each beam, or one that no beam reads.
-    pub fn read(&mut self, ranges: &[f64], known: &Frame, bodies: &mut [Body]) -> Result<()> {
+    pub fn read(
+        &mut self,
+        ranges: &[f64],
+        time: f64,
+        known: &Frame,
+        bodies: &mut [Body],
+    ) -> Result<()> {
         if ranges.len() != self.options.beams {
             let rule = format!("have a range for each of {} beams", self.options.beams);
             let given = Given::Count(ranges.len() as u64);
@@ -93,16 +120,53 @@ impl Scans {
         }
         for (beam, range) in ranges.iter().enumerate() {
             // A beam that hits nothing may read infinity.
-            if range.is_nan() || *range < 0.0 {
-                let rule = "be at least 0, and infinite where nothing is hit";
+            if *range < 0.0 {
+                let rule =
+                    "be at least 0, infinite where nothing is hit, and NaN where that is not known";
                 let name = format!("scan[{beam}]");
                 return Err(Failure::invalid(&name, rule, Given::Number(*range)));
             }
         }
         self.ranges.clear();
         self.ranges.extend_from_slice(ranges);
+        self.unknown = ranges.iter().filter(|range| range.is_nan()).count();
+        let kept = self.still_unknown(known);
+        let options = &self.options;
+        options.points(known, &self.ranges, &mut self.points);
+        self.told.clear();
+        self.told
+            .extend(self.points.iter().map(|point| (*point, time)));
+        self.told.extend(kept);
+        self.points.clear();
+        self.points
+            .extend(self.told.iter().map(|(point, _)| *point));
         self.tell(known, bodies);
+        let instants = self.boundary.iter().map(|point| {
+            let same = |told: &&(Vector2<f64>, f64)| <[f64; 2]>::from(told.0) == *point;
+            self.told.iter().find(same).map_or(time, |told| told.1)
+        });
+        self.instants = instants.collect();
         Ok(())
+    }
+
+    /// The nearest point that was told of before, for each beam that reads nothing now.
+    fn still_unknown(&self, pose: &Frame) -> Vec<(Vector2<f64>, f64)> {
+        if self.unknown == 0 {
+            return Vec::new();
+        }
+        let mut kept: Vec<Option<(Vector2<f64>, f64)>> = vec![None; self.ranges.len()];
+        let away = |point: Vector2<f64>| (point - pose.position).norm_squared();
+        for told in &self.told {
+            let beam = self.options.beam_toward(pose, told.0);
+            let Some(beam) = beam.filter(|beam| self.ranges[*beam].is_nan()) else {
+                continue;
+            };
+            let place = &mut kept[beam];
+            if place.is_none_or(|other| away(told.0) < away(other.0)) {
+                *place = Some(*told);
+            }
+        }
+        kept.into_iter().flatten().collect()
     }
 
     /// Whether the last scan saw a place to be empty: beams go through the outline there, and none ends
@@ -118,7 +182,8 @@ impl Scans {
                 continue;
             }
             let far = (placed.center - pose.position).dot(&along) + radius;
-            if range.min(self.options.range_max) < far {
+            // Who reads nothing has not seen that nobody is there.
+            if range.is_nan() || range.min(self.options.range_max) < far {
                 return false;
             }
             // A beam beside a rectangle, though in the disc around it, tells nothing of it.
@@ -128,9 +193,7 @@ impl Scans {
     }
 
     fn tell(&mut self, known: &Frame, bodies: &mut [Body]) {
-        let options = &self.options;
-        options.points(known, &self.ranges, &mut self.points);
-        let (position, kappa) = (known.position, options.kappa);
+        let (position, kappa) = (known.position, self.options.kappa);
         boundary_points_of(
             &self.points,
             position,

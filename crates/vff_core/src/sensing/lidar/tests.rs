@@ -217,7 +217,9 @@ fn a_rectangle_is_gone_only_where_beams_would_have_hit_it() {
     };
     let pose = Frame::at([0.0, 0.0], 0.0);
     let mut scans = Scans::new(&empty_floor(), &options, 0).unwrap();
-    scans.read(&[f64::INFINITY; 91], &pose, &mut []).unwrap();
+    scans
+        .read(&[f64::INFINITY; 91], 0.0, &pose, &mut [])
+        .unwrap();
     // Along the left edge of the view, and all of it beyond: only the disc around it is in view.
     let gate =
         |center: [f64; 2]| PlacedShape::turned(center, [4.0, 0.1], std::f64::consts::FRAC_PI_4);

@@ -1,0 +1,92 @@
+//! What a controller is told, and what it orders.
+
+use crate::lanes::Vector2;
+use crate::laws::shield::{Course, Deviation, Status};
+use crate::robots::differential::Twist;
+use crate::world::geometry::RobotState;
+
+/// Where somebody was measured to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sighting {
+    /// Which obstacle of the scenario.
+    pub index: usize,
+    /// Center in m.
+    pub position: [f64; 2],
+    /// Velocity in m/s.
+    pub velocity: [f64; 2],
+    /// When, in s; `None` where only the update that tells of it is known.
+    pub time: Option<f64>,
+}
+
+/// What is told to a controller at an instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Observation<'a> {
+    /// When, in s.
+    pub time: f64,
+    /// The robot, `None` where it is not known.
+    pub robot: Option<RobotState<f64>>,
+    /// Its heading in rad.
+    pub heading: f64,
+    /// Whom a sensor has measured.
+    pub seen: &'a [Sighting],
+    /// Who is known to have left.
+    pub gone: &'a [usize],
+    /// Ranges of the beams of the lidar in m, NaN where nothing is known, if it has scanned.
+    pub scan: Option<&'a [f64]>,
+}
+
+/// What became of an update.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Timing {
+    /// It came in time.
+    Regular,
+    /// It came later than a period after the last one: the robot has to have braked until then.
+    Late,
+    /// It is not later than the last one, or the robot was measured to be farther on in its plan than the time tells,
+    /// and counts for nothing: the plan runs on to its end.
+    OutOfOrder,
+    /// The place of the robot is not known: it brakes.
+    Lost,
+}
+
+impl Timing {
+    /// Its word.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Regular => "regular",
+            Self::Late => "late",
+            Self::OutOfOrder => "out_of_order",
+            Self::Lost => "lost",
+        }
+    }
+}
+
+/// What a robot is to do until the next update.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Order {
+    /// Force in N.
+    pub force: Vector2<f64>,
+    /// Velocity at the next sample in m/s.
+    pub velocity: Vector2<f64>,
+    /// The same for two wheels.
+    pub twist: Option<Twist>,
+    /// The plan that the robot executes, and its time at the update, in s.
+    pub course: Option<(Course, f64)>,
+    /// How far the robot was measured to be from the plan before, if that refutes what the shield assumes.
+    pub off_plan: Option<Deviation>,
+    /// What the shield has done, if there is one.
+    pub status: Option<Status>,
+    /// Whether the law was taken over from.
+    pub taken_over: bool,
+    /// What became of the update.
+    pub timing: Timing,
+    /// Whether the robot is within the arrival tolerance of the goal.
+    pub arrived: bool,
+    /// By how much the clock was seen to be set back at least, in s.
+    pub clock_set_back: Option<f64>,
+    /// Age of the oldest measurement that counts, in s; infinite where it is not known.
+    pub oldest: f64,
+    /// Beams of the last scan that read nothing at all.
+    pub unknown_beams: usize,
+}
