@@ -26,3 +26,32 @@ def test_no_strict_fault_after_a_clock_was_set_back_beyond_the_last_update(wheel
     found = [episode(seed, wheels=wheels, period=period, set_back=(5.0, 9.0)) for seed in range(EPISODES)]
     assert [seed for seed, each in enumerate(found) if each.fault] == []
     assert sum(each.touched for each in found) > 0.2 * EPISODES
+
+
+@pytest.mark.parametrize("takes_all", [False, True], ids=["keeps its plan", "takes every answer"])
+@pytest.mark.parametrize("wheels", [False, True], ids=["holonomic", "two wheels"])
+@pytest.mark.parametrize("period", PERIODS)
+def test_no_strict_fault_after_a_clock_was_set_back_by_any_amount(wheels: bool, period: float, takes_all: bool) -> None:
+    options = {"wheels": wheels, "period": period, "set_back": (0.001, 9.0), "takes_all": takes_all}
+    found = [episode(seed, **options) for seed in range(EPISODES)]
+    assert [seed for seed, each in enumerate(found) if each.fault] == []
+    assert sum(each.touched for each in found) > 0.2 * EPISODES
+    assert sum(each.way for each in found) > 0.1 * EPISODES
+
+
+@pytest.mark.parametrize(
+    ("period", "wheels", "seeds"),
+    [
+        (0.01, False, (1602,)),
+        (0.1, False, (449, 480, 935, 1016, 1392, 2843)),
+        (0.3, False, (995,)),
+        (0.1, True, (449,)),
+        (0.3, True, (995, 2406)),
+    ],
+)
+def test_ages_that_a_clock_tells_too_short_lead_into_nobody(
+    period: float, wheels: bool, seeds: tuple[int, ...]
+) -> None:
+    """Each of these was a fault where ages and plans were counted by the clock alone."""
+    for seed in seeds:
+        assert not episode(seed, wheels=wheels, period=period, set_back=(0.001, 9.0)).fault

@@ -66,6 +66,21 @@ def test_every_refuted_assumption_reaches_the_status() -> None:
     assert (turned.accelerated, turned.status) == (("a",), "not_guaranteed")
 
 
+@pytest.mark.parametrize("lag", [0.06, 0.17, 0.5])
+def test_a_robot_that_does_late_what_it_is_told_is_off_its_plan(lag: float) -> None:
+    robot, orders = Driven(), list[tuple[float, float]]()
+    words = []
+    for k in range(20):
+        command = robot.controller.update(PERIOD * k, robot.place, robot.velocity)
+        words.append((command.robot_off_plan is not None, command.status))
+        orders.append(command.velocity)
+        late = k - round(lag / PERIOD)
+        robot.velocity = orders[late] if late >= 0 else (0.0, 0.0)
+        robot.place = robot.place[0] + PERIOD * robot.velocity[0], robot.place[1]
+    assert words[0] == (False, "kept")
+    assert words[1] == (True, "not_guaranteed")
+
+
 def test_a_robot_that_brakes_keeps_that_word() -> None:
     robot = Driven()
     for _ in range(12):

@@ -104,13 +104,13 @@ impl Controller {
     pub fn update(&mut self, told: &Observation<'_>, stop: Stop<'_>) -> Result<Order> {
         self.check(told)?;
         let mut now = told.time + self.lacking;
-        let more = match self.reckon(now, told.robot) {
-            Reckoned::Counts(more) => more,
+        let (more, reading) = match self.reckon(now, told.robot) {
+            Reckoned::Counts(more, reading) => (more, reading),
             Reckoned::Held(held) => return Ok(self.run_on(held, now, told.robot)),
             Reckoned::Restarts(lacking) => {
                 self.lacking += lacking;
                 now += lacking;
-                ANY
+                (ANY, None)
             }
         };
         let by_own_clock = |seen: &Sighting| Sighting {
@@ -125,7 +125,10 @@ impl Controller {
         };
         self.learn(&told, more);
         let order = match told.robot {
-            Some(robot) => self.decide(&told, robot, stop)?,
+            Some(robot) => {
+                let order = self.decide(&told, robot, stop)?;
+                self.run_on_if_off(order, now, reading)
+            }
             None => self.brake(told.time),
         };
         let before = self.last.map(|last| last.time);
@@ -344,7 +347,9 @@ impl Controller {
     /// the clock came on since the update before, a control period where it went back or stands, and at least as much
     /// as the robot can be farther on in its plan.
     fn run_on(&mut self, held: Held, now: f64, robot: Option<RobotState<f64>>) -> Order {
-        let last = held.last;
+        let Some(last) = self.last else {
+            return self.rest(None);
+        };
         let period = self.scenario.rules.control_period;
         let gone = now - last.clock;
         let gone = if gone < STANDS * period { period } else { gone };

@@ -64,6 +64,12 @@ impl Course {
         }
     }
 
+    /// The same plan, begun at another time in s.
+    #[must_use]
+    pub fn begun(self, begun: f64) -> Self {
+        Self { begun, ..self }
+    }
+
     /// Whether the rates are speed and turn rate.
     #[must_use]
     pub fn has_wheels(&self) -> bool {

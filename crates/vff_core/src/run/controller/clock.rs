@@ -6,7 +6,7 @@
 //! much as the robot can be farther on in its plan; at rest by a control period if the update comes as regularly as
 //! others (one was lost while the clock was set back), otherwise by any time.
 
-use crate::laws::shield::{Course, Shield};
+use crate::laws::shield::{Course, Reading, Shield, Status};
 use crate::run::controller::Controller;
 use crate::run::controller::told::Order;
 use crate::world::geometry::RobotState;
@@ -58,7 +58,6 @@ impl Last {
 /// An update that counts for nothing.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Held {
-    pub last: Last,
     /// Time of the plan at which the robot can be at the latest, in s; infinite at its end, `None` where it is not known.
     pub latest: Option<f64>,
     /// By how much the clock was set back at least, in s.
@@ -68,8 +67,9 @@ pub(super) struct Held {
 /// What becomes of an update.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Reckoned {
-    /// It counts, and so much more time than the clock tells may have gone by since the last one that did, in s.
-    Counts(f64),
+    /// It counts, and so much more time than the clock tells may have gone by since the last one that did, in s; the
+    /// times of its plan at which the robot can be, if it is at any.
+    Counts(f64, Option<Reading>),
     /// It counts for nothing.
     Held(Held),
     /// The clock was set back for good, and the plan has ended since, whatever it tells: the update counts, and so much
@@ -80,8 +80,8 @@ pub(super) enum Reckoned {
 impl Controller {
     /// What becomes of an update at a time in s.
     pub(super) fn reckon(&self, now: f64, robot: Option<RobotState<f64>>) -> Reckoned {
-        let Some(last) = self.last else {
-            return Reckoned::Counts(0.0);
+        let Some(last) = &self.last else {
+            return Reckoned::Counts(0.0, None);
         };
         let verified = last.verified();
         if now <= last.time {
@@ -95,13 +95,12 @@ impl Controller {
                 return Reckoned::Restarts(last.time - last.restarted);
             }
             return Reckoned::Held(Held {
-                last,
                 latest,
                 set_back: (now < last.time).then_some(last.time - now),
             });
         }
         let Some((shield, course)) = verified else {
-            return Reckoned::Counts(0.0);
+            return Reckoned::Counts(0.0, None);
         };
         let resting = if last.regular(now, course.period()) {
             course.period()
@@ -109,26 +108,43 @@ impl Controller {
             ANY
         };
         let Some(robot) = robot else {
-            return Reckoned::Counts(resting);
+            return Reckoned::Counts(resting, None);
         };
         let since = course.since(now);
         // The robot is off its plan at any time of it, whatever the clock tells.
         let Some(reading) = shield.reading(&course, since, &robot) else {
-            return Reckoned::Counts(0.0);
+            return Reckoned::Counts(0.0, None);
         };
         // Who is slower than planned can have slipped; who is ahead has had more time.
         let off = shield.refuted(&course, since, &robot);
         if off.is_some_and(|off| off.position > 0.0) {
             return Reckoned::Held(Held {
-                last,
                 latest: Some(reading.latest),
                 set_back: Some(reading.earliest - since),
             });
         }
-        Reckoned::Counts(if reading.latest == f64::INFINITY {
+        let more = if reading.latest == f64::INFINITY {
             resting
         } else {
             reading.latest - since
-        })
+        };
+        Reckoned::Counts(more, Some(reading))
+    }
+
+    /// Where nothing is verified for a robot that may be farther on in its plan: the plan runs on from there.
+    pub(super) fn run_on_if_off(&self, order: Order, now: f64, reading: Option<Reading>) -> Order {
+        let last = self.last.as_ref().and_then(Last::verified);
+        let braking = order.status == Some(Status::Braking) && order.off_plan.is_some();
+        let Some(((_, course), reading)) = last.zip(reading).filter(|_| braking) else {
+            return order;
+        };
+        let since = reading.latest.min(course.end());
+        Order {
+            timing: order.timing,
+            off_plan: order.off_plan,
+            arrived: order.arrived,
+            oldest: order.oldest,
+            ..self.rest(Some((course.begun(now - since), since)))
+        }
     }
 }

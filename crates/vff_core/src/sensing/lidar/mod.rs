@@ -127,7 +127,8 @@ impl Lidar {
         }
         let within = place >= -0.5 && place <= gaps as f64 + 0.5;
         // The last beam of a whole turn is beside the first.
-        within.then(|| place.round() as usize % self.beams)
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        within.then(|| place.round().max(0.0) as usize % self.beams)
     }
 
     /// Exact range of a beam along a unit vector among shapes that move, in m.
