@@ -4,7 +4,6 @@ use crate::crowd::agent::SHORTEST;
 use crate::crowd::divergence::is_finite;
 use crate::crowd::neighbors::others::parted;
 pub(super) use crate::crowd::neighbors::pairs::{Each, WIDTH};
-use crate::crowd::velocity_programs::VelocityPrograms;
 use crate::lanes::{LaneMask, Mask, Number, Planar, Real, Truth, Vector2, Zero};
 
 /// Most people and robots who are compared with each other without lists.
@@ -66,17 +65,6 @@ pub(super) struct AgentLanes {
     pub intentions: Vec<Intention>,
     /// Places of two who may be near each other: a person, and another one who comes later, then a robot.
     pub pairs: Vec<(usize, usize)>,
-}
-
-/// Room that decisions in lanes need, used again and again.
-#[derive(Clone, Debug, Default)]
-pub(super) struct LaneRoom {
-    /// How long a decision holds, in s.
-    pub step: f64,
-    /// Ways that everybody takes, in m.
-    pub ways: Vec<Vectors>,
-    /// Programs for the velocity of everybody.
-    pub programs: VelocityPrograms,
 }
 
 impl AgentLanes {

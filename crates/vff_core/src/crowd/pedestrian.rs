@@ -2,13 +2,14 @@
 
 use crate::arguments::Named;
 use crate::crowd::agent::{Agent, SHORTEST};
-use crate::crowd::agent_lanes::{AgentLanes, LaneRoom, Vectors};
+use crate::crowd::agent_lanes::{AgentLanes, Vectors};
 use crate::crowd::neighbors::Neighbors;
 use crate::crowd::neighbors::grid::Period;
 use crate::crowd::neighbors::mutual::Mutual;
 use crate::crowd::neighbors::nearest::Nearest;
 use crate::crowd::neighbors::others::Each;
 use crate::crowd::neighbors::pairs::PairQueue;
+use crate::crowd::velocity_programs::LaneRoom;
 use crate::crowd::walls::Wall;
 use crate::lanes::Vector2;
 use crate::laws::planning::half_planes::{HalfPlane, Solver};

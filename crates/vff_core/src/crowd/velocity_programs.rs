@@ -69,6 +69,17 @@ impl Default for VelocityPrograms {
     }
 }
 
+/// Room that decisions in lanes need, used again and again.
+#[derive(Clone, Debug, Default)]
+pub(super) struct LaneRoom {
+    /// How long a decision holds, in s.
+    pub step: f64,
+    /// Ways that everybody takes, in m.
+    pub ways: Vec<Vectors>,
+    /// Programs for the velocity of everybody.
+    pub programs: VelocityPrograms,
+}
+
 impl VelocityPrograms {
     /// Nothing constrains any of so many people.
     pub fn open(&mut self, people: usize) {

@@ -4,11 +4,12 @@
 //! Learners step a thousand small worlds by turns. In lanes of their own no list of pairs has to be made, and what
 //! five people compare fills all lanes. Every decision has the bits of [`Snapshot`](crate::crowd::snapshot::Snapshot).
 
-use crate::crowd::agent_lanes::{AgentLanes, FEW, LaneRoom, Vectors, WIDTH};
+use crate::crowd::agent_lanes::{AgentLanes, FEW, Vectors, WIDTH};
 use crate::crowd::models::Model;
 use crate::crowd::neighbors::grid::Period;
 use crate::crowd::people::{PersonState, Presence};
 use crate::crowd::simulation::Simulation;
+use crate::crowd::velocity_programs::LaneRoom;
 use crate::crowd::world::{CrowdWorld, PersonSetup, Waypoint};
 use crate::lanes::{LaneMask, Real, Truth, Vector2, vectors};
 

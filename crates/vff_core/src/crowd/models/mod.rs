@@ -9,13 +9,14 @@ pub mod social_force_1995;
 pub mod social_force_2000;
 
 use crate::arguments::{Arguments, Named};
-use crate::crowd::agent_lanes::{AgentLanes, LaneRoom, Vectors};
+use crate::crowd::agent_lanes::{AgentLanes, Vectors};
 use crate::crowd::models::collision_free_speed::CollisionFreeSpeed;
 use crate::crowd::models::moussaid::Moussaid;
 use crate::crowd::models::reciprocal_people::ReciprocalPeople;
 use crate::crowd::models::social_force_1995::SocialForce1995;
 use crate::crowd::models::social_force_2000::SocialForce2000;
 use crate::crowd::pedestrian::{Around, Decision, Pedestrian, Room, Walker};
+use crate::crowd::velocity_programs::LaneRoom;
 use crate::error::{Failure, Given, Result};
 use crate::lanes::Vector2;
 

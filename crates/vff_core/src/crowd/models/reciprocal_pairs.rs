@@ -1,11 +1,11 @@
 //! A few people who avoid each other reciprocally, each pair of them looked at once.
 
-use crate::crowd::agent_lanes::{self, AgentLanes, LaneRoom};
+use crate::crowd::agent_lanes::{self, AgentLanes};
 use crate::crowd::models::reciprocal_people::{DiscPair, ReciprocalPeople, away, permitted};
 use crate::crowd::neighbors::mutual::Known;
 use crate::crowd::neighbors::pairs::Each;
 use crate::crowd::pedestrian::{Around, Decision, Room, Walker, awareness_of, deciding};
-use crate::crowd::velocity_programs::{Objective, VelocityPrograms};
+use crate::crowd::velocity_programs::{LaneRoom, Objective, VelocityPrograms};
 use crate::lanes::{Number, Planar, Real, Truth, Vector2};
 use crate::laws::planning::half_planes::HalfPlane;
 

@@ -5,11 +5,12 @@
 
 use crate::arguments::{Arguments, Named};
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::agent_lanes::{AgentLanes, LaneRoom, Vectors};
+use crate::crowd::agent_lanes::{AgentLanes, Vectors};
 use crate::crowd::models::parameters::Parameters;
 use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::neighbors::others::{Each, WIDTH, apart};
 use crate::crowd::pedestrian::{Around, Decision, Pedestrian, Room, Walker};
+use crate::crowd::velocity_programs::LaneRoom;
 use crate::error::{Result, at_most};
 use crate::lanes::{Planar, Real, Truth, Vector2};
 use crate::laws::planning::half_planes::HalfPlane;

@@ -5,13 +5,14 @@
 
 use crate::arguments::{Arguments, Named};
 use crate::crowd::agent::SHORTEST;
-use crate::crowd::agent_lanes::{AgentLanes, LaneRoom, Pair, Vectors};
+use crate::crowd::agent_lanes::{AgentLanes, Pair, Vectors};
 use crate::crowd::models::parameters::Parameters;
 use crate::crowd::neighbors::others::Each;
 use crate::crowd::neighbors::{Neighbors, Unnoticed};
 use crate::crowd::pedestrian::{
     Around, Decision, Pedestrian, Room, Walker, awareness_of, deciding, drive, drives,
 };
+use crate::crowd::velocity_programs::LaneRoom;
 use crate::crowd::walls::pushes;
 use crate::error::Result;
 use crate::lanes::{Planar, Real, Truth, Vector2};
