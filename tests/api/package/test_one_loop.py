@@ -17,8 +17,6 @@ KERNELS = {"run/rollout.rs", "run/lanes/rollout.rs"}
 WITHOUT_EPISODE = {"robots/differential/track.rs", "robots/wheels/open_loop.rs"}
 # Periods of the wheels' own controllers within a motion step.
 WITHIN_A_STEP = {"robots/drives/driven.rs"}
-# The least distance on a path that is over: nothing moves.
-LOOKS_BACK = {"run/runs/path.rs"}
 # Steps of worlds, each by the loop, between two commands of a learner.
 BETWEEN_COMMANDS = {"crowd/environments/block.rs"}
 # A loop over steps or instants: counted, or as long as something runs.
@@ -57,7 +55,7 @@ def test_time_is_stepped_in_one_place() -> None:
     # A crowd is an episode of the loop; its metrics look back on what is over.
     stepped = {name: text for name, text in SOURCES.items() if name.startswith(("run/", "robots/", "crowd/"))}
     found = {name for name, text in stepped.items() if TIME_LOOP.search(text) and "crowd/metrics" not in name}
-    assert found == {LOOP} | KERNELS | WITHOUT_EPISODE | WITHIN_A_STEP | LOOKS_BACK | BETWEEN_COMMANDS
+    assert found == {LOOP} | KERNELS | WITHOUT_EPISODE | WITHIN_A_STEP | BETWEEN_COMMANDS
 
 
 def test_only_the_loop_moves_and_senses() -> None:
