@@ -456,9 +456,9 @@ mod tests {
     #[test]
     fn straight_lines_between_samples_are_told_from_samples() {
         let coarse = [0.0, 0.0, 30.0, 55.0, 40.0, 10.0, 0.0, 0.0];
-        let fine: Vec<f64> = (0..70)
+        let fine: Vec<f64> = (0..70_u32)
             .map(|index| {
-                let (cell, share) = (index / 10, f64::from(index as u32 % 10) / 10.0);
+                let (cell, share) = ((index / 10) as usize, f64::from(index % 10) / 10.0);
                 coarse[cell] + share * (coarse[cell + 1] - coarse[cell])
             })
             .collect();
