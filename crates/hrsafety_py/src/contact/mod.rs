@@ -10,7 +10,7 @@ use impact_core::allowed::{
     Room, Row, SPEEDS, Setup, SpeedStatus, THICKNESSES, ThicknessStatus, collide_rows,
     differential_mass, exceedance, holonomic_mass, speed_rows, thickness_rows,
 };
-use impact_core::collision::{Status, Wanted};
+use impact_core::collision::{CollisionStatus, Wanted};
 use impact_core::columns::Column;
 use impact_core::covering::Table;
 use numeric::error::{Failure, Given as Shown};
@@ -105,7 +105,7 @@ pub fn contact_names() -> Vec<&'static str> {
 #[pyfunction]
 pub fn contact_words() -> [Vec<&'static str>; 3] {
     [
-        Status::ALL.map(Status::word).to_vec(),
+        CollisionStatus::ALL.map(CollisionStatus::word).to_vec(),
         SpeedStatus::ALL.map(SpeedStatus::word).to_vec(),
         ThicknessStatus::ALL.map(ThicknessStatus::word).to_vec(),
     ]

@@ -147,7 +147,7 @@ pub struct Allowed {
 
 /// A contact at rest: what stores energy, and what is limited.
 #[derive(Clone, Copy, Debug)]
-pub struct Contact<'a> {
+pub struct LimitedContact<'a> {
     /// Mass of the robot, in kg, which may be infinite.
     pub robot_mass: f64,
     /// Mass of the body, in kg; infinite: clamped.
@@ -221,7 +221,7 @@ impl Limits {
     }
 }
 
-impl Contact<'_> {
+impl LimitedContact<'_> {
     /// Force and compression at each limit; `None` where it is not there or beyond the data.
     #[must_use]
     pub fn at_limits(&self) -> [Option<(f64, f64)>; 3] {

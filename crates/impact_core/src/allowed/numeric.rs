@@ -5,7 +5,9 @@ use std::cell::Cell;
 use numeric::threads::Interrupted;
 
 use super::{Allowed, Governs, Limits, SpeedStatus};
-use crate::collision::{Body, Collision, Outcome, Region, Status, Wanted, rest_of, simulate};
+use crate::collision::{
+    Collision, CollisionStatus, Outcome, Region, SupportedBody, Wanted, rest_of, simulate,
+};
 use crate::covering::Shape;
 
 /// Speeds that are looked at where loads might fall with the speed, in m/s.
@@ -27,8 +29,8 @@ fn shares(
 ) -> [f64; 3] {
     match outcome.status {
         // More than the covering's law describes.
-        Status::BeyondData => return [f64::NAN, f64::NAN, f64::INFINITY],
-        Status::Unfinished => return [f64::NAN; 3],
+        CollisionStatus::BeyondData => return [f64::NAN, f64::NAN, f64::INFINITY],
+        CollisionStatus::Unfinished => return [f64::NAN; 3],
         _ => (),
     }
     let over = |load: f64, limit: Option<f64>| limit.map_or(f64::NAN, |limit| load / limit);
@@ -79,7 +81,7 @@ fn bounds(
 
 /// Whether a support or a set point pushes.
 fn is_held(collision: &Collision<'_>) -> bool {
-    let held = |body: &Body| body.damping > 0.0 || body.stiffness > 0.0;
+    let held = |body: &SupportedBody| body.damping > 0.0 || body.stiffness > 0.0;
     held(&collision.robot) || held(&collision.body) || collision.stop.is_some()
 }
 

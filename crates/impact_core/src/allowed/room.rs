@@ -19,14 +19,14 @@ pub struct Room<'a> {
 }
 
 /// Columns of some rows.
-pub(super) struct Piece<'a, const N: usize> {
+pub(super) struct RowColumns<'a, const N: usize> {
     pub(super) first: usize,
     pub(super) numbers: [&'a mut [f64]; N],
     pub(super) status: &'a mut [u8],
     pub(super) word: &'a mut [u8],
 }
 
-impl<const N: usize> Piece<'_, N> {
+impl<const N: usize> RowColumns<'_, N> {
     pub(super) fn put(&mut self, place: usize, (numbers, status, word): ([f64; N], u8, u8)) {
         for (column, number) in self.numbers.iter_mut().zip(numbers) {
             column[place] = number;
@@ -41,7 +41,7 @@ impl Room<'_> {
     pub(super) fn fill<const N: usize>(
         self,
         work: Work<'_>,
-        fill: impl Fn(&mut Piece<'_, N>) -> Result<()> + Sync + Send,
+        fill: impl Fn(&mut RowColumns<'_, N>) -> Result<()> + Sync + Send,
     ) -> Result<()> {
         let rows = self.status.len();
         let fits = |column: &&mut [f64]| column.len() == rows;
@@ -58,7 +58,7 @@ impl Room<'_> {
             codes
                 .zip(self.word.chunks_mut(BLOCK))
                 .enumerate()
-                .map(|(index, (status, word))| Piece {
+                .map(|(index, (status, word))| RowColumns {
                     first: index * BLOCK,
                     numbers: columns
                         .each_mut()

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Limits;
-use crate::collision::{Body, Region};
+use crate::collision::{Region, SupportedBody};
 use crate::covering::{GibsonAshby, Material, Table};
 use crate::error::{Result, positive};
 
@@ -210,8 +210,8 @@ impl Row {
             .map_err(|failure| failure.within("covering.material"))
     }
 
-    pub(super) fn body(&self, [mass, damping, stiffness]: [usize; 3]) -> Body {
-        Body {
+    pub(super) fn body(&self, [mass, damping, stiffness]: [usize; 3]) -> SupportedBody {
+        SupportedBody {
             mass: self.0[mass],
             damping: self.0[damping],
             stiffness: self.0[stiffness],

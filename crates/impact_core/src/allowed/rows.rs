@@ -2,11 +2,11 @@
 
 use numeric::parallel::Work;
 
-use super::room::{Piece, Room};
+use super::room::{Room, RowColumns};
 use super::row::{CALLED, COUNT, FIRST_MATERIAL, MASSES, NAMES, OPTIONAL, Row, is_of_law};
-use super::setup::{Known, Setup};
+use super::setup::{PreparedContact, Setup};
 use super::{Governs, SpeedStatus, ThicknessStatus};
-use crate::collision::{Outcome, Status, Wanted, simulate_all};
+use crate::collision::{CollisionStatus, Outcome, Wanted, simulate_all};
 use crate::columns::Column;
 use crate::covering::Material;
 use crate::error::{Failure, Given as Shown, Result};
@@ -98,14 +98,14 @@ fn code_of(place: usize) -> u8 {
 type Found<const N: usize> = ([f64; N], usize, u8);
 
 /// What rows are made of, with the law of all of them where it does not differ.
-struct Rows<'a> {
+struct RowInputs<'a> {
     setup: &'a Setup,
     given: &'a Given<'a>,
     varying: Vec<usize>,
     fixed: Option<Result<Option<Material>>>,
 }
 
-impl<'a> Rows<'a> {
+impl<'a> RowInputs<'a> {
     fn new(setup: &'a Setup, given: &'a Given<'a>) -> Self {
         let shared = given.rows > 0 && !given.varies();
         Self {
@@ -152,12 +152,12 @@ impl Kinds {
 ///
 /// What is remembered of a row is there for the next one as long as rows differ in their masses only.
 fn each_row<const N: usize, M: Default>(
-    rows: &Rows<'_>,
+    rows: &RowInputs<'_>,
     (kinds, room): (Kinds, Room<'_>),
     work: Work<'_>,
     of: impl Fn(&Row, Option<&Material>, &mut M) -> Result<Found<N>> + Sync + Send,
 ) -> Result<()> {
-    room.fill(work, |piece: &mut Piece<'_, N>| {
+    room.fill(work, |piece: &mut RowColumns<'_, N>| {
         let (mut row, mut remembered) = (rows.given.row(piece.first), M::default());
         for place in 0..piece.status.len() {
             if (work.interrupted)() {
@@ -223,12 +223,12 @@ pub fn collide_rows(
     wanted: Wanted,
     (work, room): (Work<'_>, Room<'_>),
 ) -> Result<()> {
-    let rows = Rows::new(setup, given);
+    let rows = RowInputs::new(setup, given);
     let kinds = Kinds {
-        words: Status::ALL.len(),
+        words: CollisionStatus::ALL.len(),
         nothing: 0,
     };
-    room.fill(work, |piece: &mut Piece<'_, 14>| {
+    room.fill(work, |piece: &mut RowColumns<'_, 14>| {
         for first in (0..piece.status.len()).step_by(TOGETHER) {
             let places = first..piece.status.len().min(first + TOGETHER);
             let pads: Vec<_> = places
@@ -271,7 +271,11 @@ pub fn collide_rows(
 fn loads(found: &Outcome) -> Found<14> {
     let bottomed = BOTTOMED * u8::from(found.bottomed);
     let word = bottomed + RISING * u8::from(found.rising);
-    (found.loads(), place_of(&Status::ALL, &found.status), word)
+    (
+        found.loads(),
+        place_of(&CollisionStatus::ALL, &found.status),
+        word,
+    )
 }
 
 /// Allowed speeds of all rows; the second code is the place of what governs.
@@ -285,10 +289,10 @@ pub fn speed_rows(setup: &Setup, given: &Given<'_>, work: Work<'_>, room: Room<'
         nothing,
     };
     each_row(
-        &Rows::new(setup, given),
+        &RowInputs::new(setup, given),
         (kinds, room),
         work,
-        |row, fixed, known: &mut Option<Known>| {
+        |row, fixed, known: &mut Option<PreparedContact>| {
             let (found, bare) = setup.allowed(row, fixed, known, work.interrupted)?;
             let [force, pressure, strain] = found.speeds;
             let governs = code_of(place_of(&Governs::ALL, &found.governs));
@@ -322,7 +326,7 @@ pub fn thickness_rows(
         words: ThicknessStatus::ALL.len(),
         nothing: 0,
     };
-    let rows = Rows::new(setup, given);
+    let rows = RowInputs::new(setup, given);
     each_row(&rows, (kinds, room), work, |row, fixed, (): &mut ()| {
         let found = setup.thickness(row, fixed)?;
         let status = place_of(&ThicknessStatus::ALL, &found.status);

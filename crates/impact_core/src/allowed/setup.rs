@@ -9,15 +9,15 @@ use super::row::{
     STOP_TIME, THICKNESS, UNLOADING_EXPONENT, given,
 };
 use super::{
-    Allowed, Contact, Limits, SpeedStatus, Stored, Thickness, least_thickness, numeric_speed,
+    Allowed, LimitedContact, Limits, SpeedStatus, Stored, Thickness, least_thickness, numeric_speed,
 };
-use crate::collision::{Collision, Outcome, Region, Stop, Wanted, simulate};
+use crate::collision::{Braking, Collision, Outcome, Region, Wanted, simulate};
 use crate::covering::{Bottoming, Covering, Material, Pad, Rate, Shape, Unloading};
 use crate::error::{Failure, Given as Shown, Result, positive};
 
 /// What is known of rows that differ in their masses only.
 #[derive(Clone, Debug)]
-pub struct Known {
+pub struct PreparedContact {
     pad: Option<Pad>,
     /// Energy of the bare region at the force limit in J, NaN without one.
     bare_energy: f64,
@@ -101,7 +101,7 @@ impl Setup {
     /// # Errors
     /// A number is out of its range.
     pub fn collision<'a>(&self, row: &Row, pad: Option<&'a Pad>) -> Result<Collision<'a>> {
-        let stop = given(row.0[STOP_TIME]).map(|time| Stop {
+        let stop = given(row.0[STOP_TIME]).map(|time| Braking {
             time,
             deceleration: row.0[STOP_DECELERATION],
         });
@@ -123,7 +123,7 @@ impl Setup {
     ///
     /// # Errors
     /// A number is out of its range.
-    pub fn contact<'a>(&self, row: &Row, pad: Option<&'a Pad>) -> Result<Contact<'a>> {
+    pub fn contact<'a>(&self, row: &Row, pad: Option<&'a Pad>) -> Result<LimitedContact<'a>> {
         row.check_masses()?;
         let region = row.region(self.kind.region)?;
         if pad.is_none() && region == Region::Rigid {
@@ -140,7 +140,7 @@ impl Setup {
         }
         let limits = row.limits();
         limits.check(pad)?;
-        Ok(Contact {
+        Ok(LimitedContact {
             robot_mass: row.0[ROBOT_MASS],
             body_mass: row.0[BODY_MASS],
             region,
@@ -169,7 +169,7 @@ impl Setup {
         &self,
         row: &Row,
         fixed: Option<&Material>,
-        known: &mut Option<Known>,
+        known: &mut Option<PreparedContact>,
         interrupted: Interrupted<'_>,
     ) -> Result<(Allowed, f64)> {
         let known = match known {
@@ -197,7 +197,7 @@ impl Setup {
     }
 
     /// What does not depend on the masses of a row.
-    fn known(&self, row: &Row, fixed: Option<&Material>) -> Result<Known> {
+    fn known(&self, row: &Row, fixed: Option<&Material>) -> Result<PreparedContact> {
         let pad = self.pad(row, fixed)?;
         let contact = self.contact(row, pad.as_ref())?;
         let bare_energy = match row.0[FORCE_LIMIT] {
@@ -209,7 +209,7 @@ impl Setup {
             .is_none_or(|pad| pad.covering.damping == 0.0 && pad.covering.rate.is_none());
         let held = [ROBOT_DAMPING, ROBOT_STIFFNESS, BODY_DAMPING, BODY_STIFFNESS];
         let free = held.iter().all(|place| row.0[*place] == 0.0) && row.0[STOP_TIME].is_nan();
-        Ok(Known {
+        Ok(PreparedContact {
             bare_energy,
             stored: contact.stored(),
             at_rest: elastic && free,

@@ -1,8 +1,8 @@
 use serde_json::Value;
 
 use super::{
-    Contact, Drive, Limits, clopper_pearson, differential_mass, holonomic_mass, least_thickness,
-    normal_probability, numeric_speed,
+    Drive, LimitedContact, Limits, clopper_pearson, differential_mass, holonomic_mass,
+    least_thickness, normal_probability, numeric_speed,
 };
 use crate::collision::reading::{collision, number_or, pad, region};
 use crate::collision::{Wanted, simulate};
@@ -19,8 +19,8 @@ fn limits(input: &Value) -> Limits {
     }
 }
 
-fn contact<'a>(input: &Value, pad: Option<&'a crate::covering::Pad>) -> Contact<'a> {
-    Contact {
+fn contact<'a>(input: &Value, pad: Option<&'a crate::covering::Pad>) -> LimitedContact<'a> {
+    LimitedContact {
         robot_mass: number_or(input, "robot_mass", f64::NAN),
         body_mass: number_or(input, "body_mass", f64::INFINITY),
         region: region(&input["region"]),

@@ -1,6 +1,6 @@
 //! Least thickness of a covering for a wanted speed.
 
-use super::Contact;
+use super::LimitedContact;
 use crate::covering::{Pad, Shape};
 
 /// Thicknesses that are looked at, in m.
@@ -45,10 +45,10 @@ pub struct Thickness {
 
 /// Least thickness of the contact's covering at which a speed is allowed.
 #[must_use]
-pub fn least_thickness(contact: &Contact<'_>, pad: &Pad, speed: f64) -> Thickness {
+pub fn least_thickness(contact: &LimitedContact<'_>, pad: &Pad, speed: f64) -> Thickness {
     let allows = |thickness: f64| {
         let other = pad.of_thickness(thickness);
-        let covered = Contact {
+        let covered = LimitedContact {
             pad: Some(&other),
             ..*contact
         };
@@ -100,7 +100,7 @@ pub fn least_thickness(contact: &Contact<'_>, pad: &Pad, speed: f64) -> Thicknes
 }
 
 /// `T = (mu v^2/2 - W_b(F))/(A w(e))` of a flat covering whose strain stays below its bottoming.
-fn flat(contact: &Contact<'_>, pad: &Pad, area: f64, speed: f64) -> Option<f64> {
+fn flat(contact: &LimitedContact<'_>, pad: &Pad, area: f64, speed: f64) -> Option<f64> {
     let covering = &pad.covering;
     let most = contact.limits.strain(pad);
     if covering.bottoming.stiffness > 0.0 && most > covering.bottoming.strain {

@@ -78,7 +78,7 @@ const INNER: [(usize, [f64; 4]); 12] = [
 ];
 
 /// A step that was taken.
-pub struct Step {
+pub struct CurveStep {
     from: [f64; 2],
     /// Its length.
     pub length: f64,
@@ -129,9 +129,9 @@ impl<R: Real> Steps<R> {
     }
 
     /// The step of one curve.
-    pub fn lane(&self, lane: usize) -> Step {
+    pub fn lane(&self, lane: usize) -> CurveStep {
         let of = |pair: [R; 2]| pair.map(|number| number.lane(lane));
-        Step {
+        CurveStep {
             from: of(self.from),
             length: self.length.lane(lane),
             slopes: self.slopes.map(of),
@@ -203,10 +203,10 @@ impl Inside {
     pub fn of(
         rates: impl Fn(f64, [f64; 2]) -> [f64; 2],
         at: f64,
-        step: &Step,
+        step: &CurveStep,
         last: [f64; 2],
     ) -> Self {
-        let Step {
+        let CurveStep {
             from,
             length,
             state,

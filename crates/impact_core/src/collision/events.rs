@@ -1,13 +1,13 @@
 //! Events of a collision: values that fall below zero.
 
 use super::Collision;
-use super::mechanics::{Carried, Local, Mechanics, Past, SPEED, State, TOTAL};
+use super::mechanics::{Carried, CollisionState, Local, Mechanics, Past, SPEED, TOTAL};
 use super::step::{Step, step};
 use crate::covering::Kinks;
 
 /// What can happen within a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Event {
+pub enum CollisionEvent {
     /// The bodies part.
     Release,
     /// `eps` turns.
@@ -24,13 +24,13 @@ pub enum Event {
 }
 
 /// Every event.
-const EVENTS: [Event; 6] = [
-    Event::Release,
-    Event::Turn,
-    Event::Kink { upwards: true },
-    Event::Kink { upwards: false },
-    Event::Largest,
-    Event::End,
+const EVENTS: [CollisionEvent; 6] = [
+    CollisionEvent::Release,
+    CollisionEvent::Turn,
+    CollisionEvent::Kink { upwards: true },
+    CollisionEvent::Kink { upwards: false },
+    CollisionEvent::Largest,
+    CollisionEvent::End,
 ];
 
 /// Compressions that matter, and on which side of them the motion is.
@@ -63,34 +63,34 @@ impl Marks {
     /// Value of an event and its rate; infinite where it cannot happen.
     fn value<const N: usize>(
         &self,
-        event: Event,
+        event: CollisionEvent,
         mechanics: &Mechanics<'_, N>,
         past: &Past,
-        (state, local): (&State<N>, &Local),
+        (state, local): (&CollisionState<N>, &Local),
     ) -> [f64; 2] {
         const NEVER: [f64; 2] = [f64::INFINITY, 0.0];
         let depth = [local.compression, local.compression_rate];
         let above = |mark: f64| [depth[0] - mark, depth[1]];
         let below = |mark: f64| [mark - depth[0], -depth[1]];
         match event {
-            Event::Release => release(mechanics, state, local),
-            Event::Turn => {
+            CollisionEvent::Release => release(mechanics, state, local),
+            CollisionEvent::Turn => {
                 let sign = if past.loading { 1.0 } else { -1.0 };
                 [sign * state[SPEED], sign * local.acceleration]
             }
-            Event::Kink { upwards: true } => {
+            CollisionEvent::Kink { upwards: true } => {
                 self.kinks.get(self.piece).copied().map_or(NEVER, below)
             }
-            Event::Kink { upwards: false } => match self.piece.checked_sub(1) {
+            CollisionEvent::Kink { upwards: false } => match self.piece.checked_sub(1) {
                 Some(index) => above(self.kinks[index]),
                 None => NEVER,
             },
-            Event::Largest => match self.largest {
+            CollisionEvent::Largest => match self.largest {
                 Some((mark, true)) => below(mark),
                 Some((mark, false)) => above(mark),
                 None => NEVER,
             },
-            Event::End => self.end.map_or(NEVER, below),
+            CollisionEvent::End => self.end.map_or(NEVER, below),
         }
     }
 }
@@ -98,7 +98,7 @@ impl Marks {
 /// What is left of the touch.
 fn release<const N: usize>(
     mechanics: &Mechanics<'_, N>,
-    state: &State<N>,
+    state: &CollisionState<N>,
     local: &Local,
 ) -> [f64; 2] {
     let collision: &Collision<'_> = mechanics.collision;
@@ -116,9 +116,9 @@ pub struct Start<'a, const N: usize> {
     /// Time, in s.
     pub time: f64,
     /// State.
-    pub state: &'a State<N>,
+    pub state: &'a CollisionState<N>,
     /// Its derivative.
-    pub rates: &'a State<N>,
+    pub rates: &'a CollisionState<N>,
     /// Forces there.
     pub local: &'a Local,
 }
@@ -131,10 +131,10 @@ pub fn first_event<const N: usize>(
     sizes: &Sizes,
     start: &Start<'_, N>,
     (mut taken, mut length): (Step<N>, f64),
-) -> (Option<Event>, Step<N>, f64) {
+) -> (Option<CollisionEvent>, Step<N>, f64) {
     let mut found = None;
     loop {
-        let mut first: Option<(Event, f64)> = None;
+        let mut first: Option<(CollisionEvent, f64)> = None;
         for event in EVENTS {
             if found == Some(event) {
                 continue;
@@ -172,10 +172,14 @@ pub fn first_event<const N: usize>(
     }
 }
 
-fn size_of<const N: usize>(event: Event, mechanics: &Mechanics<'_, N>, sizes: &Sizes) -> f64 {
+fn size_of<const N: usize>(
+    event: CollisionEvent,
+    mechanics: &Mechanics<'_, N>,
+    sizes: &Sizes,
+) -> f64 {
     let by = match event {
-        Event::Turn => sizes.speed,
-        Event::Release if mechanics.carried == Carried::Nothing => {
+        CollisionEvent::Turn => sizes.speed,
+        CollisionEvent::Release if mechanics.carried == Carried::Nothing => {
             if mechanics
                 .collision
                 .pad

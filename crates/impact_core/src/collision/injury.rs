@@ -1,6 +1,6 @@
 //! Head injury criterion of the motion of a body.
 
-use super::Node;
+use super::MotionSample;
 use crate::windows::injury;
 
 /// Nodes of the search for the best window.
@@ -11,7 +11,7 @@ const PIECES: usize = 256;
 /// Between the ends of a step the speed is the polynomial of degree 5 that has speed, acceleration and jerk
 /// of both.
 #[must_use]
-pub fn injury_of(steps: &[Node], width: f64) -> f64 {
+pub fn injury_of(steps: &[MotionSample], width: f64) -> f64 {
     let Some(last) = steps.last() else {
         return f64::NAN;
     };
@@ -28,7 +28,7 @@ pub fn injury_of(steps: &[Node], width: f64) -> f64 {
 }
 
 /// Speed and its first three derivatives between two nodes.
-fn between(first: &Node, last: &Node, time: f64) -> [f64; 4] {
+fn between(first: &MotionSample, last: &MotionSample, time: f64) -> [f64; 4] {
     let length = last.time - first.time;
     if length <= 0.0 {
         return [

@@ -1,6 +1,6 @@
 //! Forces and rates of a collision.
 
-use super::{Collision, Node, Region, Stop};
+use super::{Braking, Collision, MotionSample, Region};
 use crate::covering::{Pad, Shape};
 
 /// Place of `eps` in a state.
@@ -15,7 +15,7 @@ pub const BODY: usize = 3;
 pub const BODY_SPEED: usize = 4;
 
 /// State: `eps`, `eps'`, `d`, and `x_h`, `x_h'` where a support needs them.
-pub type State<const N: usize> = [f64; N];
+pub type CollisionState<const N: usize> = [f64; N];
 
 /// How covering and region share the compression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,7 +65,7 @@ pub struct Local {
 }
 
 /// Force of the covering without damper, and its derivatives over `d` and over `eps'`.
-struct Column {
+struct CoveringForce {
     force: f64,
     slope: f64,
     over_speed: f64,
@@ -119,7 +119,7 @@ impl<'a, const N: usize> Mechanics<'a, N> {
     }
 
     /// Velocity of the body.
-    pub fn body_speed(&self, state: &State<N>) -> f64 {
+    pub fn body_speed(&self, state: &CollisionState<N>) -> f64 {
         if N > BODY_SPEED {
             return state[BODY_SPEED];
         }
@@ -128,9 +128,9 @@ impl<'a, const N: usize> Mechanics<'a, N> {
         collision.reduced_mass() * self.body_share * (collision.closing_speed - state[SPEED])
     }
 
-    fn column(&self, pad: &Pad, compression: f64, speed: f64, past: &Past) -> Column {
+    fn column(&self, pad: &Pad, compression: f64, speed: f64, past: &Past) -> CoveringForce {
         let [force, slope] = pad.force(compression);
-        let mut column = Column {
+        let mut column = CoveringForce {
             force,
             slope,
             over_speed: 0.0,
@@ -154,7 +154,13 @@ impl<'a, const N: usize> Mechanics<'a, N> {
         column
     }
 
-    fn accelerations(&self, time: f64, state: &State<N>, force: f64, past: &Past) -> [f64; 2] {
+    fn accelerations(
+        &self,
+        time: f64,
+        state: &CollisionState<N>,
+        force: f64,
+        past: &Past,
+    ) -> [f64; 2] {
         let collision = self.collision;
         if N <= BODY_SPEED {
             let body = force * self.body_share;
@@ -178,7 +184,7 @@ impl<'a, const N: usize> Mechanics<'a, N> {
 
     /// Force and rates.
     #[inline]
-    pub fn local(&self, time: f64, state: &State<N>, past: &Past) -> Local {
+    pub fn local(&self, time: f64, state: &CollisionState<N>, past: &Past) -> Local {
         let (total, speed, part) = (state[TOTAL], state[SPEED], state[PART]);
         let region = self.collision.region;
         let mut local = Local::default();
@@ -275,7 +281,7 @@ impl<'a, const N: usize> Mechanics<'a, N> {
 
     /// Derivative of a state.
     #[inline]
-    pub fn rates(&self, state: &State<N>, local: &Local) -> State<N> {
+    pub fn rates(&self, state: &CollisionState<N>, local: &Local) -> CollisionState<N> {
         let mut rates = [0.0; N];
         rates[TOTAL] = state[SPEED];
         rates[SPEED] = local.acceleration;
@@ -291,7 +297,7 @@ impl<'a, const N: usize> Mechanics<'a, N> {
     }
 
     /// Pressure at the apex of a curved contact and its rate; NaN of flat ones.
-    pub fn apex(&self, state: &State<N>, local: &Local, past: &Past) -> [f64; 2] {
+    pub fn apex(&self, state: &CollisionState<N>, local: &Local, past: &Past) -> [f64; 2] {
         let Some(pad) = self.collision.pad else {
             return [f64::NAN; 2];
         };
@@ -320,7 +326,7 @@ impl<'a, const N: usize> Mechanics<'a, N> {
     }
 
     /// `x_h'''`.
-    pub fn body_jerk(&self, state: &State<N>, local: &Local) -> f64 {
+    pub fn body_jerk(&self, state: &CollisionState<N>, local: &Local) -> f64 {
         if N <= BODY_SPEED {
             return local.force_rate * self.body_share;
         }
@@ -332,8 +338,14 @@ impl<'a, const N: usize> Mechanics<'a, N> {
     }
 
     /// The motion as others see it.
-    pub fn node(&self, time: f64, state: &State<N>, local: &Local, past: &Past) -> Node {
-        Node {
+    pub fn node(
+        &self,
+        time: f64,
+        state: &CollisionState<N>,
+        local: &Local,
+        past: &Past,
+    ) -> MotionSample {
+        MotionSample {
             time,
             total_compression: state[TOTAL],
             closing_speed: state[SPEED],
@@ -356,7 +368,7 @@ fn steep(slope: f64, rate: f64) -> f64 {
 /// Set point of the robot and its speed.
 fn set_point(collision: &Collision<'_>, time: f64, past: &Past) -> [f64; 2] {
     let speed = collision.closing_speed;
-    let Some(Stop {
+    let Some(Braking {
         time: start,
         deceleration,
     }) = collision.stop

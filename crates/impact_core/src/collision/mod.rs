@@ -27,7 +27,7 @@ mod stored;
 #[cfg(test)]
 mod tests;
 
-pub use outcome::{Node, Outcome, Status};
+pub use outcome::{CollisionStatus, MotionSample, Outcome};
 pub use region::Region;
 pub use run::{INJURY_WINDOWS, Wanted, simulate, simulate_all};
 pub use statics::{Rest, rest_of};
@@ -46,7 +46,7 @@ const SHORTEST_RELAXATION: f64 = 1e-6;
 
 /// A body: its mass and what holds it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Body {
+pub struct SupportedBody {
     /// Mass, in kg; infinite where it cannot move or yield.
     pub mass: f64,
     /// Damping of its support, in N s/m.
@@ -55,7 +55,7 @@ pub struct Body {
     pub stiffness: f64,
 }
 
-impl Body {
+impl SupportedBody {
     /// A body that nothing holds.
     #[must_use]
     pub fn free(mass: f64) -> Self {
@@ -82,7 +82,7 @@ impl Body {
 
 /// The robot's set point brakes from a time on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stop {
+pub struct Braking {
     /// When, in s after the first touch.
     pub time: f64,
     /// Deceleration, in m/s^2.
@@ -93,9 +93,9 @@ pub struct Stop {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Collision<'a> {
     /// The robot.
-    pub robot: Body,
+    pub robot: SupportedBody,
     /// The body; clamped if its mass is infinite.
-    pub body: Body,
+    pub body: SupportedBody,
     /// Region of the body that is touched.
     pub region: Region,
     /// The covering; `None`: bare.
@@ -103,7 +103,7 @@ pub struct Collision<'a> {
     /// Closing speed, in m/s.
     pub closing_speed: f64,
     /// Stop of the set point.
-    pub stop: Option<Stop>,
+    pub stop: Option<Braking>,
     /// When it is left alone, in s.
     pub horizon: f64,
     /// Relative tolerance.

@@ -2,7 +2,7 @@
 
 /// How a collision ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Status {
+pub enum CollisionStatus {
     /// The bodies parted.
     Released,
     /// They touched until the horizon.
@@ -15,7 +15,7 @@ pub enum Status {
     Unfinished,
 }
 
-impl Status {
+impl CollisionStatus {
     /// All of them.
     pub const ALL: [Self; 5] = [
         Self::Released,
@@ -40,7 +40,7 @@ impl Status {
 
 /// The motion at one time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Node {
+pub struct MotionSample {
     /// Time, in s.
     pub time: f64,
     /// `eps`, in m.
@@ -67,7 +67,7 @@ pub struct Node {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     /// How it ended.
-    pub status: Status,
+    pub status: CollisionStatus,
     /// When it ended, in s.
     pub release_time: f64,
     /// Largest force, in N.
@@ -99,7 +99,7 @@ pub struct Outcome {
     /// Whether a load was largest at the horizon: its peak may come after it.
     pub rising: bool,
     /// The motion, if it was asked for.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<MotionSample>,
     /// Evaluations of the forces.
     pub evaluations: usize,
 }
@@ -107,7 +107,7 @@ pub struct Outcome {
 impl Outcome {
     /// Nothing happened, or nothing is known.
     #[must_use]
-    pub fn nothing(status: Status) -> Self {
+    pub fn nothing(status: CollisionStatus) -> Self {
         Self {
             status,
             release_time: f64::NAN,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use super::{Body, Collision, Region, Stop};
+use super::{Braking, Collision, Region, SupportedBody};
 use crate::covering::{
     Bottoming, Covering, GibsonAshby, Material, Pad, Rate, Shape, Table, Unloading,
 };
@@ -122,12 +122,12 @@ pub fn collision<'a>(input: &Value, pad: Option<&'a Pad>, tolerance: f64) -> Col
     let of = |name: &str| number_or(input, name, 0.0);
     let stop = numbers(&input["stop"]);
     Collision {
-        robot: Body {
+        robot: SupportedBody {
             mass: of("robot_mass"),
             damping: of("robot_damping"),
             stiffness: of("robot_stiffness"),
         },
-        body: Body {
+        body: SupportedBody {
             mass: number_or(input, "body_mass", f64::INFINITY),
             damping: of("body_damping"),
             stiffness: of("body_stiffness"),
@@ -135,7 +135,7 @@ pub fn collision<'a>(input: &Value, pad: Option<&'a Pad>, tolerance: f64) -> Col
         region: region(&input["region"]),
         pad,
         closing_speed: of("closing_speed"),
-        stop: stop.get(..2).map(|pair| Stop {
+        stop: stop.get(..2).map(|pair| Braking {
             time: pair[0],
             deceleration: pair[1],
         }),

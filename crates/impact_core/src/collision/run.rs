@@ -4,11 +4,13 @@ mod loads;
 
 use numeric::threads::Interrupted;
 
-use super::events::{Event, Marks, Sizes, Start, first_event};
+use super::events::{CollisionEvent, Marks, Sizes, Start, first_event};
 use super::injury::injury_of;
 use super::loading::Turn;
-use super::mechanics::{BODY_SPEED, Carried, Local, Mechanics, PART, Past, SPEED, State, TOTAL};
-use super::outcome::{Node, Outcome, Status};
+use super::mechanics::{
+    BODY_SPEED, Carried, CollisionState, Local, Mechanics, PART, Past, SPEED, TOTAL,
+};
+use super::outcome::{CollisionStatus, MotionSample, Outcome};
 use super::statics::rest_of;
 use super::step::{Step, step};
 use super::stored::{stored, turns};
@@ -46,7 +48,7 @@ pub fn simulate(
 ) -> Outcome {
     simulate_all(&[collision], wanted, interrupted)
         .pop()
-        .unwrap_or_else(|| Outcome::nothing(Status::Unfinished))
+        .unwrap_or_else(|| Outcome::nothing(CollisionStatus::Unfinished))
 }
 
 /// Loads of some collisions, each as alone, bit for bit.
@@ -61,7 +63,7 @@ pub fn simulate_all(
     let mut turns = turns(&some).into_iter();
     let each = collisions.iter().map(|collision| {
         if collision.closing_speed <= 0.0 {
-            Outcome::nothing(Status::NoImpact)
+            Outcome::nothing(CollisionStatus::NoImpact)
         } else if is_held(collision) {
             Run::<5>::new(collision, wanted).finish(wanted, interrupted)
         } else {
@@ -91,7 +93,7 @@ fn released(
             let outcome = moved(collision, wanted, interrupted);
             match exact {
                 // The motion was asked for as well: its loads are those without it, bit for bit.
-                Some(found) if outcome.status == Status::Released => Outcome {
+                Some(found) if outcome.status == CollisionStatus::Released => Outcome {
                     injury: outcome.injury,
                     nodes: outcome.nodes,
                     evaluations: outcome.evaluations,
@@ -140,13 +142,13 @@ struct Run<'a, const N: usize> {
     past: Past,
     marks: Marks,
     sizes: Sizes,
-    scales: State<N>,
+    scales: CollisionState<N>,
     time: f64,
-    state: State<N>,
-    rates: State<N>,
+    state: CollisionState<N>,
+    rates: CollisionState<N>,
     local: Local,
     peaks: [Peak; PEAKS],
-    nodes: Option<Vec<Node>>,
+    nodes: Option<Vec<MotionSample>>,
     evaluations: usize,
 }
 
@@ -246,24 +248,24 @@ impl<'a, const N: usize> Run<'a, N> {
         breaks
     }
 
-    fn travel(&mut self, interrupted: Interrupted<'_>) -> Status {
+    fn travel(&mut self, interrupted: Interrupted<'_>) -> CollisionStatus {
         let breaks = self.breaks();
         let mut next = breaks.iter().copied();
         let Some((mut until, mut changes)) = next.next() else {
-            return Status::Horizon;
+            return CollisionStatus::Horizon;
         };
         let mut length = 0.05 * self.sizes.length / self.sizes.speed;
         for index in 0..MOST_STEPS {
             if index % STEPS_OF_A_LOOK == 0 && interrupted() {
-                return Status::Unfinished;
+                return CollisionStatus::Unfinished;
             }
             while self.time >= until {
                 if !changes {
-                    return Status::Horizon;
+                    return CollisionStatus::Horizon;
                 }
                 self.past.braking = true;
                 let Some(following) = next.next() else {
-                    return Status::Horizon;
+                    return CollisionStatus::Horizon;
                 };
                 (until, changes) = following;
                 self.refresh();
@@ -289,7 +291,7 @@ impl<'a, const N: usize> Run<'a, N> {
                 };
                 length = tried * factor;
                 if length < 1e-14 * self.sizes.length / self.sizes.speed {
-                    return Status::Unfinished;
+                    return CollisionStatus::Unfinished;
                 }
                 continue;
             }
@@ -315,8 +317,8 @@ impl<'a, const N: usize> Run<'a, N> {
             };
             self.accept(taken, used, end, event);
             match event {
-                Some(Event::Release) => return Status::Released,
-                Some(Event::End) => return Status::BeyondData,
+                Some(CollisionEvent::Release) => return CollisionStatus::Released,
+                Some(CollisionEvent::End) => return CollisionStatus::BeyondData,
                 Some(event) => self.pass(event),
                 None => (),
             }
@@ -328,7 +330,7 @@ impl<'a, const N: usize> Run<'a, N> {
                 length = length.min(tried * growth).max(used);
             }
         }
-        Status::Unfinished
+        CollisionStatus::Unfinished
     }
 
     /// Largest error over its tolerance.
@@ -353,8 +355,8 @@ impl<'a, const N: usize> Run<'a, N> {
         worst
     }
 
-    fn accept(&mut self, mut taken: Step<N>, used: f64, end: f64, event: Option<Event>) {
-        if event == Some(Event::Turn) {
+    fn accept(&mut self, mut taken: Step<N>, used: f64, end: f64, event: Option<CollisionEvent>) {
+        if event == Some(CollisionEvent::Turn) {
             // The side before the turn: what belongs to rising compression still counts.
             taken.state[SPEED] = 0.0;
             taken.local = self.mechanics.local(end, &taken.state, &self.past);
@@ -410,22 +412,22 @@ impl<'a, const N: usize> Run<'a, N> {
     }
 
     /// The motion behind an event.
-    fn pass(&mut self, event: Event) {
+    fn pass(&mut self, event: CollisionEvent) {
         match event {
-            Event::Turn => {
+            CollisionEvent::Turn => {
                 self.past.loading = !self.past.loading;
                 if !self.past.loading && self.mechanics.forgets() {
                     self.remember();
                 }
             }
-            Event::Kink { upwards: true } => self.marks.piece += 1,
-            Event::Kink { upwards: false } => self.marks.piece -= 1,
-            Event::Largest => {
+            CollisionEvent::Kink { upwards: true } => self.marks.piece += 1,
+            CollisionEvent::Kink { upwards: false } => self.marks.piece -= 1,
+            CollisionEvent::Largest => {
                 if let Some((_, below)) = &mut self.marks.largest {
                     *below = !*below;
                 }
             }
-            Event::Release | Event::End => (),
+            CollisionEvent::Release | CollisionEvent::End => (),
         }
         self.refresh();
     }

@@ -1,6 +1,6 @@
 //! One step of the embedded Runge-Kutta pair of orders 5 and 4 of Dormand and Prince (1980).
 
-use super::mechanics::{Mechanics, Past, State};
+use super::mechanics::{CollisionState, Mechanics, Past};
 
 const NODES: [f64; 5] = [0.2, 0.3, 0.8, 8.0 / 9.0, 1.0];
 const STAGES: [[f64; 5]; 5] = [
@@ -44,11 +44,11 @@ const ERROR: [f64; 7] = [
 #[derive(Clone, Copy)]
 pub struct Step<const N: usize> {
     /// State at its end.
-    pub state: State<N>,
+    pub state: CollisionState<N>,
     /// Derivative there.
-    pub rates: State<N>,
+    pub rates: CollisionState<N>,
     /// Estimate of the error of each entry.
-    pub error: State<N>,
+    pub error: CollisionState<N>,
     /// Forces at its end.
     pub local: super::mechanics::Local,
 }
@@ -59,8 +59,8 @@ pub fn step<const N: usize>(
     mechanics: &Mechanics<'_, N>,
     past: &Past,
     time: f64,
-    state: &State<N>,
-    first: &State<N>,
+    state: &CollisionState<N>,
+    first: &CollisionState<N>,
     length: f64,
 ) -> Step<N> {
     let mut slopes = [[0.0; N]; 7];

@@ -8,7 +8,7 @@ use numeric::lanes::{Lanes, Number, Real, each, vectors};
 use pulp::{Simd, WithSimd};
 
 use super::loading::{Turn, first_exponent, smooth_power, turns_of};
-use super::outcome::{Outcome, Status};
+use super::outcome::{CollisionStatus, Outcome};
 use super::statics::rest_of;
 use super::{Collision, Region};
 use crate::covering::{Kinks, Pad, Shape, product};
@@ -108,14 +108,14 @@ fn integral(
 }
 
 /// Covering and region as one column that is compressed: the covering, or the region of a bare contact.
-struct Column<'a> {
+struct CompressedStack<'a> {
     pad: Option<&'a Pad>,
     region: Region,
     /// Work `w` of the law at the largest strain, where unloading returns less.
     largest_work: Option<f64>,
 }
 
-impl Column<'_> {
+impl CompressedStack<'_> {
     /// Stored work at compressions side by side, and `deps/dd`.
     #[inline(always)]
     fn at<R: Real>(&self, compression: R) -> [R; 2] {
@@ -192,7 +192,7 @@ impl Column<'_> {
             // As every other work, for their difference.
             all: self.at(Lanes::<2>::splat(largest))[0].lane(0),
             mass,
-            over: Over::Start { first, power },
+            over: Substitution::Start { first, power },
         };
         let mut time = integral([0.0, 1.0], goal, HALVINGS, &start)?;
         for pair in marks.windows(2) {
@@ -200,7 +200,7 @@ impl Column<'_> {
             if self.starts_with_half_power(from) {
                 from = 0.5 * (pair[0] + pair[1]);
                 let beyond = Late {
-                    over: Over::Beyond(pair[0]),
+                    over: Substitution::Beyond(pair[0]),
                     ..start
                 };
                 time += integral([0.0, (from - pair[0]).sqrt()], goal, HALVINGS, &beyond)?;
@@ -209,7 +209,7 @@ impl Column<'_> {
             let [near, far] = [pair[1], from].map(|mark| (largest - mark).max(0.0).sqrt());
             if far > near {
                 let left = Late {
-                    over: Over::Left(largest),
+                    over: Substitution::Left(largest),
                     ..start
                 };
                 time += integral([near, far], goal, HALVINGS, &left)?;
@@ -221,7 +221,7 @@ impl Column<'_> {
 
 /// What a compression is integrated over.
 #[derive(Clone, Copy)]
-enum Over {
+enum Substitution {
     /// `x` of `d = first x^power`.
     Start { first: f64, power: u32 },
     /// `x` of `d = kink + x^2`.
@@ -233,11 +233,11 @@ enum Over {
 /// Rate of the time over a variable.
 #[derive(Clone, Copy)]
 struct Late<'a> {
-    column: &'a Column<'a>,
+    column: &'a CompressedStack<'a>,
     /// Work at the largest compression.
     all: f64,
     mass: f64,
-    over: Over,
+    over: Substitution,
 }
 
 impl Integrand for Late<'_> {
@@ -245,13 +245,13 @@ impl Integrand for Late<'_> {
     fn at<R: Real>(&self, x: R) -> R {
         let two = R::splat(2.0);
         let (compression, change) = match self.over {
-            Over::Start { first, power } => {
+            Substitution::Start { first, power } => {
                 let first = R::splat(first);
                 let change = R::splat(f64::from(power)) * first * product(x, power - 1);
                 (first * product(x, power), change)
             }
-            Over::Beyond(kink) => (R::splat(kink) + x * x, two * x),
-            Over::Left(largest) => (R::splat(largest) - x * x, two * x),
+            Substitution::Beyond(kink) => (R::splat(kink) + x * x, two * x),
+            Substitution::Left(largest) => (R::splat(largest) - x * x, two * x),
         };
         let [work, rate] = self.column.at(compression);
         let speed = (two * (R::splat(self.all) - work) / R::splat(self.mass)).sqrt();
@@ -281,7 +281,7 @@ fn turned(collision: &Collision<'_>, moved: Option<&Turn>) -> Option<Turn> {
     if !(compression > 0.0 && total.is_finite() && bounded) {
         return None;
     }
-    let column = Column {
+    let column = CompressedStack {
         pad,
         region,
         largest_work: None,
@@ -350,7 +350,7 @@ pub fn stored(collision: &Collision<'_>, moved: Option<&Turn>) -> Option<Outcome
     };
     let (mut back, mut rebound) = (turn.time, speed);
     if lossy || rated {
-        let column = Column {
+        let column = CompressedStack {
             pad,
             region,
             largest_work: pad.filter(|_| lossy).map(|pad| {
@@ -379,7 +379,7 @@ pub fn stored(collision: &Collision<'_>, moved: Option<&Turn>) -> Option<Outcome
         body_speed_end: free(mass * share * (speed + rebound)),
         end_force: 0.0,
         evaluations: turn.evaluations,
-        ..Outcome::nothing(Status::Released)
+        ..Outcome::nothing(CollisionStatus::Released)
     };
     if let Some(pad) = pad {
         let strain = turn.compression / pad.covering.thickness;

@@ -3,7 +3,9 @@ use serde_json::Value;
 use super::reading::{collision, pad};
 use super::run::moved;
 use super::stored::{stored, turns};
-use super::{Body, Collision, Outcome, Region, Status, Wanted, rest_of, simulate};
+use super::{
+    Collision, CollisionStatus, Outcome, Region, SupportedBody, Wanted, rest_of, simulate,
+};
 use crate::covering::{Bottoming, Covering, GibsonAshby, Material, Pad, Rate, Shape, Unloading};
 
 fn cases() -> Value {
@@ -106,15 +108,15 @@ fn no_closing_speed_is_no_impact() {
     collision.closing_speed = 0.0;
     assert_eq!(
         simulate(&collision, Wanted::default(), &|| false).status,
-        Status::NoImpact
+        CollisionStatus::NoImpact
     );
 }
 
 /// A heavy robot on a soft region: a quarter of the period takes half a second.
 fn slow(horizon: f64) -> Collision<'static> {
     Collision {
-        robot: Body::free(100.0),
-        body: Body::free(f64::INFINITY),
+        robot: SupportedBody::free(100.0),
+        body: SupportedBody::free(f64::INFINITY),
         region: Region::Spring {
             stiffness: 1e3,
             cubic: 0.0,
@@ -131,13 +133,13 @@ fn slow(horizon: f64) -> Collision<'static> {
 fn loads_that_rise_at_the_horizon_say_so() {
     let whole = 0.5 * (100.0_f64 * 1e3).sqrt();
     let short = simulate(&slow(0.2), Wanted::default(), &|| false);
-    assert_eq!(short.status, Status::Horizon);
+    assert_eq!(short.status, CollisionStatus::Horizon);
     assert!(short.rising && short.peak_force < 0.6 * whole);
     let past_the_peak = simulate(&slow(0.6), Wanted::default(), &|| false);
-    assert_eq!(past_the_peak.status, Status::Horizon);
+    assert_eq!(past_the_peak.status, CollisionStatus::Horizon);
     assert!(!past_the_peak.rising && (past_the_peak.peak_force / whole - 1.0).abs() < 1e-6);
     let long = simulate(&slow(2.0), Wanted::default(), &|| false);
-    assert!(!long.rising && long.status == Status::Released);
+    assert!(!long.rising && long.status == CollisionStatus::Released);
 }
 
 #[test]
@@ -147,7 +149,7 @@ fn an_interrupted_collision_is_unfinished() {
         ..Wanted::default()
     };
     let found = simulate(&slow(2.0), moving, &|| true);
-    assert_eq!(found.status, Status::Unfinished);
+    assert_eq!(found.status, CollisionStatus::Unfinished);
     assert!(found.peak_force.is_nan() && found.evaluations <= 1);
 }
 
@@ -224,8 +226,8 @@ const REGIONS: [Region; 4] = [
 /// A collision of free bodies.
 fn free(pad: &Pad, region: Region, closing_speed: f64) -> Collision<'_> {
     Collision {
-        robot: Body::free(8.0),
-        body: Body::free(40.0),
+        robot: SupportedBody::free(8.0),
+        body: SupportedBody::free(40.0),
         region,
         pad: Some(pad),
         closing_speed,
@@ -254,8 +256,9 @@ fn loads_from_stored_energy_are_those_of_the_motion() {
                 exact += 1;
                 let found = simulate(&collision, moving, &|| false);
                 let last = found.nodes.last().unwrap();
-                let peak =
-                    |of: fn(&super::Node) -> f64| found.nodes.iter().map(of).fold(0.0, f64::max);
+                let peak = |of: fn(&super::MotionSample) -> f64| {
+                    found.nodes.iter().map(of).fold(0.0, f64::max)
+                };
                 for (name, value, solved) in [
                     ("release", found.release_time, last.time),
                     ("force", found.peak_force, peak(|node| node.force)),
@@ -445,6 +448,6 @@ fn a_force_that_starts_infinitely_steep_and_falls_has_a_peak() {
     let pad = covering.prepared().unwrap();
     let collision = free(&pad, Region::Rigid, 0.3);
     let found = moved(&collision, Wanted::default(), &|| false);
-    assert_eq!(found.status, Status::Released);
+    assert_eq!(found.status, CollisionStatus::Released);
     assert!(found.peak_force >= 9e3 && found.peak_force < 9.01e3);
 }

@@ -4,7 +4,7 @@ use numeric::lanes::{Lanes, Real, Truth, vectors};
 use pulp::{Simd, WithSimd};
 
 use super::Loading;
-use super::plane::{Numbers, Over};
+use super::plane::{LaneVariable, Numbers};
 use super::variable::Variable;
 use crate::collision::Region;
 use crate::collision::curve::Steps;
@@ -45,7 +45,7 @@ pub(super) fn most() -> usize {
 /// Takes steps that are alike, up to [`most`], with their collisions.
 pub(super) fn take(steps: &[(&Loading<'_>, Asked)], taken: &mut Steps<Wide>) {
     match vectors() {
-        Some(vectors) if steps.len() > FEW => Simd::vectorize(vectors, Group(steps, taken)),
+        Some(vectors) if steps.len() > FEW => Simd::vectorize(vectors, StepGroup(steps, taken)),
         _ => {
             let mut few = Steps::none();
             take_few(steps, &mut few);
@@ -61,9 +61,9 @@ pub(super) fn take_few(steps: &[(&Loading<'_>, Asked)], taken: &mut Steps<Lanes<
 }
 
 /// Steps of many collisions; the arithmetic is the same, bit for bit.
-struct Group<'a, 'b>(&'a [(&'a Loading<'b>, Asked)], &'a mut Steps<Wide>);
+struct StepGroup<'a, 'b>(&'a [(&'a Loading<'b>, Asked)], &'a mut Steps<Wide>);
 
-impl WithSimd for Group<'_, '_> {
+impl WithSimd for StepGroup<'_, '_> {
     type Output = ();
 
     #[inline(always)]
@@ -82,8 +82,8 @@ fn fill<R: Real>(steps: &[(&Loading<'_>, Asked)], taken: &mut Steps<R>) {
         |of: fn(&Asked) -> [f64; 2]| [0, 1].map(|entry| R::from_fn(|lane| of(asked(lane))[entry]));
     let loading = |lane: usize| steps[lane.min(last)].0;
     let numbers = Numbers::<R>::of(loading);
-    let over = Over::<R>::of(asked(0).variable, |lane| asked(lane).variable);
-    let columns = Columns::of(steps);
+    let over = LaneVariable::<R>::of(asked(0).variable, |lane| asked(lane).variable);
+    let columns = ContactLanes::of(steps);
     let at = R::from_fn(|lane| asked(lane).at);
     let start = (at, pair(|of| of.state), pair(|of| of.rates));
     let length = R::from_fn(|lane| asked(lane).length);
@@ -108,7 +108,7 @@ fn fill<R: Real>(steps: &[(&Loading<'_>, Asked)], taken: &mut Steps<R>) {
 }
 
 /// Coverings and regions side by side.
-struct Columns<'a, 'b, R> {
+struct ContactLanes<'a, 'b, R> {
     steps: &'a [(&'a Loading<'b>, Asked)],
     /// Exponents and factors, where forces are sums of powers.
     powers: Option<([f64; 2], [R; 2])>,
@@ -119,7 +119,7 @@ struct Columns<'a, 'b, R> {
     yielding: Option<R>,
 }
 
-impl<'a, 'b, R: Real> Columns<'a, 'b, R> {
+impl<'a, 'b, R: Real> ContactLanes<'a, 'b, R> {
     #[inline(always)]
     fn of(steps: &'a [(&'a Loading<'b>, Asked)]) -> Self {
         let last = steps.len() - 1;

@@ -21,14 +21,14 @@ use std::cell::Cell;
 
 pub use variable::smooth_power;
 
-use super::curve::{EVALUATIONS, Inside, Step, Steps};
+use super::curve::{CurveStep, EVALUATIONS, Inside, Steps};
 use super::statics::rest_of;
 use super::{Collision, Region};
 use crate::covering::{Kinks, Pad, Powers, Shape};
 use crate::roots::Peak;
 use beside::{Asked, most, take, take_few};
 use plane::{Point, Scales};
-use steps::{Progress, Reach, finer_than_usual};
+use steps::{Progress, StepLength, finer_than_usual};
 use variable::Variable;
 
 /// Most evaluations of the forces.
@@ -98,7 +98,7 @@ impl Loading<'_> {
         }
     }
 
-    fn walk(&self, variable: Variable, from: &Point, length: f64) -> Step {
+    fn walk(&self, variable: Variable, from: &Point, length: f64) -> CurveStep {
         let mut taken = Steps::none();
         take(&[(self, self.asked(variable, from, length))], &mut taken);
         taken.lane(0)
@@ -114,7 +114,7 @@ impl Loading<'_> {
     }
 
     /// States within a step from one point to the next.
-    fn inside(&self, variable: Variable, taken: &Step, [from, to]: [&Point; 2]) -> Inside {
+    fn inside(&self, variable: Variable, taken: &CurveStep, [from, to]: [&Point; 2]) -> Inside {
         self.evaluations
             .set(self.evaluations.get() + Inside::EVALUATIONS);
         let rates = |at: f64, state: [f64; 2]| self.place(variable, at, state).rates;
@@ -176,7 +176,7 @@ struct Way<'a> {
     loading: Loading<'a>,
     now: Progress,
     tops: [Peak; 2],
-    reach: Reach,
+    reach: StepLength,
     /// Whether no step is left to take.
     ended: bool,
     turn: Option<Turn>,
@@ -189,7 +189,7 @@ impl<'a> Way<'a> {
         Self {
             now: Progress::new(variable, loading.point(variable, 0.0, [1.0, 0.0])),
             tops: [Peak::NONE; 2],
-            reach: Reach::NONE,
+            reach: StepLength::NONE,
             ended: false,
             turn: None,
             loading,
@@ -211,7 +211,7 @@ impl<'a> Way<'a> {
     }
 
     /// Goes on after a step that was asked for, which ends at a state with an error.
-    fn go_on(&mut self, (state, error): ([f64; 2], f64), step: &dyn Fn() -> Step) {
+    fn go_on(&mut self, (state, error): ([f64; 2], f64), step: &dyn Fn() -> CurveStep) {
         let (loading, now, reach) = (&mut self.loading, &mut self.now, &self.reach);
         let growth = match loading.judged(now, reach, state, error) {
             Ok(growth) => growth,

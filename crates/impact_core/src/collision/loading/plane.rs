@@ -20,7 +20,7 @@ pub(super) struct Forces<R> {
 
 /// A place of the plane, seen over a variable.
 #[derive(Clone, Copy)]
-pub(super) struct Place<R> {
+pub(super) struct PhasePoint<R> {
     pub(super) depth: R,
     pub(super) speed: R,
     /// Rates of both.
@@ -61,12 +61,12 @@ pub(super) struct Point {
 
 /// A variable of collisions side by side.
 #[derive(Clone, Copy)]
-pub(super) enum Over<R> {
+pub(super) enum LaneVariable<R> {
     Depth { origin: R, first: R, power: i32 },
     Pace { unit: R, doublings: u32, range: R },
 }
 
-impl<R: Real> Over<R> {
+impl<R: Real> LaneVariable<R> {
     /// Of variables of one kind.
     #[inline(always)]
     pub(super) fn of(first: Variable, each: impl Fn(usize) -> Variable) -> Self {
@@ -154,14 +154,14 @@ impl<R: Real> Numbers<R> {
     #[inline(always)]
     pub(super) fn place(
         &self,
-        over: Over<R>,
+        over: LaneVariable<R>,
         at: R,
         state: [R; 2],
         columns: impl Fn(R, R) -> [R; 2],
         yielding: impl Fn(R) -> R,
-    ) -> Place<R> {
+    ) -> PhasePoint<R> {
         let ([depth, speed], change) = match over {
-            Over::Depth {
+            LaneVariable::Depth {
                 origin,
                 first,
                 power,
@@ -170,7 +170,7 @@ impl<R: Real> Numbers<R> {
                 let speed = self.closing_speed * state[0].sqrt();
                 ([origin + beyond, speed], change)
             }
-            Over::Pace {
+            LaneVariable::Pace {
                 unit,
                 doublings,
                 range,
@@ -181,19 +181,19 @@ impl<R: Real> Numbers<R> {
         };
         let forces = self.forces([depth, speed], columns, yielding);
         let (change, rates) = match over {
-            Over::Depth { .. } => {
+            LaneVariable::Depth { .. } => {
                 let ratio = change * forces.share / forces.inertia;
                 let slower = ratio * forces.force;
                 let lost = -R::splat(2.0) * self.per_energy * speed * slower;
                 ([change, -slower], [lost, self.mass * ratio])
             }
-            Over::Pace { .. } => {
+            LaneVariable::Pace { .. } => {
                 let ratio = -change / forces.force;
                 let deeper = ratio * forces.inertia / forces.share;
                 ([deeper, change], [deeper, ratio * self.mass])
             }
         };
-        Place {
+        PhasePoint {
             depth,
             speed,
             change,
@@ -214,15 +214,15 @@ impl Loading<'_> {
     }
 
     /// A place of the plane.
-    pub(super) fn place(&self, variable: Variable, at: f64, state: [f64; 2]) -> Place<f64> {
+    pub(super) fn place(&self, variable: Variable, at: f64, state: [f64; 2]) -> PhasePoint<f64> {
         let numbers = Numbers::<f64>::of(|_| self);
         let columns = |depth, _| self.pad.force_by(depth, self.scales.per_thickness);
-        let over = Over::of(variable, |_| variable);
+        let over = LaneVariable::of(variable, |_| variable);
         numbers.place(over, at, state, columns, |force| self.yielding(force))
     }
 
     pub(super) fn point(&self, variable: Variable, at: f64, state: [f64; 2]) -> Point {
-        let Place {
+        let PhasePoint {
             depth,
             speed,
             change,

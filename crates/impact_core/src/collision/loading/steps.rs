@@ -52,13 +52,13 @@ impl Progress {
 }
 
 /// How far the next step goes.
-pub(super) struct Reach {
+pub(super) struct StepLength {
     pub(super) length: f64,
     /// Whether it ends at the kink, or at the turn.
     pub(super) last: bool,
 }
 
-impl Reach {
+impl StepLength {
     /// None yet.
     pub(super) const NONE: Self = Self {
         length: 0.0,
@@ -83,7 +83,7 @@ impl Loading<'_> {
         }
     }
 
-    pub(super) fn reach(&self, now: &Progress) -> Reach {
+    pub(super) fn reach(&self, now: &Progress) -> StepLength {
         let Progress {
             variable,
             point,
@@ -109,7 +109,7 @@ impl Loading<'_> {
         let left = end - point.at;
         let length = length.min(most.max(1e-3 * left));
         let last = STRETCH * length >= left;
-        Reach {
+        StepLength {
             length: if last { left } else { length },
             last,
         }
@@ -119,7 +119,7 @@ impl Loading<'_> {
     pub(super) fn judged(
         &self,
         now: &Progress,
-        reach: &Reach,
+        reach: &StepLength,
         state: [f64; 2],
         error: f64,
     ) -> Result<f64, f64> {

@@ -3,7 +3,7 @@
 use super::Loading;
 use super::plane::Point;
 use super::variable::Variable;
-use crate::collision::curve::{Inside, Step};
+use crate::collision::curve::{CurveStep, Inside};
 use crate::roots::Peak;
 
 /// Most steps towards a top.
@@ -15,7 +15,7 @@ impl Loading<'_> {
     /// Offers the loads at the end of a step, and what peaks within it; of a flat contact only the force.
     pub fn offer(
         &self,
-        over: (Variable, &dyn Fn() -> Step),
+        over: (Variable, &dyn Fn() -> CurveStep),
         ends: [&Point; 2],
         tops: &mut [Peak; 2],
     ) {
@@ -27,7 +27,7 @@ impl Loading<'_> {
 
     fn offer_load(
         &self,
-        (variable, step): (Variable, &dyn Fn() -> Step),
+        (variable, step): (Variable, &dyn Fn() -> CurveStep),
         [from, to]: [&Point; 2],
         load: usize,
         top: &mut Peak,
@@ -89,7 +89,7 @@ impl Loading<'_> {
     fn tried(
         &self,
         variable: Variable,
-        (from, taken): (&Point, &Step),
+        (from, taken): (&Point, &CurveStep),
         inside: &Inside,
         at: f64,
     ) -> Point {

@@ -1,8 +1,8 @@
 //! Peaks of the loads, and what is left of a collision.
 
 use super::super::events::{Start, located};
-use super::super::mechanics::{Local, SPEED, State, TOTAL};
-use super::super::outcome::{Outcome, Status};
+use super::super::mechanics::{CollisionState, Local, SPEED, TOTAL};
+use super::super::outcome::{CollisionStatus, Outcome};
 use super::super::step::Step;
 use super::{Region, Run};
 use crate::covering::Shape;
@@ -12,7 +12,7 @@ pub const PEAKS: usize = 6;
 
 impl<const N: usize> Run<'_, N> {
     /// Values that may peak, with their rates.
-    fn rising(&self, state: &State<N>, local: &Local) -> [[f64; 2]; PEAKS] {
+    fn rising(&self, state: &CollisionState<N>, local: &Local) -> [[f64; 2]; PEAKS] {
         [
             [local.force, local.force_rate],
             [state[TOTAL], state[SPEED]],
@@ -66,9 +66,12 @@ impl<const N: usize> Run<'_, N> {
     }
 
     /// Loads at the end.
-    pub fn outcome(&self, status: Status) -> Outcome {
+    pub fn outcome(&self, status: CollisionStatus) -> Outcome {
         let collision = self.mechanics.collision;
-        if matches!(status, Status::BeyondData | Status::Unfinished) {
+        if matches!(
+            status,
+            CollisionStatus::BeyondData | CollisionStatus::Unfinished
+        ) {
             return Outcome {
                 evaluations: self.evaluations,
                 ..Outcome::nothing(status)
@@ -94,7 +97,7 @@ impl<const N: usize> Run<'_, N> {
             } else {
                 deflection
             },
-            rebound_speed: if status == Status::Released {
+            rebound_speed: if status == CollisionStatus::Released {
                 -self.state[SPEED]
             } else {
                 f64::NAN
@@ -103,7 +106,7 @@ impl<const N: usize> Run<'_, N> {
             body_speed_end: free(self.mechanics.body_speed(&self.state)),
             end_force: self.local.force,
             // The acceleration of the body is a force over its mass, or less.
-            rising: status == Status::Horizon
+            rising: status == CollisionStatus::Horizon
                 && self.peaks[..PEAKS - 1]
                     .iter()
                     .any(|best| best.time >= self.time),
