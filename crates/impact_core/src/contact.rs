@@ -6,7 +6,7 @@
 
 use crate::joint::motion::MAX_CELLS;
 use crate::roots::root;
-use crate::series::{CELL_ANGLE, Cell, Drive, Plant, State, derivatives, integrated};
+use crate::series::{CELL_ANGLE, Cell, CellDrive, Plant, State, derivatives, integrated};
 use crate::windows::first_fall;
 
 /// Pieces of a cell between nodes of the search for events.
@@ -91,14 +91,14 @@ impl Stretch {
         start: f64,
         length: f64,
         state: &State<f64>,
-        drive: Drive<f64>,
+        drive: CellDrive<f64>,
     ) -> Self {
         let plant = match bodies.phase {
             Phase::Touching => bodies.plant,
             Phase::Apart { .. } => bodies.plant.apart(),
         };
         let square = length * length;
-        let drive = Drive {
+        let drive = CellDrive {
             set_point: drive.set_point * square,
             lag: drive.lag * square,
         };

@@ -2,7 +2,7 @@
 
 use crate::error::{Result, finite};
 use crate::fast;
-use crate::joint::motion::{Motion, cell_length};
+use crate::joint::motion::{ImpactMotion, cell_length};
 use crate::metrics::{
     CONSTRAINED_HORIZON, FREE_HORIZON, HELD_WINDOW, INJURY_WINDOWS, Loads, MetricOptions, Metrics,
     Searches, Status,
@@ -51,7 +51,7 @@ pub struct Findings {
 
 /// A response on which metrics are searched.
 pub struct Impact {
-    motion: Motion<f64>,
+    motion: ImpactMotion<f64>,
     plant: Plant<f64>,
     constrained: bool,
     duration: f64,
@@ -75,7 +75,7 @@ impl Impact {
         let plant = Plant::of(system);
         let length = cell_length(&plant, horizon)?;
         let mut impact = Self {
-            motion: Motion::new(&plant, closing_speed, length),
+            motion: ImpactMotion::new(&plant, closing_speed, length),
             plant,
             constrained,
             duration: f64::INFINITY,
@@ -141,7 +141,7 @@ impl Impact {
 
     /// The motion behind it.
     #[must_use]
-    pub fn motion(&self) -> &Motion<f64> {
+    pub fn motion(&self) -> &ImpactMotion<f64> {
         &self.motion
     }
 

@@ -7,7 +7,7 @@
 use crate::criteria::{Findings, Impact};
 use crate::dual::Dual;
 use crate::error::{Result, finite, positive};
-use crate::joint::motion::Motion;
+use crate::joint::motion::ImpactMotion;
 use crate::metrics::{HELD_WINDOW, Loads, MetricOptions, Metrics, Status};
 use crate::parameters::{System, Target};
 use crate::roots::Peak;
@@ -69,7 +69,7 @@ pub fn gradients(
     let speed = options.manipulator_speed.unwrap_or(closing_speed);
     let findings = impact.findings(speed);
     let metrics = findings.metrics(system, options.gravity);
-    let mut motion = Motion::new(
+    let mut motion = ImpactMotion::new(
         &plant(system),
         Number::parameter(closing_speed, 8),
         impact.motion().length(),
@@ -115,7 +115,7 @@ fn plant(system: &System) -> Plant<Number> {
 }
 
 struct View<'a> {
-    motion: &'a Motion<Number>,
+    motion: &'a ImpactMotion<Number>,
     findings: &'a Findings,
     constrained: bool,
     manipulator_speed: Number,

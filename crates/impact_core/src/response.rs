@@ -9,7 +9,7 @@ use crate::error::{Failure, Given, Result, finite, positive};
 use crate::joint::drive::SetPoint;
 use crate::joint::motion::cell_length;
 use crate::parameters::{System, Target};
-use crate::series::{Drive, Plant, State};
+use crate::series::{CellDrive, Plant, State};
 use numeric::threads::Interrupted;
 use peaks::Watch;
 use printed::Misprint;
@@ -160,7 +160,7 @@ pub fn simulate_until(
     }
     let plant = Plant::of(system);
     cell_length(&plant, options.duration)?;
-    let mut run = Run {
+    let mut run = ResponseRun {
         bodies: Bodies {
             plant,
             phase: Phase::Touching,
@@ -227,7 +227,7 @@ impl Response {
     }
 }
 
-struct Run<'a> {
+struct ResponseRun<'a> {
     bodies: Bodies,
     constrained: bool,
     thickness: f64,
@@ -238,15 +238,15 @@ struct Run<'a> {
     response: Response,
 }
 
-impl Run<'_> {
-    fn drive(&self) -> (Drive<f64>, f64) {
+impl ResponseRun<'_> {
+    fn drive(&self) -> (CellDrive<f64>, f64) {
         let (acceleration, change) = self.options.set_point.at(self.time);
         let lag = if self.options.set_point.feed_forward {
             0.0
         } else {
             acceleration
         };
-        let drive = Drive {
+        let drive = CellDrive {
             set_point: acceleration,
             lag,
         };

@@ -145,14 +145,14 @@ impl<R: Real> State<R> {
 
 /// Constant drive of a cell, in m per squared cell.
 #[derive(Clone, Copy, Debug)]
-pub struct Drive<R> {
+pub struct CellDrive<R> {
     /// Acceleration of the set-point.
     pub set_point: R,
     /// The part of it that no feed-forward takes off the lag.
     pub lag: R,
 }
 
-impl<R: Real> Drive<R> {
+impl<R: Real> CellDrive<R> {
     /// Set-point at constant speed.
     #[inline(always)]
     #[must_use]
@@ -200,7 +200,7 @@ impl<R: Real, const N: usize> Cell<R, N> {
     pub fn fill(
         &mut self,
         numbers: &Recurrence<R>,
-        drive: &Drive<R>,
+        drive: &CellDrive<R>,
         start: &State<R>,
     ) -> State<R> {
         let Recurrence {
@@ -231,7 +231,7 @@ impl<R: Real, const N: usize> Cell<R, N> {
             de = closing * inverse;
             du = lag * inverse;
             dw = push * inverse;
-            extra = Drive::none();
+            extra = CellDrive::none();
             end.compression[0] += e;
             end.lag[0] += u;
             end.head[0] += w;

@@ -5,7 +5,7 @@ use super::arithmetic::{Each, MapWith};
 use super::modes::{Basis, Wave};
 use super::scan::{Piece, Tops};
 use super::space::Walked;
-use super::windows::{FreeWindow, SETTLED, Window, criterion};
+use super::windows::{FreeWindow, LaneWindow, SETTLED, criterion};
 use super::{Known, MAX_STEPS, Solved};
 use crate::metrics::INJURY_WINDOWS;
 use numeric::lanes::{Number, Truth};
@@ -36,7 +36,7 @@ struct Seed<R: Number> {
 impl<S: Simd, R: Number> Solved<'_, S, R> {
     /// The same where the acceleration has a valley: there may be several good windows.
     #[inline(always)]
-    pub(super) fn full_of_humps(&self, mask: R::Mask, width: R, trough: [R; 2]) -> Window<R> {
+    pub(super) fn full_of_humps(&self, mask: R::Mask, width: R, trough: [R; 2]) -> LaneWindow<R> {
         apart(
             self.simd,
             #[inline(always)]
@@ -45,7 +45,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
     }
 
     #[inline(always)]
-    fn full_of_humps_here(&self, mask: R::Mask, width: R, trough: [R; 2]) -> Window<R> {
+    fn full_of_humps_here(&self, mask: R::Mask, width: R, trough: [R; 2]) -> LaneWindow<R> {
         let modes = &self.motion.modes;
         let room = self.end - width;
         // The mean grows with the start by the difference of the accelerations at both ends.

@@ -12,7 +12,7 @@ use pulp::Simd;
 const SETTLED: f64 = 1e-2;
 /// What has a maximum.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Quantity {
+enum PeakQuantity {
     Acceleration,
     Compression,
     Force,
@@ -23,18 +23,18 @@ enum Quantity {
 impl<S: Simd, R: Number> Solved<'_, S, R> {
     /// A quantity with four derivatives.
     #[inline(always)]
-    fn jet(&self, quantity: Quantity, basis: &Basis<R>, time: R) -> [R; 5] {
-        if quantity == Quantity::Acceleration {
+    fn jet(&self, quantity: PeakQuantity, basis: &Basis<R>, time: R) -> [R; 5] {
+        if quantity == PeakQuantity::Acceleration {
             return Wave::values(&self.motion.head, 1, basis);
         }
         let compression = self.motion.compression(basis, time);
         let [value, first, second, third, fourth, fifth] = compression;
         match quantity {
-            Quantity::Force => self.motion.force(&compression),
-            Quantity::ManipulatorPower => {
+            PeakQuantity::Force => self.motion.force(&compression),
+            PeakQuantity::ManipulatorPower => {
                 product(self.motion.force(&compression), self.manipulator(basis))
             }
-            Quantity::FoamPower => product(
+            PeakQuantity::FoamPower => product(
                 self.motion.force(&compression),
                 [first, second, third, fourth, fifth],
             ),
@@ -115,31 +115,31 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
             // A window needs its top.
             climb(
                 searches.acceleration || searches.windows(),
-                Quantity::Acceleration,
+                PeakQuantity::Acceleration,
                 &found.acceleration,
                 accelerations,
             ),
             climb(
                 searches.compression,
-                Quantity::Compression,
+                PeakQuantity::Compression,
                 &found.compression,
                 [zero, compression[0]],
             ),
             climb(
                 searches.force,
-                Quantity::Force,
+                PeakQuantity::Force,
                 &found.force,
                 [first_force, force],
             ),
             climb(
                 searches.powers,
-                Quantity::ManipulatorPower,
+                PeakQuantity::ManipulatorPower,
                 &found.manipulator_power,
                 [at_contact, force * speed],
             ),
             climb(
                 searches.powers,
-                Quantity::FoamPower,
+                PeakQuantity::FoamPower,
                 &found.foam_power,
                 [first_force * first_rate, force * compression[1]],
             ),
@@ -178,7 +178,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
 
 /// The search for the largest value of a quantity.
 struct Climb<'a, R: Number> {
-    quantity: Quantity,
+    quantity: PeakQuantity,
     tops: &'a Tops<R>,
     /// The largest value so far.
     best: R,
@@ -197,7 +197,7 @@ struct Climb<'a, R: Number> {
 
 impl<'a, R: Number> Climb<'a, R> {
     #[inline(always)]
-    fn new(quantity: Quantity, tops: &'a Tops<R>, ends: [R; 2]) -> Self {
+    fn new(quantity: PeakQuantity, tops: &'a Tops<R>, ends: [R; 2]) -> Self {
         let zero = ends[0].like(0.0);
         let best = R::select(ends[0].gt(ends[1]), ends[0], ends[1]);
         Self {

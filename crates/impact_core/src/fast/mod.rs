@@ -25,13 +25,13 @@ use crate::series::Plant;
 use apart::apart;
 use arithmetic::{Each, product, third_order};
 use known::{GroupPeaks, GroupRest, Known};
-use modes::{Basis, Motion, Wave};
+use modes::{Basis, LaneMotion, Wave};
 use numeric::lanes::{Number, Truth};
 use pulp::Simd;
 use scan::{Place, touching};
 pub(crate) use side::{MOST_LANES, Rows, Side, Walk, usual};
 pub use space::Workspace;
-use space::{NODES, Node, Step, Walked};
+use space::{NODES, Node, NodePair, Walked};
 
 /// Newton steps after which a place is refused.
 const MAX_STEPS: usize = 12;
@@ -78,7 +78,7 @@ pub struct Group<R> {
 /// A group with its motion and what the walk along it noted.
 pub struct Solved<'a, S, R: Number> {
     simd: S,
-    motion: &'a Motion<S, R>,
+    motion: &'a LaneMotion<S, R>,
     /// `v_r`, in m per cell.
     manipulator_speed: R,
     /// Impact period, in cells; the horizon in lanes without a release before it.
@@ -126,7 +126,7 @@ impl<R: Number> Group<R> {
         space.found.clear();
         let mut solved = Solved {
             simd,
-            motion: Motion::fill(
+            motion: LaneMotion::fill(
                 motion,
                 simd,
                 &self.plant,
@@ -167,7 +167,7 @@ impl<R: Number> Group<R> {
             solved.reach::<POWERS>(index, &basis, time);
             solved.nodes = index;
             solved.space.head[index] = solved.space.pair[index % 2].head();
-            let fall = Step::ending(&solved.space.pair, index).piece(Node::fall);
+            let fall = NodePair::ending(&solved.space.pair, index).piece(Node::fall);
             let ends = alive & fall.values[1].lt(zero);
             let lasts = alive & !ends & time.ge(horizon);
             if (ends | lasts).any() {
@@ -256,7 +256,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
     fn look_here<const POWERS: bool>(&mut self, inside: R::Mask, index: usize) {
         let zero = self.highest.like(0.0);
         let Walked { pair, found, .. } = &mut *self.space;
-        let step = Step::ending(pair, index);
+        let step = NodePair::ending(pair, index);
         let fall = step.piece(Node::fall);
         let bend = step.piece(
             #[inline(always)]

@@ -231,7 +231,7 @@ impl<S: Simd, R: Number> Modes<S, R> {
 
 /// The motion of an impact, times in cells.
 #[derive(Clone, Copy)]
-pub struct Motion<S, R: Number> {
+pub struct LaneMotion<S, R: Number> {
     /// Its roots.
     pub modes: Modes<S, R>,
     /// Velocity of the head against the torso up to a constant, and five derivatives.
@@ -250,7 +250,7 @@ pub struct Motion<S, R: Number> {
     pub accepted: R::Mask,
 }
 
-impl<S: Simd, R: Number> Motion<S, R> {
+impl<S: Simd, R: Number> LaneMotion<S, R> {
     /// The motion of a plant with a closing speed, in m/s, where there is room for it.
     #[inline(always)]
     pub fn fill<'a>(

@@ -1,6 +1,6 @@
 //! Space for the walk along a response: nodes, pieces between them, what was found in them.
 
-use super::modes::Motion;
+use super::modes::LaneMotion;
 use super::scan::{Piece, Place, Tops};
 use numeric::lanes::Number;
 
@@ -14,7 +14,7 @@ pub struct Workspace<S, R: Number> {
     /// Zero in every lane.
     pub zero: R,
     /// The motion; what is this large is not moved.
-    pub(super) motion: Option<Motion<S, R>>,
+    pub(super) motion: Option<LaneMotion<S, R>>,
     pub(super) walked: Walked<R>,
 }
 
@@ -134,12 +134,12 @@ impl<R: Number> Node<R> {
 }
 
 /// Values at a node, and at the next one.
-pub(super) struct Step<'a, R> {
+pub(super) struct NodePair<'a, R> {
     left: &'a Node<R>,
     right: &'a Node<R>,
 }
 
-impl<'a, R: Number> Step<'a, R> {
+impl<'a, R: Number> NodePair<'a, R> {
     /// The piece that ends with a node.
     #[inline(always)]
     pub(super) fn ending([even, odd]: &'a [Node<R>; 2], index: usize) -> Self {

@@ -17,7 +17,7 @@ pub(super) const SETTLED_MEAN: f64 = 1e-3;
 
 /// What a window gives, for `V` and accelerations per cell.
 #[derive(Clone, Copy)]
-pub(super) struct Window<R: Number> {
+pub(super) struct LaneWindow<R: Number> {
     pub(super) start: R,
     pub(super) rise: R,
     /// Smaller acceleration at its ends.
@@ -28,7 +28,7 @@ pub(super) struct Window<R: Number> {
     pub(super) restless: R::Mask,
 }
 
-impl<R: Number> Window<R> {
+impl<R: Number> LaneWindow<R> {
     /// Level held through a window that a valley may lie in, of which time and value are given.
     #[inline(always)]
     pub(super) fn level_with(&self, width: R, [time, value]: [R; 2]) -> R {
@@ -52,7 +52,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
     /// The best window of a width for lanes of a mask: equal accelerations at both ends, or it
     /// starts with the impact.
     #[inline(always)]
-    pub(super) fn full(&self, mask: R::Mask, width: R, guess: R, settled: f64) -> Window<R> {
+    pub(super) fn full(&self, mask: R::Mask, width: R, guess: R, settled: f64) -> LaneWindow<R> {
         apart(
             self.simd,
             #[inline(always)]
@@ -61,12 +61,12 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
     }
 
     #[inline(always)]
-    fn full_here(&self, mask: R::Mask, width: R, guess: R, settled: f64) -> Window<R> {
+    fn full_here(&self, mask: R::Mask, width: R, guess: R, settled: f64) -> LaneWindow<R> {
         let zero = width.like(0.0);
         let room = self.end - width;
         let mut start = guess.min(room).max(zero);
         let mut open = mask;
-        let mut found = Window {
+        let mut found = LaneWindow {
             start: zero,
             rise: zero,
             edge: zero,

@@ -197,7 +197,7 @@ pub fn simulate_direct_drive_until(
         impact_duration: f64::INFINITY,
         ..DriveRun::default()
     };
-    let mut peaks = Peaks::default();
+    let mut peaks = SampledPeaks::default();
     run.record(0.0, &machine.quantities());
     peaks.see(&machine.quantities());
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
@@ -243,13 +243,13 @@ impl DriveRun {
 
 /// Largest values of the impact period.
 #[derive(Default)]
-struct Peaks {
-    head_acceleration: Peak,
-    contact_force: Peak,
-    compression: Peak,
+struct SampledPeaks {
+    head_acceleration: SampledPeak,
+    contact_force: SampledPeak,
+    compression: SampledPeak,
 }
 
-impl Peaks {
+impl SampledPeaks {
     fn see(&mut self, now: &Quantities) {
         self.head_acceleration.see(now.head_acceleration);
         self.contact_force.see(now.contact_force);
@@ -259,13 +259,13 @@ impl Peaks {
 
 /// Largest of equally spaced values, with a parabola through the largest and its neighbors.
 #[derive(Default)]
-struct Peak {
+struct SampledPeak {
     last: [f64; 2],
     seen: usize,
     largest: f64,
 }
 
-impl Peak {
+impl SampledPeak {
     fn see(&mut self, value: f64) {
         let [before, middle] = self.last;
         self.largest = self.largest.max(value);

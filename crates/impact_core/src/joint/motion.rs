@@ -1,7 +1,9 @@
 //! The linear motion of an impact, evaluated at any time.
 
 use crate::error::{Failure, Given, Result};
-use crate::series::{CELL_ANGLE, Cell, Drive, Plant, Recurrence, State, derivatives, integrated};
+use crate::series::{
+    CELL_ANGLE, Cell, CellDrive, Plant, Recurrence, State, derivatives, integrated,
+};
 use numeric::lanes::Real;
 
 /// Cells that a motion may have; more means that its fastest root is far too fast for its length.
@@ -12,7 +14,7 @@ pub type Jet<R> = [R; 4];
 
 /// Cells of equal length from first contact on.
 #[derive(Clone, Debug)]
-pub struct Motion<R> {
+pub struct ImpactMotion<R> {
     length: f64,
     recurrence: Recurrence<R>,
     foam: [R; 2],
@@ -20,7 +22,7 @@ pub struct Motion<R> {
     next: State<R>,
 }
 
-impl<R: Real> Motion<R> {
+impl<R: Real> ImpactMotion<R> {
     /// The motion with a cell length, in s, and no cell yet.
     #[must_use]
     pub fn new(plant: &Plant<R>, closing_speed: R, length: f64) -> Self {
@@ -36,7 +38,7 @@ impl<R: Real> Motion<R> {
     /// Adds the next cell.
     pub fn grow(&mut self) {
         let mut cell = Cell::empty();
-        self.next = cell.fill(&self.recurrence, &Drive::none(), &self.next);
+        self.next = cell.fill(&self.recurrence, &CellDrive::none(), &self.next);
         self.cells.push(cell);
     }
 

@@ -16,7 +16,7 @@
 
 use super::runge_kutta::rates;
 use crate::contact::{Bodies, Phase, Stretch};
-use crate::series::{Cell, Drive, ORDER, State};
+use crate::series::{Cell, CellDrive, ORDER, State};
 
 /// The two displacements that the misprint adds, with their rates, in m and m/s.
 #[derive(Clone, Copy, Debug, Default)]
@@ -74,7 +74,7 @@ impl Misprint {
 
 impl Both {
     fn rates(&self, bodies: &Bodies) -> Self {
-        let mut state = rates(bodies, &self.state, &Drive::none());
+        let mut state = rates(bodies, &self.state, &CellDrive::none());
         let follow =
             |[_, damping, stiffness]: [f64; 3], [position, rate]: [f64; 2], driving: f64| {
                 [rate, damping * (driving - rate) - stiffness * position]

@@ -1,13 +1,13 @@
 //! Classical Runge-Kutta steps of fourth order, cut where an event happens.
 
-use super::{CHECK, Run};
+use super::{CHECK, ResponseRun};
 use crate::contact::{Bodies, Event, Phase};
 use crate::error::{Failure, Result};
 use crate::roots::root;
-use crate::series::{Drive, State};
+use crate::series::{CellDrive, State};
 use numeric::threads::Interrupted;
 
-impl Run<'_> {
+impl ResponseRun<'_> {
     pub(super) fn runge_kutta(
         &mut self,
         samples: usize,
@@ -30,7 +30,7 @@ impl Run<'_> {
     }
 
     /// One step, cut where an event happens.
-    fn advance(&mut self, stop: f64, drive: &Drive<f64>) {
+    fn advance(&mut self, stop: f64, drive: &CellDrive<f64>) {
         let span = stop - self.time;
         let after = |step: f64| runge_kutta_step(&self.bodies, &self.state, drive, step);
         let law = self.bodies.law();
@@ -73,7 +73,7 @@ impl Run<'_> {
 }
 
 /// Rates of a state, those of positions in the first places.
-pub(super) fn rates(bodies: &Bodies, state: &State<f64>, drive: &Drive<f64>) -> State<f64> {
+pub(super) fn rates(bodies: &Bodies, state: &State<f64>, drive: &CellDrive<f64>) -> State<f64> {
     let force = match bodies.phase {
         Phase::Touching => bodies.law().force(state.compression),
         Phase::Apart { .. } => 0.0,
@@ -93,7 +93,7 @@ pub(super) fn rates(bodies: &Bodies, state: &State<f64>, drive: &Drive<f64>) -> 
 fn runge_kutta_step(
     bodies: &Bodies,
     state: &State<f64>,
-    drive: &Drive<f64>,
+    drive: &CellDrive<f64>,
     step: f64,
 ) -> State<f64> {
     let k1 = rates(bodies, state, drive);

@@ -7,7 +7,7 @@ use crate::parameters::{Foam, Head};
 const HALVINGS: u32 = 60;
 
 /// Positions and velocities of impact point and head.
-type State = [f64; 4];
+type DriveState = [f64; 4];
 
 /// How the command stands to its limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,14 +18,14 @@ enum Command {
 
 /// What dry friction does.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Joint {
+enum FrictionMode {
     Moving(f64),
     Stuck,
 }
 
 /// Whether the foam touches the head.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Contact {
+enum FoamContact {
     Touching,
     /// Since when, and how far the foam was compressed then; it relaxes by itself.
     Apart(f64, f64),
@@ -34,13 +34,13 @@ enum Contact {
 #[derive(Clone, Copy, Debug)]
 struct Mode {
     command: Command,
-    joint: Joint,
-    contact: Contact,
+    joint: FrictionMode,
+    contact: FoamContact,
 }
 
 /// What changes the equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Event {
+enum ModeChange {
     Command,
     Joint,
     Contact,
@@ -68,7 +68,7 @@ pub(super) struct Machine {
     feed_forward: f64,
     mass: f64,
     time: f64,
-    state: State,
+    state: DriveState,
     mode: Mode,
     impact_end: Option<f64>,
     saturated_from: Option<f64>,
@@ -95,18 +95,18 @@ impl Machine {
             state: [0.0, speed, 0.0, torso_speed],
             mode: Mode {
                 command: Command::Free,
-                joint: Joint::Moving(direction),
-                contact: Contact::Touching,
+                joint: FrictionMode::Moving(direction),
+                contact: FoamContact::Touching,
             },
             impact_end: None,
             saturated_from: None,
             saturated_time: 0.0,
         };
         if feed_forward.abs() > drive.voltage_limit {
-            machine.change(Event::Command);
+            machine.change(ModeChange::Command);
         }
         if speed == 0.0 {
-            machine.change(Event::Joint);
+            machine.change(ModeChange::Joint);
         }
         machine
     }
@@ -189,7 +189,7 @@ impl Machine {
     }
 
     /// Notes the first zero of the head acceleration.
-    fn watch_head(&mut self, length: f64, reached: &State) {
+    fn watch_head(&mut self, length: f64, reached: &DriveState) {
         if self.impact_end.is_some() || self.head_acceleration(self.time + length, reached) >= 0.0 {
             return;
         }
@@ -206,7 +206,7 @@ impl Machine {
     }
 
     /// The first rule of the present mode that a state breaks.
-    fn broken(&self, time: f64, state: &State) -> Option<Event> {
+    fn broken(&self, time: f64, state: &DriveState) -> Option<ModeChange> {
         let requested = self.requested(time, state);
         let limit = self.drive.voltage_limit;
         let command_holds = match self.mode.command {
@@ -214,70 +214,74 @@ impl Machine {
             Command::AtLimit(side) => side * requested >= limit,
         };
         let joint_holds = match self.mode.joint {
-            Joint::Moving(direction) => direction * state[1] >= 0.0,
-            Joint::Stuck => self.pull(time, state).abs() <= self.dry_friction(),
+            FrictionMode::Moving(direction) => direction * state[1] >= 0.0,
+            FrictionMode::Stuck => self.pull(time, state).abs() <= self.dry_friction(),
         };
         let contact_holds = match self.mode.contact {
-            Contact::Touching => self.contact_force(state) >= 0.0,
-            Contact::Apart(since, left) => state[0] - state[2] <= self.relaxed(time - since, left),
+            FoamContact::Touching => self.contact_force(state) >= 0.0,
+            FoamContact::Apart(since, left) => {
+                state[0] - state[2] <= self.relaxed(time - since, left)
+            }
         };
         if !contact_holds {
-            Some(Event::Contact)
+            Some(ModeChange::Contact)
         } else if !command_holds {
-            Some(Event::Command)
+            Some(ModeChange::Command)
         } else if !joint_holds {
-            Some(Event::Joint)
+            Some(ModeChange::Joint)
         } else {
             None
         }
     }
 
-    fn change(&mut self, event: Event) {
+    fn change(&mut self, event: ModeChange) {
         let (time, state) = (self.time, self.state);
         match (event, self.mode.command, self.mode.joint, self.mode.contact) {
-            (Event::Command, Command::Free, _, _) => {
+            (ModeChange::Command, Command::Free, _, _) => {
                 let side = self.requested(time, &state).signum();
                 self.mode.command = Command::AtLimit(side);
                 self.saturated_from.get_or_insert(time);
             }
-            (Event::Command, Command::AtLimit(_), _, _) => self.mode.command = Command::Free,
-            (Event::Joint, ..) => {
+            (ModeChange::Command, Command::AtLimit(_), _, _) => self.mode.command = Command::Free,
+            (ModeChange::Joint, ..) => {
                 self.state[1] = 0.0;
                 let pull = self.pull(time, &self.state);
                 self.mode.joint = if pull.abs() <= self.dry_friction() {
-                    Joint::Stuck
+                    FrictionMode::Stuck
                 } else {
-                    Joint::Moving(pull.signum())
+                    FrictionMode::Moving(pull.signum())
                 };
             }
-            (Event::Contact, _, _, Contact::Touching) => {
-                self.mode.contact = Contact::Apart(time, state[0] - state[2]);
+            (ModeChange::Contact, _, _, FoamContact::Touching) => {
+                self.mode.contact = FoamContact::Apart(time, state[0] - state[2]);
             }
-            (Event::Contact, _, _, Contact::Apart(..)) => self.mode.contact = Contact::Touching,
+            (ModeChange::Contact, _, _, FoamContact::Apart(..)) => {
+                self.mode.contact = FoamContact::Touching;
+            }
         }
     }
 
-    fn requested(&self, time: f64, state: &State) -> f64 {
+    fn requested(&self, time: f64, state: &DriveState) -> f64 {
         let lag = self.speed * time - state[0];
         let slower = self.speed - state[1];
         (self.drive.proportional * lag + self.drive.derivative * slower) / self.drive.lever_arm
             + self.feed_forward
     }
 
-    fn command(&self, time: f64, state: &State) -> f64 {
+    fn command(&self, time: f64, state: &DriveState) -> f64 {
         match self.mode.command {
             Command::Free => self.requested(time, state),
             Command::AtLimit(side) => side * self.drive.voltage_limit,
         }
     }
 
-    fn contact_force(&self, state: &State) -> f64 {
+    fn contact_force(&self, state: &DriveState) -> f64 {
         match self.mode.contact {
-            Contact::Touching => {
+            FoamContact::Touching => {
                 self.foam.stiffness * (state[0] - state[2])
                     + self.foam.damping * (state[1] - state[3])
             }
-            Contact::Apart(..) => 0.0,
+            FoamContact::Apart(..) => 0.0,
         }
     }
 
@@ -291,7 +295,7 @@ impl Machine {
     }
 
     /// Force on the impact point without dry friction.
-    fn pull(&self, time: f64, state: &State) -> f64 {
+    fn pull(&self, time: f64, state: &DriveState) -> f64 {
         let squared_arm = self.drive.lever_arm * self.drive.lever_arm;
         self.drive.force_per_volt() * self.command(time, state)
             - self.drive.viscous_friction / squared_arm * state[1]
@@ -302,18 +306,18 @@ impl Machine {
         self.drive.static_friction / self.drive.lever_arm
     }
 
-    fn head_acceleration(&self, time: f64, state: &State) -> f64 {
+    fn head_acceleration(&self, time: f64, state: &DriveState) -> f64 {
         let neck = self.head.damping * (state[3] - self.torso_speed)
             + self.head.stiffness * (state[2] - self.torso_speed * time);
         (self.contact_force(state) - neck) / self.head.mass
     }
 
-    fn derivative(&self, time: f64, state: &State) -> State {
+    fn derivative(&self, time: f64, state: &DriveState) -> DriveState {
         let acceleration = match self.mode.joint {
-            Joint::Moving(direction) => {
+            FrictionMode::Moving(direction) => {
                 (self.pull(time, state) - direction * self.dry_friction()) / self.mass
             }
-            Joint::Stuck => 0.0,
+            FrictionMode::Stuck => 0.0,
         };
         [
             state[1],
@@ -324,8 +328,8 @@ impl Machine {
     }
 
     /// One Runge-Kutta step with the equations of the present mode.
-    fn step(&self, step: f64) -> State {
-        let moved = |slope: &State, share: f64| {
+    fn step(&self, step: f64) -> DriveState {
+        let moved = |slope: &DriveState, share: f64| {
             let mut state = self.state;
             for (value, slope) in state.iter_mut().zip(slope) {
                 *value += share * slope;
