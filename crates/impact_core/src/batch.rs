@@ -114,7 +114,7 @@ pub struct MetricColumns {
 }
 
 /// The part of the columns that one task fills.
-struct Block<'a> {
+struct RowBlock<'a> {
     first: usize,
     loads: Loads<&'a mut [f64]>,
     status: &'a mut [u8],
@@ -160,12 +160,12 @@ impl MetricColumns {
         Ok(room)
     }
 
-    fn blocks(&mut self) -> Vec<Block<'_>> {
+    fn blocks(&mut self) -> Vec<RowBlock<'_>> {
         let mut loads = self.loads.as_mut().map(|column| column.chunks_mut(BLOCK));
         self.status
             .chunks_mut(BLOCK)
             .enumerate()
-            .map(|(index, status)| Block {
+            .map(|(index, status)| RowBlock {
                 first: index * BLOCK,
                 loads: loads
                     .as_mut()
@@ -176,7 +176,7 @@ impl MetricColumns {
     }
 }
 
-impl Block<'_> {
+impl RowBlock<'_> {
     /// Keeps of some metrics what the row at a place misses.
     fn put(&mut self, place: usize, metrics: &Metrics, missing: Missing) {
         let columns = self.loads.as_mut().into_array();

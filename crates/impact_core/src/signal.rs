@@ -18,7 +18,7 @@ pub use closed_form::{hic_half_sine, hic_square, hic_triangle};
 pub use injury::{HeadInjury, hic, hic_until};
 pub use push::push_around;
 pub use recorded::{Recorded, Recording};
-pub use shape::{Shape, shape_until};
+pub use shape::{PulseShape, shape_until};
 pub use windows::{
     Level, contiguous_level, contiguous_level_until, moving_average, moving_average_until,
 };

@@ -74,7 +74,7 @@ type Features = (
     (f64, f64, f64),
 );
 
-/// Features of a signal, see `signal::Shape`, with the rest looked for over `rest` seconds, and the
+/// Features of a signal, see `signal::PulseShape`, with the rest looked for over `rest` seconds, and the
 /// area of the push around a window.
 #[pyfunction]
 pub fn signal_shape(

@@ -4,8 +4,8 @@ use nalgebra::{Isometry3, Matrix3, Rotation3, Vector3};
 use numeric::error::{Failure, Given, Result, not_negative};
 
 use super::body::{Body, LEAST_GYRATION, ROUNDING, Symmetric};
-use super::description::{Description, Kind, LinkText, about};
-use super::model::{Arm, Joint, JointKind, Link, MOST_MOVING, Projected, Segment, sized};
+use super::description::{Description, JointType, LinkText, about};
+use super::model::{Arm, ArmJoint, JointKind, Link, MOST_MOVING, Projected, Segment, sized};
 use super::pose;
 use super::survey::Survey;
 use super::tree::Tree;
@@ -47,7 +47,7 @@ pub fn joint_names(text: &str) -> Result<Vec<String>> {
     let tree = Tree::of(&description)?;
     let own = description.joints.into_iter().enumerate();
     Ok(own
-        .filter(|(index, joint)| joint.kind != Kind::Fixed && tree.source[*index].0 == *index)
+        .filter(|(index, joint)| joint.kind != JointType::Fixed && tree.source[*index].0 == *index)
         .map(|(_, joint)| joint.name)
         .collect())
 }
@@ -104,7 +104,7 @@ struct Builder<'a> {
     options: &'a Options,
     /// Index among the joints that take values, by joint of the file.
     value: Vec<Option<usize>>,
-    joints: Vec<Joint>,
+    joints: Vec<ArmJoint>,
     segments: Vec<Segment>,
     /// Where each link hangs.
     places: Vec<(Option<usize>, Isometry3<f64>)>,
@@ -113,7 +113,10 @@ struct Builder<'a> {
 impl<'a> Builder<'a> {
     fn new(description: &'a Description, tree: &'a Tree, options: &'a Options) -> Result<Self> {
         let all = &description.joints;
-        let moving = all.iter().filter(|joint| joint.kind != Kind::Fixed).count();
+        let moving = all
+            .iter()
+            .filter(|joint| joint.kind != JointType::Fixed)
+            .count();
         numeric::error::at_most("number of joints that move", moving, MOST_MOVING)?;
         known("locked", &options.locked.iter(), description)?;
         let motors = options.armature.iter().map(|(name, _)| name);
@@ -123,14 +126,14 @@ impl<'a> Builder<'a> {
         let mut free = 0;
         for (index, joint) in all.iter().enumerate() {
             let kind = match joint.kind {
-                Kind::Fixed => continue,
+                JointType::Fixed => continue,
                 _ if tree.source[index].0 != index => continue,
-                Kind::Turning => JointKind::Turning,
-                Kind::Sliding => JointKind::Sliding,
+                JointType::Turning => JointKind::Turning,
+                JointType::Sliding => JointKind::Sliding,
             };
             let locked = options.locked.contains(&joint.name);
             value[index] = Some(joints.len());
-            joints.push(Joint {
+            joints.push(ArmJoint {
                 name: joint.name.clone(),
                 kind,
                 limits: joint.limits.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]),
@@ -156,9 +159,9 @@ impl<'a> Builder<'a> {
             let (parent, frame) = self.places[self.tree.parent[index]];
             let stands = frame * joint.origin;
             self.places[self.tree.child[index]] = match joint.kind {
-                Kind::Fixed => (parent, stands),
-                Kind::Turning => self.segment(index, parent, &stands, JointKind::Turning)?,
-                Kind::Sliding => self.segment(index, parent, &stands, JointKind::Sliding)?,
+                JointType::Fixed => (parent, stands),
+                JointType::Turning => self.segment(index, parent, &stands, JointKind::Turning)?,
+                JointType::Sliding => self.segment(index, parent, &stands, JointKind::Sliding)?,
             };
         }
         Ok(())
@@ -339,7 +342,7 @@ fn known<'n>(
         let joint = description.joints.iter().find(|joint| joint.name == *name);
         let rule = match joint {
             None => "name joints of the arm",
-            Some(joint) if joint.kind == Kind::Fixed => "name joints that move",
+            Some(joint) if joint.kind == JointType::Fixed => "name joints that move",
             Some(_) if names.clone().take(index).any(|other| other == name) => "name a joint once",
             Some(_) => continue,
         };

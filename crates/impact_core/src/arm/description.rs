@@ -30,7 +30,7 @@ pub struct LinkText {
 
 /// How a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum JointType {
     /// About its axis.
     Turning,
     /// Along its axis.
@@ -56,7 +56,7 @@ pub struct JointText {
     /// Name.
     pub name: String,
     /// How it moves.
-    pub kind: Kind,
+    pub kind: JointType,
     /// Names of the links that it connects.
     pub parent: String,
     /// The link that it moves.
@@ -284,9 +284,9 @@ fn joint(node: Node<'_, '_>, notes: &mut Vec<String>) -> Result<JointText> {
     element.spelled(&JOINT)?;
     let word = element.word("type")?;
     let kind = match word.as_str() {
-        "revolute" | "continuous" => Kind::Turning,
-        "prismatic" => Kind::Sliding,
-        "fixed" => Kind::Fixed,
+        "revolute" | "continuous" => JointType::Turning,
+        "prismatic" => JointType::Sliding,
+        "fixed" => JointType::Fixed,
         "floating" | "planar" => {
             let rule = "be revolute, continuous, prismatic or fixed: the base stands still here";
             return Err(element.refused("type", rule, Given::Word(word)));
@@ -315,11 +315,11 @@ fn linked(joint: &Element<'_, '_>, end: &str, notes: &mut Vec<String>) -> Result
 }
 
 /// Unit axis, x by default.
-fn axis(joint: &Element<'_, '_>, kind: Kind, notes: &mut Vec<String>) -> Result<Vector3<f64>> {
+fn axis(joint: &Element<'_, '_>, kind: JointType, notes: &mut Vec<String>) -> Result<Vector3<f64>> {
     let Some(axis) = joint.child("axis")? else {
         return Ok(Vector3::x());
     };
-    if kind == Kind::Fixed {
+    if kind == JointType::Fixed {
         return Ok(Vector3::x());
     }
     axis.only(&["xyz"], notes)?;

@@ -18,7 +18,7 @@ pub enum JointKind {
 
 /// A joint that takes a value of the caller.
 #[derive(Clone, Debug)]
-pub struct Joint {
+pub struct ArmJoint {
     /// Name.
     pub name: String,
     /// How it moves.
@@ -100,7 +100,7 @@ pub struct Arm {
     /// Name in the file.
     pub name: String,
     /// Joints that take values, in the order of the file.
-    pub joints: Vec<Joint>,
+    pub joints: Vec<ArmJoint>,
     /// Links in the order of the file.
     pub links: Vec<Link>,
     /// Bodies that joints move, from the base outwards.

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::body::Body;
-use super::model::{Joint, JointKind, Link, Segment};
+use super::model::{ArmJoint, JointKind, Link, Segment};
 
 /// A segment that spans more than this to the next joint is a part of the arm, and not a frame (m).
 const PART: f64 = 0.05;
@@ -33,7 +33,7 @@ const FLOOR: f64 = 10.0;
 impl Survey {
     /// Looks at an arm without payload.
     #[must_use]
-    pub fn of(segments: &[Segment], joints: &[Joint], links: &[Link], bodies: &[Body]) -> Self {
+    pub fn of(segments: &[Segment], joints: &[ArmJoint], links: &[Link], bodies: &[Body]) -> Self {
         let mut way = vec![0.0; segments.len()];
         let mut next = vec![0.0_f64; segments.len()];
         let mut carries = vec![false; segments.len()];
@@ -82,13 +82,13 @@ impl Survey {
     }
 }
 
-fn range(segment: &Segment, joints: &[Joint]) -> f64 {
+fn range(segment: &Segment, joints: &[ArmJoint]) -> f64 {
     let [low, high] = segment.own_limits.unwrap_or(joints[segment.source].limits);
     high - low
 }
 
 /// Names of the joints of the largest group of wheels, if it has two or more.
-fn wheels(segments: &[Segment], joints: &[Joint], carries: &[bool]) -> Vec<String> {
+fn wheels(segments: &[Segment], joints: &[ArmJoint], carries: &[bool]) -> Vec<String> {
     let mut turns: Vec<Matrix3<f64>> = Vec::with_capacity(segments.len());
     let mut found: Vec<(Vector3<f64>, &str)> = Vec::new();
     for (segment, carries) in segments.iter().zip(carries) {
@@ -114,7 +114,7 @@ fn wheels(segments: &[Segment], joints: &[Joint], carries: &[bool]) -> Vec<Strin
     largest.filter(|names| names.len() > 1).unwrap_or_default()
 }
 
-fn floors(segments: &[Segment], joints: &[Joint]) -> Vec<String> {
+fn floors(segments: &[Segment], joints: &[ArmJoint]) -> Vec<String> {
     let mut on_floor = vec![false; segments.len()];
     let mut found = Vec::new();
     for (index, segment) in segments.iter().enumerate() {

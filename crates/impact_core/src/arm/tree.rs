@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use numeric::error::{Failure, Given, Result};
 
-use super::description::{Description, JointText, Kind};
+use super::description::{Description, JointText, JointType};
 
 /// Links and joints by index.
 pub struct Tree {
@@ -132,11 +132,11 @@ fn sources(joints: &[JointText], named: &HashMap<&str, usize>) -> Result<Vec<(us
     for (index, joint) in joints.iter().enumerate() {
         let (mut at, mut factor, mut addend) = (index, 1.0, 0.0);
         let mut steps = 0;
-        while let (Some(mimic), true) = (&joints[at].mimic, joints[at].kind != Kind::Fixed) {
+        while let (Some(mimic), true) = (&joints[at].mimic, joints[at].kind != JointType::Fixed) {
             let Some(next) = named.get(mimic.joint.as_str()).copied() else {
                 return Err(refused(&joints[at], "name a joint", mimic.joint.clone()));
             };
-            if joints[next].kind == Kind::Fixed {
+            if joints[next].kind == JointType::Fixed {
                 return Err(refused(
                     &joints[at],
                     "name a joint that moves",

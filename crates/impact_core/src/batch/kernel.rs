@@ -1,6 +1,6 @@
 //! Rows of a task, several side by side.
 
-use super::{BatchOptions, Block, Width, code};
+use super::{BatchOptions, RowBlock, Width, code};
 use crate::columns::{Columns, HeadColumns};
 use crate::criteria::Impact;
 use crate::fast::apart::apart;
@@ -13,7 +13,7 @@ use pulp::{Scalar, Simd};
 type Open = (usize, Missing);
 
 /// Fills a block.
-pub(super) fn fill(columns: &Columns<'_>, options: &BatchOptions, block: &mut Block<'_>) {
+pub(super) fn fill(columns: &Columns<'_>, options: &BatchOptions, block: &mut RowBlock<'_>) {
     if matches!(columns.head, HeadColumns::Constrained) {
         for place in 0..block.status.len() {
             finish_alone(columns, options, block, (place, options.fields.missing()));
@@ -43,7 +43,7 @@ pub(super) fn fill(columns: &Columns<'_>, options: &BatchOptions, block: &mut Bl
 struct SideBySide<'a, 'b> {
     columns: &'a Columns<'a>,
     options: &'a BatchOptions,
-    block: &'a mut Block<'b>,
+    block: &'a mut RowBlock<'b>,
 }
 
 impl OnEight for SideBySide<'_, '_> {
@@ -61,7 +61,7 @@ fn by_width<S: Simd, R: Number>(
     zero: R,
     columns: &Columns<'_>,
     options: &BatchOptions,
-    block: &mut Block<'_>,
+    block: &mut RowBlock<'_>,
 ) {
     // Bodies of their own: an unoptimized build keeps room on the stack for every call.
     if options.fields.missing().searches().only_peaks() {
@@ -85,7 +85,7 @@ fn groups<S: Simd, R: Number, const ALL: bool>(
     zero: R,
     columns: &Columns<'_>,
     options: &BatchOptions,
-    block: &mut Block<'_>,
+    block: &mut RowBlock<'_>,
 ) {
     let rows = block.status.len();
     let mut space = Workspace::new(simd, zero);
@@ -165,7 +165,7 @@ fn again<S: Simd, R: Number, const ALL: bool>(
     space: &mut Workspace<S, R>,
     columns: &Columns<'_>,
     options: &BatchOptions,
-    block: &mut Block<'_>,
+    block: &mut RowBlock<'_>,
     walk: Walk,
     open: &mut Vec<Open>,
 ) {
@@ -198,7 +198,7 @@ fn again<S: Simd, R: Number, const ALL: bool>(
 fn finish_alone(
     columns: &Columns<'_>,
     options: &BatchOptions,
-    block: &mut Block<'_>,
+    block: &mut RowBlock<'_>,
     (place, missing): Open,
 ) {
     let found = alone(columns, options, block.first + place, missing);

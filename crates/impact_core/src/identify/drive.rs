@@ -1,7 +1,7 @@
 //! Direct-drive joint from open-loop tests, controller gains, inertia of its tube.
 
 use super::check_samples;
-use super::least_squares::{Start, minimize};
+use super::least_squares::{InitialGuess, minimize};
 use super::line::{CONFIDENCE, fit_line, student_quantile};
 use crate::error::{Failure, Given, Result, not_negative, positive};
 use crate::signal::check_time;
@@ -59,7 +59,7 @@ pub fn fit_open_loop_until(
     if acceleration == 0.0 {
         return Err(moving());
     }
-    let start = Start {
+    let start = InitialGuess {
         parameters: vec![acceleration, 0.0],
         scale: vec![acceleration.abs(), 1.0 / elapsed[elapsed.len() - 1]],
         lower: vec![f64::NEG_INFINITY; 2],

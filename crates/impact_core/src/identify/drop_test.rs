@@ -8,9 +8,9 @@ mod stretch;
 
 use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 use crate::signal::check_time;
-use motion::Motion;
+use motion::DropMotion;
 use numeric::threads::Interrupted;
-use stretch::{SEARCH_STEP, State, contact, flight};
+use stretch::{DropState, SEARCH_STEP, contact, flight};
 
 /// Events after which a slide counts as resting; only bounces below rounding are that many.
 const MOST_STRETCHES: usize = 100_000;
@@ -119,7 +119,7 @@ pub(super) fn trajectory_until(
     interrupted: Interrupted<'_>,
 ) -> Result<Vec<f64>> {
     let end = time[time.len() - 1] - time[0];
-    let mut state = State {
+    let mut state = DropState {
         time: 0.0,
         position: model.height,
         velocity: 0.0,
@@ -133,7 +133,7 @@ pub(super) fn trajectory_until(
         }
         let (motion, duration, next_flying) = if stretch > MOST_STRETCHES {
             let position = state.position;
-            (Motion::Rest { position }, f64::INFINITY, flying)
+            (DropMotion::Rest { position }, f64::INFINITY, flying)
         } else if flying {
             flight(model, &state, end, interrupted)?
         } else {

@@ -22,7 +22,7 @@ pub(super) struct Minimum {
 }
 
 /// Parameters with their limits: a scale that says what a small change is, and a lower bound.
-pub(super) struct Start {
+pub(super) struct InitialGuess {
     pub(super) parameters: Vec<f64>,
     pub(super) scale: Vec<f64>,
     pub(super) lower: Vec<f64>,
@@ -31,7 +31,7 @@ pub(super) struct Start {
 /// Minimizes the sum of squares; `None` if the residuals do not determine the parameters, or if
 /// there are none any more because the caller was asked to stop.
 pub(super) fn minimize(
-    start: &Start,
+    start: &InitialGuess,
     mut residuals: impl FnMut(&[f64]) -> Option<Vec<f64>>,
 ) -> Option<Minimum> {
     let mut parameters = start.parameters.clone();
@@ -127,8 +127,8 @@ fn factor(matrix: DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
 mod tests {
     use super::*;
 
-    fn start(parameters: [f64; 2]) -> Start {
-        Start {
+    fn start(parameters: [f64; 2]) -> InitialGuess {
+        InitialGuess {
             parameters: parameters.to_vec(),
             scale: vec![1.0; 2],
             lower: vec![f64::NEG_INFINITY; 2],

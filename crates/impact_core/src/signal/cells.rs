@@ -8,7 +8,7 @@ use numeric::threads::Interrupted;
 
 /// One piece of a piecewise linear signal.
 #[derive(Clone, Copy)]
-struct Cell {
+struct LinearSegment {
     time: f64,
     length: f64,
     value: f64,
@@ -16,7 +16,7 @@ struct Cell {
     integral: f64,
 }
 
-impl Cell {
+impl LinearSegment {
     fn integral_at(&self, offset: f64) -> f64 {
         self.integral + offset * (self.value + 0.5 * self.slope * offset)
     }
@@ -24,7 +24,7 @@ impl Cell {
 
 /// Windows with free ends in a piecewise linear signal.
 pub(super) struct Cells {
-    cells: Vec<Cell>,
+    cells: Vec<LinearSegment>,
     window: f64,
 }
 
@@ -37,7 +37,7 @@ impl Cells {
     ) -> Result<Self> {
         let cells = collected(signal.time.len() - 1, interrupted, |k| {
             let length = signal.time[k + 1] - signal.time[k];
-            Cell {
+            LinearSegment {
                 time: signal.time[k],
                 length,
                 value: signal.value[k],

@@ -153,7 +153,7 @@ pub(crate) fn search_until(
             .collect();
         levels.push(above);
     }
-    let mut tree = Tree {
+    let mut tree = BlockTree {
         levels: &levels,
         window,
         leaf,
@@ -170,7 +170,7 @@ pub(crate) fn search_until(
     }
 }
 
-struct Tree<'a, L> {
+struct BlockTree<'a, L> {
     levels: &'a [Vec<Block>],
     window: f64,
     leaf: &'a L,
@@ -181,7 +181,7 @@ struct Tree<'a, L> {
     stopped: bool,
 }
 
-impl<L: Leaf> Tree<'_, L> {
+impl<L: Leaf> BlockTree<'_, L> {
     fn hopeless(&self, bound: f64) -> bool {
         bound <= self.best.squared * WORTHWHILE
     }

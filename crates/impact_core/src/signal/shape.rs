@@ -29,7 +29,7 @@ const SAMPLES_OF_LINE: usize = 3;
 /// Features of a signal. Peak and width are those of the largest value; a signal that is negative
 /// throughout has none.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shape {
+pub struct PulseShape {
     /// Smallest value.
     pub least: f64,
     /// Largest value.
@@ -68,8 +68,8 @@ pub fn shape_until(
     value: &[f64],
     rest: f64,
     interrupted: Interrupted<'_>,
-) -> Result<Shape> {
-    let mut found = Shape {
+) -> Result<PulseShape> {
+    let mut found = PulseShape {
         least: f64::INFINITY,
         most: f64::NEG_INFINITY,
         width: f64::NAN,
@@ -364,7 +364,7 @@ fn quietest(value: &[f64], samples: usize, interrupted: Interrupted<'_>) -> Resu
 mod tests {
     use super::*;
 
-    fn shape(value: &[f64]) -> Shape {
+    fn shape(value: &[f64]) -> PulseShape {
         let time: Vec<f64> = (0..value.len()).map(|index| 1e-3 * index as f64).collect();
         shape_until(&time, value, 0.01, &|| false).unwrap()
     }

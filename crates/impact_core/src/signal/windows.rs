@@ -169,7 +169,7 @@ impl Signal<'_> {
 }
 
 /// Positions of the window with both ends in fixed intervals of the signal.
-struct Piece {
+struct WindowRange {
     start_cell: usize,
     end_cell: usize,
     /// Range of the window's start.
@@ -211,9 +211,9 @@ impl<'a> Pieces<'a> {
 }
 
 impl Iterator for Pieces<'_> {
-    type Item = Piece;
+    type Item = WindowRange;
 
-    fn next(&mut self) -> Option<Piece> {
+    fn next(&mut self) -> Option<WindowRange> {
         if self.done {
             return None;
         }
@@ -233,7 +233,7 @@ impl Iterator for Pieces<'_> {
             self.done |= self.start_cell > last;
         }
         self.start = latest;
-        Some(Piece {
+        Some(WindowRange {
             start_cell,
             end_cell,
             earliest,

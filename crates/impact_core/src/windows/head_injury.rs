@@ -30,7 +30,7 @@ pub fn injury(jet: impl Fn(f64) -> [f64; 4], end: f64, width: f64, pieces: usize
             end: width,
         };
     }
-    let search = Search {
+    let search = WindowSearch {
         nodes: nodes(&jet, end, pieces),
         jet: &jet,
         end,
@@ -50,9 +50,9 @@ pub fn injury(jet: impl Fn(f64) -> [f64; 4], end: f64, width: f64, pieces: usize
 }
 
 /// Time, `V`, `a`, `a'` and `a''`.
-type Node = (f64, [f64; 4]);
+type JetSample = (f64, [f64; 4]);
 
-fn nodes(jet: &impl Fn(f64) -> [f64; 4], end: f64, pieces: usize) -> Vec<Node> {
+fn nodes(jet: &impl Fn(f64) -> [f64; 4], end: f64, pieces: usize) -> Vec<JetSample> {
     (0..=pieces)
         .map(|index| {
             let time = end * (index as f64 / pieces as f64);
@@ -61,7 +61,7 @@ fn nodes(jet: &impl Fn(f64) -> [f64; 4], end: f64, pieces: usize) -> Vec<Node> {
         .collect()
 }
 
-struct Search<'a, F> {
+struct WindowSearch<'a, F> {
     jet: &'a F,
     end: f64,
     width: f64,
@@ -69,10 +69,10 @@ struct Search<'a, F> {
     step: f64,
     /// Velocity at the end; velocities are over it, so that their powers are numbers.
     whole: f64,
-    nodes: Vec<Node>,
+    nodes: Vec<JetSample>,
 }
 
-impl<F: Fn(f64) -> [f64; 4]> Search<'_, F> {
+impl<F: Fn(f64) -> [f64; 4]> WindowSearch<'_, F> {
     fn offer(&self, best: &mut Best, start: f64, end: f64) {
         self.offer_long(best, start, end, end - start);
     }
@@ -243,7 +243,7 @@ impl<F: Fn(f64) -> [f64; 4]> Search<'_, F> {
     }
 }
 
-impl<F: Fn(f64) -> [f64; 4]> Leaf for Search<'_, F> {
+impl<F: Fn(f64) -> [f64; 4]> Leaf for WindowSearch<'_, F> {
     fn visit(&self, left: usize, right: usize, best: &mut Best) {
         // A window with free ends is not shorter than a piece.
         if left == right || !self.may_hold(left, right) {

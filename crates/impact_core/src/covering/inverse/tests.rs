@@ -53,7 +53,7 @@ impl Bend {
 
 /// A law from a start, flat before it: powers, kinks upwards and downwards, a pole at 1.
 #[derive(Clone, Debug)]
-struct Law {
+struct PiecewiseLaw {
     start: f64,
     terms: Vec<[f64; 2]>,
     kinks: Vec<Bend>,
@@ -62,7 +62,7 @@ struct Law {
     steep: bool,
 }
 
-impl Law {
+impl PiecewiseLaw {
     fn at(&self, x: f64) -> [f64; 2] {
         let [mut value, mut slope] = [0.0; 2];
         let past = (x - self.start).max(0.0);
@@ -92,7 +92,7 @@ impl Law {
     }
 }
 
-fn law() -> impl Strategy<Value = Law> {
+fn law() -> impl Strategy<Value = PiecewiseLaw> {
     let of = |low: f64, high: f64| (low..high).prop_map(f64::exp2);
     let bend = (0.01..0.99_f64, of(-20.0, 40.0));
     let bend = bend.prop_map(|(start, slope)| Bend { start, slope });
@@ -104,7 +104,7 @@ fn law() -> impl Strategy<Value = Law> {
         proptest::option::of(pair(of(-30.0, 10.0), of(-2.0, 3.0))),
         any::<bool>(),
     )
-        .prop_map(|(start, terms, kinks, pole, steep)| Law {
+        .prop_map(|(start, terms, kinks, pole, steep)| PiecewiseLaw {
             start,
             terms,
             kinks,
@@ -114,7 +114,7 @@ fn law() -> impl Strategy<Value = Law> {
 }
 
 /// A law with a place in (0, 1): a share of the way to the bound, beside a kink, or beside the bound.
-fn placed() -> impl Strategy<Value = (Law, f64)> {
+fn placed() -> impl Strategy<Value = (PiecewiseLaw, f64)> {
     let near = (-15.0..0.0_f64, any::<bool>()).prop_map(|(power, above)| {
         let size = 10_f64.powf(power);
         if above { size } else { -size }
@@ -131,7 +131,7 @@ fn placed() -> impl Strategy<Value = (Law, f64)> {
 }
 
 /// Whether the value at an argument is the target, as far as rounding of both reaches.
-fn solves(law: &Law, found: f64, target: f64) -> bool {
+fn solves(law: &PiecewiseLaw, found: f64, target: f64) -> bool {
     let [aside, room] = [8.0, 64.0].map(|count| count * f64::EPSILON);
     let below = law.at(found * (1.0 - aside))[0];
     let above = law.at((found * (1.0 + aside)).min(1.0_f64.next_down()))[0];

@@ -5,7 +5,7 @@ const ROOTS_APART: f64 = 1.1;
 
 /// Motion between two events; times count from the start of the stretch.
 #[derive(Clone, Copy)]
-pub(super) enum Motion {
+pub(super) enum DropMotion {
     /// Held by friction.
     Rest { position: f64 },
     /// Constant acceleration.
@@ -24,7 +24,7 @@ pub(super) enum Motion {
     },
 }
 
-impl Motion {
+impl DropMotion {
     /// Position and velocity.
     pub(super) fn at(&self, time: f64) -> (f64, f64) {
         match *self {

@@ -1,6 +1,6 @@
 //! Stretches of the trajectory: how each of them moves, and which event ends it.
 
-use super::motion::Motion;
+use super::motion::DropMotion;
 use super::{CHECK, DropContact, DropModel};
 use crate::error::{Failure, Result};
 use numeric::threads::Interrupted;
@@ -12,7 +12,7 @@ pub(super) const SEARCH_STEP: f64 = 0.4;
 const RELAXED: f64 = 50.0;
 
 /// State at the start of a stretch.
-pub(super) struct State {
+pub(super) struct DropState {
     pub(super) time: f64,
     pub(super) position: f64,
     pub(super) velocity: f64,
@@ -20,11 +20,11 @@ pub(super) struct State {
     pub(super) surface: Option<(f64, f64)>,
 }
 
-impl State {
+impl DropState {
     pub(super) fn advance(
         &mut self,
         model: &DropModel,
-        motion: Motion,
+        motion: DropMotion,
         until: f64,
         [position, velocity]: [f64; 2],
         [was_flying, flying]: [bool; 2],
@@ -32,7 +32,7 @@ impl State {
         self.time = until;
         self.position = position;
         // A stretch that continues in the same medium ends at a turn.
-        let turned = was_flying == flying || matches!(motion, Motion::Rest { .. });
+        let turned = was_flying == flying || matches!(motion, DropMotion::Rest { .. });
         self.velocity = if turned { 0.0 } else { velocity };
         if !was_flying {
             let relaxing = flying && model.contact == DropContact::Unilateral;
@@ -44,22 +44,22 @@ impl State {
 /// A stretch above the foam: the motion, how long it lasts and whether the next one is above too.
 pub(super) fn flight(
     model: &DropModel,
-    state: &State,
+    state: &DropState,
     end: f64,
     interrupted: Interrupted<'_>,
-) -> Result<(Motion, f64, bool)> {
+) -> Result<(DropMotion, f64, bool)> {
     let drag = model.friction / model.mass;
     let rising = state.velocity > 0.0;
     if !rising && drag >= model.gravity {
         let position = state.position;
-        return Ok((Motion::Rest { position }, f64::INFINITY, true));
+        return Ok((DropMotion::Rest { position }, f64::INFINITY, true));
     }
     let acceleration = if rising {
         -model.gravity - drag
     } else {
         drag - model.gravity
     };
-    let motion = Motion::Free {
+    let motion = DropMotion::Free {
         position: state.position,
         velocity: state.velocity,
         acceleration,
@@ -101,23 +101,23 @@ pub(super) fn flight(
 /// A stretch on the foam.
 pub(super) fn contact(
     model: &DropModel,
-    state: &State,
+    state: &DropState,
     end: f64,
     interrupted: Interrupted<'_>,
-) -> Result<(Motion, f64, bool)> {
+) -> Result<(DropMotion, f64, bool)> {
     let weight = model.mass * model.gravity;
     let drive = -weight - model.stiffness * state.position;
     let direction = if state.velocity != 0.0 {
         state.velocity.signum()
     } else if drive.abs() <= model.friction {
         let position = state.position;
-        return Ok((Motion::Rest { position }, f64::INFINITY, false));
+        return Ok((DropMotion::Rest { position }, f64::INFINITY, false));
     } else {
         drive.signum()
     };
     let frequency = (model.stiffness / model.mass).sqrt();
     let center = -(weight + model.friction * direction) / model.stiffness;
-    let motion = Motion::Foam {
+    let motion = DropMotion::Foam {
         center,
         offset: state.position - center,
         velocity: state.velocity,
@@ -148,7 +148,7 @@ pub(super) fn contact(
 }
 
 /// Time after which a slide above the foam passes the undeformed surface downwards, if it ever does.
-fn falls_on_surface(state: &State, acceleration: f64) -> Option<f64> {
+fn falls_on_surface(state: &DropState, acceleration: f64) -> Option<f64> {
     let squared = state.velocity * state.velocity - 2.0 * acceleration * state.position;
     (squared >= 0.0).then(|| (squared.sqrt() + state.velocity) / -acceleration)
 }

@@ -1,7 +1,7 @@
 //! Measurements of both tests, and the parameters that fit them best.
 
 use super::super::drop_test::{DropModel, trajectory_until};
-use super::super::least_squares::{Minimum, Start, minimize};
+use super::super::least_squares::{InitialGuess, Minimum, minimize};
 use super::super::line::student_quantile;
 use super::FoamFitSettings;
 use crate::error::{Failure, Given, Result};
@@ -150,7 +150,7 @@ impl Tests<'_> {
         let mut lower = vec![1e-3 * parameters[0], 1e-4, 0.0];
         scale.extend(&parameters[3..]);
         lower.extend(parameters[3..].iter().map(|height| 0.1 * height));
-        let start = Start {
+        let start = InitialGuess {
             parameters,
             scale,
             lower,
