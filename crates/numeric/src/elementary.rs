@@ -91,7 +91,7 @@ fn within_range<const FUSED: bool, R: Number>(x: R) -> R {
     polynomial::<FUSED, R, _>(&EXPONENTIAL, rest) * shifted.power_of_two()
 }
 
-/// What is left of a number beside a whole multiple of one in two parts.
+/// Rest of a number beside a whole multiple of one in two parts.
 #[inline(always)]
 fn reduced<const FUSED: bool, R: Number>(x: R, whole: R, [most, least]: [f64; 2]) -> R {
     let rest = sum::<FUSED, R>(whole, x.like(-most), x);

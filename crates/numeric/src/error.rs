@@ -1,4 +1,4 @@
-//! What can go wrong, with the data needed to act on it.
+//! Failures of the cores, with the data needed to act on them.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -14,7 +14,7 @@ pub enum Given {
     Count(u64),
     /// A word that was given.
     Word(String),
-    /// What was found, in words of ours: it is shown without quotes.
+    /// A finding in words of ours, shown without quotes.
     Found(Cow<'static, str>),
 }
 
@@ -37,9 +37,9 @@ pub struct InvalidParameter {
     pub name: String,
     /// The rule.
     pub requirement: Cow<'static, str>,
-    /// What was given.
+    /// The value that was given.
     pub value: Given,
-    /// What would mend it, if the rule does not say so already.
+    /// Advice that mends it, if the rule does not say so already.
     pub remedy: Option<String>,
 }
 
@@ -73,11 +73,11 @@ pub struct NonFinite {
 pub struct NoThreads {
     /// Number of threads asked for.
     pub threads: usize,
-    /// What the system said.
+    /// Reason that the system gave.
     pub reason: String,
 }
 
-/// What can go wrong: two words, so that a result with it stays in registers.
+/// Failure of a core: two words, so that a result with it stays in registers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
     /// An argument breaks a rule.
@@ -129,13 +129,13 @@ impl Failure {
         Self::NonFinite(Box::new(NonFinite { run, time }))
     }
 
-    /// The same error with what would mend it.
+    /// The error with advice that mends it.
     #[must_use]
     pub fn mended_by(self, advice: impl AsRef<str>) -> Self {
         mended(self, advice.as_ref())
     }
 
-    /// The same error with the index of the run among more runs.
+    /// The error with the index of the run among more runs.
     #[must_use]
     pub fn of_run(mut self, index: impl FnOnce(usize) -> usize) -> Self {
         if let Self::NonFinite(lost) = &mut self {
@@ -144,7 +144,7 @@ impl Failure {
         self
     }
 
-    /// The same error with the owner of the argument in front of its name.
+    /// The error with the owner of the argument in front of its name.
     #[cold]
     #[must_use]
     pub fn within(mut self, owner: &str) -> Self {

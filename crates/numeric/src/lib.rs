@@ -1,4 +1,4 @@
-//! What all cores stand on: errors with their data, checks of numbers, numbers and vectors side by
+//! Foundation of all cores: errors with their data, checks of numbers, numbers and vectors side by
 //! side, elementary functions of them, streams of random numbers, threads.
 
 #![forbid(unsafe_code)]

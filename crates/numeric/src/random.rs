@@ -21,7 +21,7 @@ impl Stream {
         self.0.next_u64()
     }
 
-    /// The same seed from the start of another stream.
+    /// Goes to the start of another stream of the seed.
     pub fn set_stream(&mut self, stream: u64) {
         self.0.set_stream(stream);
     }

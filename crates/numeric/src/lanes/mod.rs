@@ -43,7 +43,7 @@ pub trait Truth:
 
 /// Outcome of a comparison, lane by lane.
 pub trait Mask: Truth + PartialEq {
-    /// The same truth in every lane.
+    /// A mask with one truth in every lane.
     fn splat(value: bool) -> Self;
     /// The mask with one lane made false.
     #[must_use]
@@ -79,7 +79,7 @@ pub trait Number:
     + Sub<f64, Output = Self>
     + Mul<f64, Output = Self>
 {
-    /// What a comparison gives.
+    /// Result of a comparison.
     type Mask: Truth;
     /// Number of lanes.
     const WIDTH: usize;
@@ -90,7 +90,7 @@ pub trait Number:
     /// A number with a value for each lane.
     #[must_use]
     fn like_each(self, value: impl FnMut(usize) -> f64) -> Self;
-    /// The same truth in every lane.
+    /// A mask with one truth in every lane.
     fn truth(self, value: bool) -> Self::Mask;
     /// Value of one lane.
     fn lane(self, index: usize) -> f64;
@@ -143,7 +143,7 @@ pub trait Number:
 
 /// A real number, or several side by side, that need no processor of a kind.
 pub trait Real: Number<Mask: Mask> + PartialEq + Zero + One {
-    /// The same value in every lane.
+    /// A number with one value in every lane.
     fn splat(value: f64) -> Self;
     /// A value for each lane.
     fn from_fn(value: impl FnMut(usize) -> f64) -> Self;

@@ -24,7 +24,7 @@ pub struct PackedMask<S: Simd> {
 }
 
 impl<S: Simd> Packed<S> {
-    /// The same value in every lane.
+    /// A number with one value in every lane.
     #[inline(always)]
     pub fn splat(simd: S, value: f64) -> Self {
         Self {

@@ -4,9 +4,9 @@ use nalgebra::Vector2;
 
 use super::{Real, Wide};
 
-/// What the kernels need of a vector beyond its arithmetic, lane by lane.
+/// Operations of kernels on a vector beyond its arithmetic, lane by lane.
 pub trait Planar<R: Real> {
-    /// The same vector in every lane.
+    /// One vector in every lane.
     fn splat(vector: [f64; 2]) -> Self;
     /// The vector turned counter-clockwise by a right angle.
     #[must_use]

@@ -8,7 +8,7 @@ use super::Number;
 /// processors that are rare: there work is done one after the other, with the same bits.
 #[cfg(target_arch = "x86_64")]
 pub type Vectors = pulp::x86::V3;
-/// What every processor of the family has is enough.
+/// Vectors of the family, which every processor of it has.
 #[cfg(not(target_arch = "x86_64"))]
 pub type Vectors = pulp::Scalar;
 
@@ -23,7 +23,7 @@ pub fn vectors() -> Option<Vectors> {
 
 /// Work on eight numbers side by side.
 pub trait OnEight {
-    /// What it gives.
+    /// Result of the work.
     type Output;
     /// Does it, with instructions that it may be compiled for and zero in every lane.
     fn on_eight<S: Simd, R: Number>(self, simd: S, zero: R) -> Self::Output;
