@@ -135,7 +135,7 @@ pub struct Allowed {
     pub governs: Governs,
     /// Speeds at which force, pressure and strain reach their limits; NaN where they do not.
     pub speeds: [f64; 3],
-    /// How it was found.
+    /// Method that gave the speed, or why there is none.
     pub status: SpeedStatus,
     /// Further crossings, in m/s.
     pub further: Vec<f64>,
@@ -262,7 +262,7 @@ impl LimitedContact<'_> {
         self.pad.map_or(0.0, |pad| pad.work(compression)) + self.region.work(force)
     }
 
-    /// What is stored at each limit.
+    /// Stored energy and compression at each limit.
     #[must_use]
     pub fn stored(&self) -> Stored {
         let at_limits = self.at_limits();
@@ -281,7 +281,7 @@ impl LimitedContact<'_> {
     }
 }
 
-/// What a contact stores at the limits of force, pressure and strain, whatever moves.
+/// Stored energies at the limits of force, pressure and strain, whatever moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stored {
     /// Energies, in J; `None` where a limit is not there or beyond the data.

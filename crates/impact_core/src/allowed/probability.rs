@@ -122,7 +122,7 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// What the draws gave.
+/// Probability that a speed is not allowed, from random draws of the inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probability {
     /// Share of draws in which the speed is not allowed.

@@ -17,7 +17,7 @@ macro_rules! places {
         const _: [usize; COUNT] = [$($place),+];
         /// Names of the numbers of a row.
         pub const NAMES: [&str; COUNT] = [$($name),+];
-        /// What errors call them.
+        /// Names of the numbers in errors.
         pub(super) const CALLED: [&str; COUNT] = [$($called),+];
     };
 }
@@ -110,7 +110,7 @@ pub enum RegionKind {
     Power,
 }
 
-/// What all rows share.
+/// Kinds of covering and region, shared by all rows.
 #[derive(Clone, Debug)]
 pub struct Kind {
     /// Law and shape of the covering; `None`: bare.
@@ -138,7 +138,7 @@ pub(super) fn is_of_law(place: usize) -> bool {
     place >= FIRST_MATERIAL || place == BOTTOMING
 }
 
-/// What energies and compressions at limits do not depend on.
+/// Masses, on which energies and compressions at limits do not depend.
 pub(super) const MASSES: [usize; 2] = [ROBOT_MASS, BODY_MASS];
 
 pub(super) fn given(value: f64) -> Option<f64> {

@@ -97,7 +97,7 @@ fn code_of(place: usize) -> u8 {
 /// A row of results: numbers, the place of its status among all, and a second code.
 type Found<const N: usize> = ([f64; N], usize, u8);
 
-/// What rows are made of, with the law of all of them where it does not differ.
+/// Inputs of all rows, with their law where it does not differ.
 struct RowInputs<'a> {
     setup: &'a Setup,
     given: &'a Given<'a>,
@@ -150,7 +150,7 @@ impl Kinds {
 
 /// Results of all rows in blocks over the threads.
 ///
-/// What is remembered of a row is there for the next one as long as rows differ in their masses only.
+/// Values remembered of a row are there for the next one as long as rows differ in their masses only.
 fn each_row<const N: usize, M: Default>(
     rows: &RowInputs<'_>,
     (kinds, room): (Kinds, Room<'_>),

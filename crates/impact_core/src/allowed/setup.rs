@@ -15,7 +15,7 @@ use crate::collision::{Braking, Collision, Outcome, Region, Wanted, simulate};
 use crate::covering::{Bottoming, Covering, Material, Pad, Rate, Shape, Unloading};
 use crate::error::{Failure, Given as Shown, Result, positive};
 
-/// What is known of rows that differ in their masses only.
+/// Contact of rows that differ in their masses only, computed once.
 #[derive(Clone, Debug)]
 pub struct PreparedContact {
     pad: Option<Pad>,
@@ -31,7 +31,7 @@ pub struct PreparedContact {
 /// How rows are made into contacts.
 #[derive(Clone, Debug)]
 pub struct Setup {
-    /// What all rows share.
+    /// Kinds of covering and region, shared by all rows.
     pub kind: Kind,
     /// Relative tolerance of simulations.
     pub tolerance: f64,
@@ -196,7 +196,7 @@ impl Setup {
         Ok((found, bare))
     }
 
-    /// What does not depend on the masses of a row.
+    /// Part of a contact that does not depend on the masses of its row.
     fn known(&self, row: &Row, fixed: Option<&Material>) -> Result<PreparedContact> {
         let pad = self.pad(row, fixed)?;
         let contact = self.contact(row, pad.as_ref())?;

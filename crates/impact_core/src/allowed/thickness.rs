@@ -8,7 +8,7 @@ const RANGE: [f64; 2] = [1e-4, 1.0];
 /// How many, where a thicker covering may be slower.
 const LOOKS: usize = 97;
 
-/// What was found.
+/// Result of the search for a least thickness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ThicknessStatus {
     /// The least thickness.

@@ -109,7 +109,7 @@ impl<R: Real> Steps<R> {
         }
     }
 
-    /// The same in more lanes; the last one stands for those beyond it.
+    /// The steps in more lanes; the last one stands for those beyond it.
     pub fn widened<W: Real>(&self) -> Steps<W> {
         let of = |number: R| W::from_fn(|lane| number.lane(lane.min(R::WIDTH - 1)));
         let both = |[first, second]: [R; 2]| [of(first), of(second)];

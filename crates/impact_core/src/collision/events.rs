@@ -5,7 +5,7 @@ use super::mechanics::{Carried, CollisionState, Local, Mechanics, Past, SPEED, T
 use super::step::{Step, step};
 use crate::covering::Kinks;
 
-/// What can happen within a step.
+/// Event within a step of a collision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CollisionEvent {
     /// The bodies part.
@@ -14,7 +14,7 @@ pub enum CollisionEvent {
     Turn,
     /// A kink of the covering's force, or its bottoming: the next one above, or below.
     Kink {
-        /// Whether it is met while the compression rises.
+        /// Whether the compression rises through the kink.
         upwards: bool,
     },
     /// The compression passes the largest one so far.
@@ -95,7 +95,7 @@ impl Marks {
     }
 }
 
-/// What is left of the touch.
+/// Quantity whose zero is the release, and its rate.
 fn release<const N: usize>(
     mechanics: &Mechanics<'_, N>,
     state: &CollisionState<N>,

@@ -28,7 +28,7 @@ pub enum Carried {
     Damped,
 }
 
-/// What the past decides.
+/// History of the motion: its direction, the last reversal, braking.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Past {
     /// Whether `eps` rises.
@@ -73,9 +73,9 @@ struct CoveringForce {
 
 /// A collision ready to move, with `N` = 3 for free bodies and 5 for held ones.
 pub struct Mechanics<'a, const N: usize> {
-    /// What collides.
+    /// The collision.
     pub collision: &'a Collision<'a>,
-    /// What the state carries.
+    /// Sharing of the compression by covering and region.
     pub carried: Carried,
     robot_share: f64,
     body_share: f64,

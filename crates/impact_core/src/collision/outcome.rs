@@ -1,4 +1,4 @@
-//! What a collision leaves.
+//! Outcome of a collision.
 
 /// How a collision ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,7 +66,7 @@ pub struct MotionSample {
 /// Loads of a collision; what does not exist is NaN.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
-    /// How it ended.
+    /// Way in which the collision ended.
     pub status: CollisionStatus,
     /// When it ended, in s.
     pub release_time: f64,

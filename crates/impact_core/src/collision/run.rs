@@ -30,7 +30,7 @@ const UNSEEN: f64 = 1e-12;
 /// Windows of the head injury criterion, in s.
 pub const INJURY_WINDOWS: [f64; 2] = [0.015, 0.036];
 
-/// What of a collision is wanted beyond its loads.
+/// Results of a collision that are wanted beyond its loads.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wanted {
     /// The motion.

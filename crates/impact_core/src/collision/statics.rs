@@ -1,4 +1,4 @@
-//! What is stored at the largest compression.
+//! Static equilibrium of covering and region at the largest compression.
 
 use super::Region;
 use crate::covering::Pad;

@@ -37,7 +37,7 @@ const FIRST_MARK: [f64; 2] = [0.01, 0.5];
 /// Half of the nodes of a rule and its middle.
 type Nodes = Lanes<8>;
 
-/// What is integrated.
+/// A function to integrate.
 trait Integrand {
     /// Its values side by side.
     fn at<R: Real>(&self, x: R) -> R;
@@ -133,8 +133,8 @@ impl CompressedStack<'_> {
         self.with_region(work, [force, slope])
     }
 
-    /// What a flat covering that has not bottomed out returns: `U` is a function of its work alone,
-    /// `int s U de = H w + (1-H) w (w/w_max)^s/(s+1)`.
+    /// Work that a flat covering that has not bottomed out returns, and `deps/dd`: `U` is a function of its work
+    /// alone, `int s U de = H w + (1-H) w (w/w_max)^s/(s+1)`.
     fn returned(&self, pad: &Pad, largest: f64, compression: f64) -> [f64; 2] {
         let unloading = pad.covering.unloading;
         let strain = compression / pad.covering.thickness;
@@ -219,7 +219,7 @@ impl CompressedStack<'_> {
     }
 }
 
-/// What a compression is integrated over.
+/// Substitution for the compression in an integral.
 #[derive(Clone, Copy)]
 enum Substitution {
     /// `x` of `d = first x^power`.

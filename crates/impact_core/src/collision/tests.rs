@@ -18,7 +18,7 @@ fn stored_alone(collision: &Collision<'_>) -> Option<Outcome> {
     stored(collision, turns(&[collision])[0].as_ref())
 }
 
-/// What the cases call it, found, and how near it has to be.
+/// Value of a load by its name in the cases, and its relative tolerance.
 fn found(name: &str, outcome: &Outcome) -> Option<(f64, f64)> {
     let numbers = [
         ("release_time", outcome.release_time, 1e-6),

@@ -124,7 +124,7 @@ impl GibsonAshby {
         }
     }
 
-    /// Whether its numbers are possible.
+    /// Checks the ranges of its numbers.
     pub(super) fn check(&self) -> Result<()> {
         positive("modulus", self.modulus)?;
         positive("plateau", self.plateau)?;

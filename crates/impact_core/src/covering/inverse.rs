@@ -23,8 +23,8 @@ pub fn largest(target: f64, bound: f64, function: impl Fn(f64) -> [f64; 2]) -> f
     between(target, 0.0, bound, function)
 }
 
-/// The same in [`low`, `bound`), where the value at `low` is at most `target`; infinite where nothing bounds a
-/// function that stays below it.
+/// Largest argument in [`low`, `bound`) whose value is at most `target`, which that at `low` is; infinite where
+/// nothing bounds a function that stays below it.
 #[must_use]
 pub fn between(target: f64, low: f64, bound: f64, function: impl Fn(f64) -> [f64; 2]) -> f64 {
     let (mut low, mut high) = (low, bound);
@@ -87,9 +87,9 @@ fn middle(low: f64, high: f64) -> f64 {
     f64::from_bits(low.to_bits() + numbers_between(low, high) / 2)
 }
 
-/// The same in [`low`, `bound`) of a function that rises steeply from there on, as on a backing, and has no kink
-/// beyond `last_kink`; it may have the value `at_low` and the slope `slope` at `low`. Newton steps from beyond,
-/// where they cannot jump over the solution of a convex function.
+/// Largest argument in [`low`, `bound`) whose value is at most `target`, of a function that rises steeply from `low`
+/// on, as on a backing, and has no kink beyond `last_kink`; it may have the value `at_low` and the slope `slope` at
+/// `low`. Newton steps from beyond, where they cannot jump over the solution of a convex function.
 #[must_use]
 pub fn beyond(
     target: f64,

@@ -34,7 +34,7 @@ pub fn inverse_of(target: f64, function: impl Fn(f64) -> [f64; 2]) -> f64 {
     inverse::largest(target, f64::INFINITY, function)
 }
 
-/// The same below a bound.
+/// Argument in [0, `bound`) at which a rising function from (0, 0) reaches a value.
 #[must_use]
 pub fn inverse_within(target: f64, bound: f64, function: impl Fn(f64) -> [f64; 2]) -> f64 {
     inverse::largest(target, bound, function)
@@ -124,7 +124,7 @@ impl Default for Bottoming {
 }
 
 impl Rate {
-    /// Whether it changes anything.
+    /// Whether the force does not depend on the rate.
     #[must_use]
     pub fn is_none(&self) -> bool {
         self.base == 0.0 && self.slope == 0.0
@@ -198,7 +198,7 @@ impl Covering {
 /// A covering with what is known before it is compressed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pad {
-    /// As it is described.
+    /// Description of the covering.
     pub covering: Covering,
     scale: f64,
     halves: Option<HalfOrders>,
@@ -233,7 +233,7 @@ impl Pad {
         }
     }
 
-    /// The same pad in another thickness.
+    /// The pad in another thickness, in m.
     #[must_use]
     pub fn of_thickness(&self, thickness: f64) -> Self {
         Self::new(Covering {
@@ -274,7 +274,7 @@ impl Pad {
         })
     }
 
-    /// The same with `1/T` at hand.
+    /// Force `F(d)` and its slope from `1/T`.
     #[inline]
     #[must_use]
     pub fn force_by(&self, compression: f64, reciprocal: f64) -> [f64; 2] {

@@ -59,7 +59,7 @@ pub(super) fn power(factor: f64, exponent: f64, x: f64) -> [f64; 2] {
     sloped([factor, exponent], x, raised(x, exponent))
 }
 
-/// The same of a power that is known.
+/// `factor x^exponent` and its slope from `power = x^exponent`.
 #[inline(always)]
 fn sloped<R: Real>([factor, exponent]: [f64; 2], x: R, power: R) -> [R; 2] {
     if exponent == 1.0 {
@@ -190,7 +190,7 @@ pub(crate) fn logarithm_of<R: Real>(x: R) -> R {
     }
 }
 
-/// As [`logarithm_of`].
+/// Exponential by the library for one number, by series for several side by side.
 #[inline(always)]
 pub(crate) fn exponential_of<R: Real>(x: R) -> R {
     if R::WIDTH == 1 {

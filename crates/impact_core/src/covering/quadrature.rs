@@ -58,7 +58,7 @@ const NEAR_PAIR: f64 = 0.25;
 /// Shortest distance that counts.
 const NO_DISTANCE: f64 = 1e-15;
 
-/// The same of a function with a pole at `1 + gap`: towards it pieces get shorter as it gets nearer.
+/// Integral over [0, 1] of a function with a pole at `1 + gap`: towards it pieces get shorter as it gets nearer.
 #[must_use]
 pub fn integral_before_pole(gap: f64, function: impl Fn(f64) -> f64) -> f64 {
     if gap.is_nan() || gap >= NEAR_POLE {
@@ -73,7 +73,7 @@ pub fn integral_before_pole(gap: f64, function: impl Fn(f64) -> f64) -> f64 {
     )
 }
 
-/// The same of a function with poles at `1 - gap i` and `1 + gap i`.
+/// Integral over [0, 1] of a function with poles at `1 - gap i` and `1 + gap i`.
 #[must_use]
 pub fn integral_between_poles(gap: f64, function: impl Fn(f64) -> f64) -> f64 {
     if gap.is_nan() || gap >= NEAR_PAIR {

@@ -113,7 +113,7 @@ pub struct HalfOrders {
 }
 
 impl HalfOrders {
-    /// What can be known of a law before a strain is.
+    /// Fractional integrals of a law, as far as they do not depend on the strain.
     #[must_use]
     pub fn new(material: &Material) -> Self {
         let ramp = |slope: f64, origin: f64| Power {
@@ -229,7 +229,7 @@ fn pole(material: &Material, strain: f64, length: f64) -> f64 {
     ((material.bound() - strain) / length).sqrt()
 }
 
-/// What a law adds to its powers, and the slope of that.
+/// Stress of a law beyond that of its powers, and its slope.
 fn rest(material: &Material, strain: f64) -> [f64; 2] {
     match material {
         Material::GibsonAshby(law) => {

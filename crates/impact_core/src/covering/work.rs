@@ -1,4 +1,4 @@
-//! What a covering stores, of one compression or of several side by side.
+//! Work stored by a covering, at one compression or at several side by side.
 
 use numeric::lanes::{Real, Truth, each};
 

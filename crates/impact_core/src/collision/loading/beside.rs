@@ -115,7 +115,7 @@ struct ContactLanes<'a, 'b, R> {
     per_thickness: R,
     /// Onset and stiffness of the backing.
     backing: [R; 2],
-    /// What the regions yield by, if all of them are linear or rigid.
+    /// Compliances of the regions, in m/N, if all of them are linear or rigid.
     yielding: Option<R>,
 }
 
@@ -187,7 +187,7 @@ impl<'a, 'b, R: Real> ContactLanes<'a, 'b, R> {
         [force, slope]
     }
 
-    /// What the regions yield by, for each newton more of a force.
+    /// Compliances of the regions at a force, in m/N.
     #[inline(always)]
     fn yielding(&self, force: R) -> R {
         self.yielding.unwrap_or_else(|| self.bent(force))

@@ -121,7 +121,7 @@ impl Loading<'_> {
         Inside::of(rates, from.at, taken, to.rates)
     }
 
-    /// The same place of the plane over a variable.
+    /// Point of the plane over another variable.
     fn over(&self, variable: Variable, point: &Point) -> Point {
         let at = variable.at(point.depth, point.speed);
         let first = match variable {

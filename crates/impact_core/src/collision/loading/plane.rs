@@ -204,7 +204,7 @@ impl<R: Real> Numbers<R> {
 }
 
 impl Loading<'_> {
-    /// What the region yields by, for each newton more of a force.
+    /// Compliance of the region at a force, in m/N.
     #[inline]
     pub(super) fn yielding(&self, force: f64) -> f64 {
         match self.collision.region {

@@ -54,7 +54,7 @@ impl Progress {
 /// How far the next step goes.
 pub(super) struct StepLength {
     pub(super) length: f64,
-    /// Whether it ends at the kink, or at the turn.
+    /// Whether the step ends at the kink, or at the turn.
     pub(super) last: bool,
 }
 

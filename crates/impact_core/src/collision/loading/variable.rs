@@ -1,4 +1,4 @@
-//! What the plane of `d` and `eps'` is integrated over.
+//! Variables of integration in the plane of `d` and `eps'`.
 
 use numeric::lanes::Real;
 
@@ -19,7 +19,7 @@ pub enum Variable {
     Depth {
         /// `d` at `x = 0`, in m.
         origin: f64,
-        /// What `d` rises by up to `x = 1`, in m.
+        /// Rise of `d` up to `x = 1`, in m.
         first: f64,
         /// The power.
         power: i32,
@@ -30,7 +30,7 @@ pub enum Variable {
         unit: f64,
         /// Squarings of `y`.
         doublings: u32,
-        /// What `y` falls by.
+        /// Fall of `y` up to `w = 1`.
         range: f64,
     },
 }
@@ -90,7 +90,7 @@ impl Variable {
         }
     }
 
-    /// What it begins with, in m, or what `y` falls by.
+    /// `d` at its start, in m, or the fall of `y`.
     pub(super) fn start(self) -> f64 {
         match self {
             Self::Depth { origin, .. } => origin,
