@@ -58,7 +58,7 @@ pub struct Places<'a> {
     pub check_limits: bool,
 }
 
-/// What a point is able to do.
+/// Position and mobility of a point.
 #[derive(Clone, Copy, Debug)]
 pub struct PointState {
     /// Where it stands (m).
@@ -96,7 +96,7 @@ impl Arm {
     /// Positions, mobilities, heaviest and lightest directions of points.
     ///
     /// # Errors
-    /// As `effective_masses`.
+    /// Errors of `effective_masses`.
     pub fn point_states(&self, places: &Places<'_>, work: Work<'_>) -> Result<Vec<PointState>> {
         self.check(places)?;
         sized!(self, SIZE => self.each::<SIZE, _>(places, None, work, |pose, point, mobility, _| PointState {
@@ -109,7 +109,7 @@ impl Arm {
     /// Velocities of points for rates of all joints (m/s).
     ///
     /// # Errors
-    /// As `effective_masses`.
+    /// Errors of `effective_masses`.
     pub fn velocities(
         &self,
         places: &Places<'_>,

@@ -27,7 +27,7 @@ impl Body {
     /// Returns the body if a rigid body may be so.
     ///
     /// # Errors
-    /// As `finite`, and an inertia that is not positive semidefinite or whose principal moments
+    /// Refused by `finite`, an inertia that is not positive semidefinite, or principal moments that
     /// break the triangle inequality.
     pub fn checked(self) -> Result<Self> {
         let body = self.finite()?;
@@ -132,7 +132,7 @@ impl Body {
         (self.mass > 0.0).then(|| (largest.max(0.0) / self.mass).sqrt())
     }
 
-    /// The same body in the frame in which its own one stands so.
+    /// The body in outer coordinates, in which `frame` is the pose of its own frame.
     #[must_use]
     pub fn placed(&self, frame: &Isometry3<f64>) -> Self {
         let rotation = frame.rotation.to_rotation_matrix();
@@ -192,7 +192,7 @@ impl Symmetric {
         }
     }
 
-    /// What a mass adds to an inertia when that is moved by `away` from the origin it was about:
+    /// Change of an inertia when the mass is moved by `away` from the origin it was about:
     /// `2 (h.r) 1 - h r^T - r h^T` with the first moment `h` about the middle of both origins.
     #[must_use]
     pub fn moved(middle: &Vector3<f64>, away: &Vector3<f64>) -> Self {
@@ -208,7 +208,7 @@ impl Symmetric {
         }
     }
 
-    /// The same matrix along turned axes: `R I R^T`.
+    /// Inertia along turned axes: `R I R^T`.
     #[inline]
     #[must_use]
     pub fn turned(&self, rotation: &Matrix3<f64>) -> Self {

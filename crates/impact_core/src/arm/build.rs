@@ -25,10 +25,10 @@ pub struct Payload {
     pub body: Body,
 }
 
-/// What a URDF does not hold.
+/// Data of an arm that a URDF does not hold.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// What the arm carries.
+    /// Payloads of the arm.
     pub payloads: Vec<Payload>,
     /// Reflected motor inertia `n^2 J_m` by joint (kg m^2, or kg where the joint slides).
     pub armature: Vec<(String, f64)>,

@@ -1,4 +1,4 @@
-//! What a URDF says of links and joints, each element checked by itself.
+//! Links and joints of a URDF, each element checked by itself.
 
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 use numeric::error::{Failure, Given, Result, at_most};
@@ -22,7 +22,7 @@ pub struct LinkText {
     pub name: String,
     /// Inertia in the frame of the link; none without `inertial`. Whether a rigid body may have it is not checked.
     pub body: Body,
-    /// Whether it has a shape to see or to touch.
+    /// Whether the link has a shape to see or to touch.
     pub shaped: bool,
     /// Size of that shape, if it is of primitives.
     pub size: Option<Size>,
@@ -46,7 +46,7 @@ pub struct Mimic {
     pub joint: String,
     /// Factor of its value.
     pub multiplier: f64,
-    /// What is added.
+    /// Offset of its value.
     pub offset: f64,
 }
 
@@ -55,7 +55,7 @@ pub struct Mimic {
 pub struct JointText {
     /// Name.
     pub name: String,
-    /// How it moves.
+    /// Type of its motion.
     pub kind: JointType,
     /// Names of the links that it connects.
     pub parent: String,
@@ -67,7 +67,7 @@ pub struct JointText {
     pub axis: Vector3<f64>,
     /// Least and largest value; none where the joint may take any.
     pub limits: Option<[f64; 2]>,
-    /// What it follows.
+    /// The joint that it follows.
     pub mimic: Option<Mimic>,
 }
 

@@ -55,8 +55,8 @@ impl<'a, 'input> Element<'a, 'input> {
         self.noted(known, notes, |_| whole)
     }
 
-    /// As `only`, where few of the known attributes are read, and need not be there: names near one of those that is
-    /// missing are refused.
+    /// Notes attributes like `only`, where few of the known ones are read, and need not be there: names near one of
+    /// those that is missing are refused.
     pub fn only_of(&self, known: &[&str], read: &[&str], notes: &mut Vec<String>) -> Result<()> {
         self.noted(known, notes, |name| {
             let mut missing = read.iter().filter(|each| !self.node.has_attribute(**each));

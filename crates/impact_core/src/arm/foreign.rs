@@ -2,7 +2,7 @@
 
 use numeric::error::{Failure, Given};
 
-/// What to do with macros.
+/// Advice for a file with macros.
 pub const EXPAND: &str = "expand them first: xacro robot.urdf.xacro > robot.urdf";
 
 /// Most prefixes that are declared for a document.

@@ -1,4 +1,4 @@
-//! What follows from the mobility of a point: its effective mass in any direction.
+//! Effective mass of a point in any direction, from its mobility.
 
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 

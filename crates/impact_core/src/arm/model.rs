@@ -21,7 +21,7 @@ pub enum JointKind {
 pub struct ArmJoint {
     /// Name.
     pub name: String,
-    /// How it moves.
+    /// Type of its motion.
     pub kind: JointKind,
     /// Least and largest value, infinite without limits.
     pub limits: [f64; 2],
@@ -44,7 +44,7 @@ pub struct Link {
     pub mass: f64,
     /// Principal moments of the inertia that it is computed with, the least one first (kg m^2).
     pub moments: [f64; 3],
-    /// Whether it has a shape.
+    /// Whether the link has a shape.
     pub shaped: bool,
     /// Size of that shape, if it is of primitives.
     pub size: Option<Size>,
@@ -72,7 +72,7 @@ pub struct Segment {
     pub rotation: Matrix3<f64>,
     /// Its origin at zero in the frame of the parent (m).
     pub offset: Vector3<f64>,
-    /// How its joint moves.
+    /// Type of motion of its joint.
     pub kind: JointKind,
     /// The joint whose value it takes.
     pub source: usize,
@@ -127,7 +127,7 @@ pub struct Arm {
     pub passed_over: Vec<String>,
     /// Joints and links that are turned by more than a turn.
     pub turned: Vec<String>,
-    /// What tells whether the arm may be real.
+    /// Signs that the arm may not be real.
     pub survey: Survey,
 }
 

@@ -1,4 +1,4 @@
-//! What tells, without a pose, whether an arm may be real: how far it reaches, what spans a way without a mass, wheels.
+//! Signs, without a pose, that an arm may not be real: its reach, parts without a mass, wheels.
 
 use nalgebra::{Matrix3, Vector3};
 

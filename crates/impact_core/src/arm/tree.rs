@@ -122,7 +122,7 @@ fn outwards(description: &Description, parent: &[usize], child: &[usize]) -> Res
     }
 }
 
-/// What each joint takes its value from in the end.
+/// Joint that each joint takes its value from in the end, with factor and offset.
 fn sources(joints: &[JointText], named: &HashMap<&str, usize>) -> Result<Vec<(usize, f64, f64)>> {
     let refused = |joint: &JointText, rule: &'static str, value: String| {
         let name = format!("joint {:?}: mimic", joint.name);

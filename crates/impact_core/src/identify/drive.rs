@@ -31,7 +31,7 @@ pub fn fit_open_loop(time: &[f64], angle: &[f64]) -> Result<OpenLoop> {
     fit_open_loop_until(time, angle, &|| false)
 }
 
-/// The same unless the caller asks to stop, which is looked at whenever the residuals are asked for.
+/// Interruptible [`fit_open_loop`]: asks whether to stop whenever the residuals are computed.
 ///
 /// # Errors
 /// Also that the caller asked to stop.
@@ -176,7 +176,7 @@ pub fn identify_direct_drive(
     })
 }
 
-/// What turns a command into a force at the impact point.
+/// Constants between a command and its force at the impact point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveConstants {
     /// Distance from the axis to the impact point `l_1`, in m.

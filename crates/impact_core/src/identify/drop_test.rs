@@ -86,7 +86,7 @@ pub fn drop_trajectory(time: &[f64], model: &DropModel) -> Result<Vec<f64>> {
     drop_trajectory_until(time, model, &|| false)
 }
 
-/// The same unless the caller asks to stop.
+/// Interruptible [`drop_trajectory`].
 ///
 /// # Errors
 /// Also that the caller asked to stop.
@@ -109,7 +109,7 @@ pub fn drop_trajectory_until(
     ))
 }
 
-/// The same without checks, for the fit.
+/// Drop trajectory without checks, for the fit.
 ///
 /// # Errors
 /// The caller asked to stop.

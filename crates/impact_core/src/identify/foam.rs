@@ -28,7 +28,7 @@ pub struct Drop<'a> {
     pub position: &'a [f64],
 }
 
-/// What is known about the rig, and how intervals are made.
+/// Constants of the rig and settings of the intervals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FoamFitSettings {
     /// Moving mass, in kg.
@@ -123,7 +123,7 @@ pub fn identify_foam(
     identify_foam_until(static_force, static_compression, drops, settings, work)
 }
 
-/// The same unless the caller asks to stop, which is looked at between the repeats of the bootstrap; each of them is
+/// Interruptible [`identify_foam`]: asks whether to stop between the repeats of the bootstrap; each of them is
 /// progress.
 ///
 /// # Errors

@@ -51,7 +51,7 @@ pub fn hic(
     hic_until(time, acceleration_g, window, interpolate, &|| false)
 }
 
-/// The same unless the caller asks to stop.
+/// Interruptible [`hic`].
 ///
 /// # Errors
 /// Also that the caller asked to stop.

@@ -34,7 +34,7 @@ pub struct Recording<'a> {
 pub struct Recorded {
     /// Over the impact period.
     pub metrics: Metrics,
-    /// The same criteria over everything from first contact to the end of the record.
+    /// Criteria over the record from first contact to its end.
     pub whole: Loads<f64>,
 }
 
@@ -60,7 +60,7 @@ impl Recording<'_> {
         self.metrics_until(&|| false)
     }
 
-    /// The same unless the caller asks to stop.
+    /// Interruptible [`Recording::metrics`].
     ///
     /// # Errors
     /// Also that the caller asked to stop.

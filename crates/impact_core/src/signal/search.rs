@@ -119,7 +119,7 @@ impl Best {
     }
 }
 
-/// What happens in a pair of blocks that are not divided further.
+/// Search in a pair of blocks that are not divided further.
 pub(crate) trait Leaf {
     /// Offers the windows that start in block `left` and end in block `right` (`left <= right`).
     fn visit(&self, left: usize, right: usize, best: &mut Best);
@@ -130,7 +130,7 @@ pub(crate) fn search(leaves: Vec<Block>, window: f64, leaf: &impl Leaf, known: B
     search_until(leaves, window, leaf, known, &|| false).unwrap_or(known)
 }
 
-/// The same unless the caller asks to stop.
+/// Interruptible [`search`].
 ///
 /// # Errors
 /// The caller asked to stop.

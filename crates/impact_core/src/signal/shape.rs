@@ -1,4 +1,4 @@
-//! What a sampled signal says about its own measurement: rest before its peak, width of the peak, flat tops.
+//! Features of a sampled signal that tell how it was measured: rest before its peak, width of the peak, flat tops.
 
 use std::ops::Range;
 

@@ -29,7 +29,7 @@ pub fn moving_average(time: &[f64], acceleration_g: &[f64], width: f64) -> Resul
     moving_average_until(time, acceleration_g, width, &|| false)
 }
 
-/// The same unless the caller asks to stop.
+/// Interruptible [`moving_average`].
 ///
 /// # Errors
 /// Also that the caller asked to stop.
@@ -72,7 +72,7 @@ pub fn contiguous_level(time: &[f64], acceleration_g: &[f64], width: f64) -> Res
     contiguous_level_until(time, acceleration_g, width, &|| false)
 }
 
-/// The same unless the caller asks to stop.
+/// Interruptible [`contiguous_level`].
 ///
 /// # Errors
 /// Also that the caller asked to stop.

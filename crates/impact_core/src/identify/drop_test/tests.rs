@@ -16,7 +16,7 @@ fn times(count: u32) -> Vec<f64> {
     (0..count).map(|k| f64::from(k) * 1e-3).collect()
 }
 
-/// The same slide by small steps of the equation of motion, with the sign of the speed.
+/// Slide by small steps of the equation of motion, with the sign of the speed.
 fn stepped(model: &DropModel, count: usize) -> Vec<f64> {
     let parts = 4000;
     let step = 1e-3 / f64::from(parts);

@@ -129,7 +129,7 @@ impl Tests<'_> {
         parameters
     }
 
-    /// The same measurements up to the second contact of every drop.
+    /// Measurements up to the second contact of every drop.
     pub(super) fn first_bounce(&self) -> Self {
         let mut short = self.clone();
         for (time, position) in short.time.iter_mut().zip(&mut short.position) {
