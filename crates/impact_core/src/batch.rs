@@ -31,13 +31,13 @@ impl FieldSet {
         Self::of(|criterion| criterion.is_peak)
     }
 
-    /// Those that a function chooses.
+    /// Criteria that a function chooses.
     #[must_use]
     pub fn of(asked: impl FnMut(&Criterion) -> bool) -> Self {
         Self(Loads::of(asked))
     }
 
-    /// What a row misses at first.
+    /// Missing metrics of a row before any is computed.
     fn missing(&self) -> Missing {
         Missing::of(self.0)
     }

@@ -6,7 +6,7 @@ use crate::parameters::{Foam, Head, Manipulator, System, Target};
 /// One input of every row.
 #[derive(Clone, Copy, Debug)]
 pub enum Column<'a> {
-    /// The same number in every row.
+    /// One number for every row.
     Value(f64),
     /// A number for each row.
     Array(&'a [f64]),

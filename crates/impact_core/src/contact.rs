@@ -28,7 +28,7 @@ pub enum Phase {
     },
 }
 
-/// What ends a stretch of motion.
+/// Event that ends a stretch of motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
     /// The force came back to zero.
@@ -78,7 +78,7 @@ pub struct Stretch {
     pub used: f64,
     /// Its phase.
     pub phase: Phase,
-    /// What ended it.
+    /// Event that ended it.
     pub event: Option<Event>,
     cell: Cell<f64>,
 }

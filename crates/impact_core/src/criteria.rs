@@ -240,7 +240,7 @@ impl Impact {
         self.findings_of(manipulator_speed, Searches::ALL)
     }
 
-    /// What is searched for and the period, NaN for the rest.
+    /// Findings of some searches and the period, NaN for the rest.
     #[must_use]
     pub fn findings_of(&self, manipulator_speed: f64, searches: Searches) -> Findings {
         let head = |time: f64| self.motion.head(time);
@@ -336,7 +336,7 @@ pub fn metrics(system: &System, closing_speed: f64, options: &MetricOptions) -> 
     Ok(found)
 }
 
-/// The same by the general search, whatever the shape of the response.
+/// Metrics by the general search, whatever the shape of the response; `closing_speed` in m/s.
 ///
 /// # Errors
 /// The system is too fast for the horizon.

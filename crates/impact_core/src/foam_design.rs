@@ -71,7 +71,7 @@ impl Quantity {
 /// A limit of a metric for a head.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Requirement {
-    /// What is limited.
+    /// The limited metric.
     pub quantity: Quantity,
     /// The limit.
     pub limit: f64,
@@ -79,7 +79,7 @@ pub struct Requirement {
     pub head: Target,
 }
 
-/// What is hit how fast, and where to look.
+/// Manipulator and impact of a design, and the stiffness to look at.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignProblem {
     /// The manipulator.
@@ -108,7 +108,7 @@ impl DesignProblem {
     }
 }
 
-/// What a metric does at a crossing of its limit.
+/// Behavior of a metric at a crossing of its limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CrossingStatus {
     /// Its peak inside the impact period equals the limit.
@@ -142,7 +142,7 @@ impl CrossingStatus {
 pub struct Crossing {
     /// `K_c`, in N/m.
     pub stiffness: f64,
-    /// What the metric does there.
+    /// Behavior of the metric there.
     pub status: CrossingStatus,
     /// Whether the requirements cease to hold towards larger stiffness.
     pub rising: bool,
@@ -155,7 +155,7 @@ pub struct Crossing {
 pub struct FoamBoundary {
     /// `K_c` of the boundary, in N/m; NaN without one.
     pub stiffness: f64,
-    /// What the metric does there.
+    /// Behavior of the metric there.
     pub status: CrossingStatus,
     /// All crossings, by increasing stiffness.
     pub crossings: Vec<Crossing>,

@@ -18,7 +18,7 @@ pub const FREE_HORIZON: f64 = 0.2;
 /// Default time over which a constrained impact is looked at, in s.
 pub const CONSTRAINED_HORIZON: f64 = 0.05;
 
-/// What is searched on a response.
+/// Searches along a response.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(clippy::struct_excessive_bools)] // each is asked for by itself
 pub struct Searches {
@@ -39,7 +39,7 @@ pub struct Searches {
 }
 
 impl Searches {
-    /// Everything.
+    /// All searches.
     pub const ALL: Self = Self {
         acceleration: true,
         force: true,
@@ -61,7 +61,7 @@ impl Searches {
         powers: false,
     };
 
-    /// The same with what one more criterion needs.
+    /// The searches with that of one more criterion.
     #[must_use]
     fn with(mut self, search: Search) -> Self {
         match search {
@@ -91,7 +91,7 @@ impl Searches {
     }
 }
 
-/// What a criterion follows from.
+/// Quantity from which a criterion follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Search {
     /// The impact period, which is always known.
@@ -124,12 +124,12 @@ impl Search {
     }
 }
 
-/// What is known about a criterion.
+/// Name, label, unit and symbol of a criterion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Criterion {
     /// Its name, in every language and file.
     pub name: &'static str,
-    /// What it is, in words.
+    /// Its meaning, in words.
     pub label: &'static str,
     /// Its unit; empty where the source gives numbers without one.
     pub unit: &'static str,
@@ -202,7 +202,7 @@ macro_rules! criteria {
         }
 
         impl Loads<bool> {
-            /// What has to be searched for the criteria that are asked for.
+            /// Searches that the criteria that are asked for need.
             #[must_use]
             fn searches(&self) -> Searches {
                 let mut needed = Searches::NONE;
@@ -237,7 +237,7 @@ criteria! {
     peak_power_foam: "largest power f_c eps' of compression", "W", "", Powers;
 }
 
-/// What a row of metrics means.
+/// Status of a row of metrics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
     /// The acceleration of the head came back to zero.
@@ -271,7 +271,7 @@ impl Status {
         Self::Bottomed,
     ];
 
-    /// What a released impact is worth, from its largest compression: NaN where there is none.
+    /// Status of a released impact from its largest compression, in m, NaN where there is none.
     #[must_use]
     pub fn released(compression: f64, foam: &Foam) -> Self {
         if compression > foam.thickness {
@@ -299,7 +299,7 @@ impl Status {
     }
 }
 
-/// What metrics depend on beside system and closing speed.
+/// Inputs of metrics beside system and closing speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MetricOptions {
     /// Speed of the manipulator `v_r`, in m/s; the closing speed when `None`.
@@ -327,7 +327,7 @@ impl Default for MetricOptions {
 pub struct Metrics {
     /// The criteria.
     pub loads: Loads<f64>,
-    /// What the row means.
+    /// Status of the row.
     pub status: Status,
 }
 

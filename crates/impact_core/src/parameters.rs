@@ -40,7 +40,7 @@ pub struct Foam {
     pub linear_range: f64,
 }
 
-/// What the foam hits.
+/// Head that the foam hits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
     /// A head that can move.

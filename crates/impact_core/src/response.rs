@@ -30,7 +30,7 @@ pub enum Method {
     RungeKutta,
 }
 
-/// What the foam can do.
+/// Forces that the foam can give.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contact {
     /// Push and pull.
@@ -42,7 +42,7 @@ pub enum Contact {
 /// Which coefficients the motion has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Equations {
-    /// Those of the bodies.
+    /// Coefficients of the bodies.
     Corrected,
     /// `q_2` of (3.5.14) as the source prints it, without `C_r C_h / (M_r M_h)`: only to explain
     /// its numbers.
@@ -58,7 +58,7 @@ pub struct Approach {
     pub manipulator_speed: Option<f64>,
 }
 
-/// What a simulation depends on beside system and speeds.
+/// Settings of a simulation beside system and speeds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulationOptions {
     /// Duration, in s.
@@ -67,7 +67,7 @@ pub struct SimulationOptions {
     pub step: f64,
     /// How the motion is found.
     pub method: Method,
-    /// What the foam can do.
+    /// Forces that the foam can give.
     pub contact: Contact,
     /// Motion of the set-point.
     pub set_point: SetPoint,

@@ -10,7 +10,7 @@
 
 use numeric::error::{Failure, Given, Result, not_negative, positive};
 
-/// What the distance depends on beside the speed of the robot.
+/// Inputs of the protective separation distance beside the speed of the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Separation {
     /// Speed of the person towards the robot (m/s).

@@ -54,7 +54,7 @@ impl Plant<f64> {
         }
     }
 
-    /// The same bodies without foam between them.
+    /// The bodies without foam between them.
     #[must_use]
     pub fn apart(self) -> Self {
         Self {
@@ -131,7 +131,7 @@ impl<R: Real> State<R> {
         }
     }
 
-    /// The same state with rates for cells longer by a factor.
+    /// The state with rates for cells longer by a factor.
     #[must_use]
     pub fn rescaled(self, factor: R) -> Self {
         let rate = |[position, rate]: [R; 2]| [position, rate * factor];

@@ -193,7 +193,7 @@ fn again<S: Simd, R: Number, const ALL: bool>(
     open.retain(|(_, missing)| !missing.is_nothing());
 }
 
-/// What a row misses, by the general search.
+/// Finds the missing metrics of a row by the general search.
 #[inline(never)]
 fn finish_alone(
     columns: &Columns<'_>,

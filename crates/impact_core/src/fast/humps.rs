@@ -34,7 +34,7 @@ struct Seed<R: Number> {
 }
 
 impl<S: Simd, R: Number> Solved<'_, S, R> {
-    /// The same where the acceleration has a valley: there may be several good windows.
+    /// Best windows of a width where the acceleration has a valley: there may be several good ones.
     #[inline(always)]
     pub(super) fn full_of_humps(&self, mask: R::Mask, width: R, trough: [R; 2]) -> LaneWindow<R> {
         apart(
@@ -169,8 +169,8 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
         ([R::select(mask, time, zero.like(-1.0)), value], missed)
     }
 
-    /// The same where there may be several good windows: those that are better than their
-    /// neighbors among the windows between nodes are where Newton steps set out.
+    /// Injury criteria where there may be several good windows: Newton steps set out from windows
+    /// between nodes that are better than their neighbors.
     #[inline(always)]
     pub(super) fn injuries_of_humps(&mut self, humps: R::Mask, known: &mut [Known<R>; 2]) {
         apart(

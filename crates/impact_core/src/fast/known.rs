@@ -1,4 +1,4 @@
-//! What is known of impacts side by side, lane by lane.
+//! Numbers of impacts side by side, with the lanes in which they hold.
 
 use numeric::lanes::Number;
 
@@ -12,7 +12,7 @@ pub struct Known<R: Number> {
 }
 
 impl<R: Number> Known<R> {
-    /// What was not asked for, with lanes like those of a number.
+    /// A number that was not asked for, with lanes like those of another one.
     #[inline(always)]
     pub fn nothing(like: R) -> Self {
         Self {

@@ -10,7 +10,7 @@ use pulp::Simd;
 
 /// Last step to a maximum, in cells; its fifth power, over 120, is what the value may be wrong by.
 const SETTLED: f64 = 1e-2;
-/// What has a maximum.
+/// Quantity with a maximum.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum PeakQuantity {
     Acceleration,

@@ -47,7 +47,7 @@ const SLOWEST: f64 = 1e-2;
 
 /// Length of a cell times the fastest root.
 pub const CELL_ANGLE: f64 = 0.75;
-/// The same for impacts that are refused with longer cells: half as far between nodes, fewer
+/// [`CELL_ANGLE`] for impacts that are refused with longer cells: half as far between nodes, fewer
 /// shapes may hide something.
 pub const FINE_CELL_ANGLE: f64 = 0.3;
 
@@ -71,7 +71,7 @@ pub struct Group<R> {
     /// Whether lanes with two humps or a shelf are followed; else they are deferred: it takes so
     /// many steps that they better share them with their like.
     pub humps: bool,
-    /// What is wanted.
+    /// Quantities to search for.
     pub searches: Searches,
 }
 
@@ -91,7 +91,7 @@ pub struct Solved<'a, S, R: Number> {
     space: &'a mut Walked<R>,
     /// The largest acceleration at a node so far.
     highest: R,
-    /// What the cubic over a cell may be wrong by, over that.
+    /// Possible error of the cubic over a cell, as a share of `highest`.
     flat: f64,
     /// Lanes with more than one valley of the acceleration.
     ragged: R::Mask,
@@ -99,7 +99,7 @@ pub struct Solved<'a, S, R: Number> {
     shelf: R::Mask,
     /// Whether such lanes are followed.
     humps: bool,
-    /// What is wanted.
+    /// Quantities to search for.
     searches: Searches,
     /// Lanes whose walk and end hold.
     accepted: R::Mask,

@@ -25,7 +25,7 @@ pub struct Walk {
     pub cell_angle: f64,
     /// Whether rows with two humps or a shelf are followed.
     pub humps: bool,
-    /// What is wanted.
+    /// Quantities to search for.
     pub searches: Searches,
 }
 
@@ -187,7 +187,7 @@ impl<R: Number> Side<R> {
         self.peaks.duration.holds & self.peaks.compression.holds
     }
 
-    /// What the row of each lane means.
+    /// Status of the row of each lane.
     #[inline(always)]
     pub fn status(&self) -> [Status; MOST_LANES] {
         let duration = self.peaks.duration.value;
@@ -219,7 +219,7 @@ impl<R: Number> Side<R> {
         !holds
     }
 
-    /// What holds in each lane.
+    /// Metrics that hold in each lane.
     #[inline(always)]
     pub fn known(&self, gravity: f64) -> [Missing; MOST_LANES] {
         let mut known = [Missing::NOTHING; MOST_LANES];

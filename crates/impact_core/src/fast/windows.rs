@@ -11,11 +11,11 @@ use pulp::Simd;
 /// Last step of a window, in cells; its third power is what its place, and with it a level held
 /// through it, may be wrong by.
 pub(super) const SETTLED: f64 = 1e-4;
-/// The same where the mean over the window is all that is wanted: it is wrong by the fourth power,
-/// over 24, and by the square of what the place is wrong by.
+/// Last step of a window of which only the mean is wanted, in cells: the mean is wrong by the fourth
+/// power, over 24, and by the square of what the place is wrong by.
 pub(super) const SETTLED_MEAN: f64 = 1e-3;
 
-/// What a window gives, for `V` and accelerations per cell.
+/// Window of each lane, for `V` and accelerations per cell.
 #[derive(Clone, Copy)]
 pub(super) struct LaneWindow<R: Number> {
     pub(super) start: R,

@@ -75,7 +75,7 @@ impl DirectDrive {
         self.torque_constant * self.amplifier_gain / self.lever_arm
     }
 
-    /// The same joint without dry friction and limit: `M_r = m / l^2`,
+    /// The joint without dry friction and limit: `M_r = m / l^2`,
     /// `C_r = (K_t K_amp K_d + B) / l^2`, `K_r = K_t K_amp K_p / l^2`.
     #[must_use]
     pub fn linear(&self) -> Manipulator {
@@ -156,7 +156,7 @@ pub fn simulate_direct_drive(
     simulate_direct_drive_until(drive, foam, head, impact, &|| false)
 }
 
-/// The same unless the caller asks to stop.
+/// Interruptible [`simulate_direct_drive`].
 ///
 /// # Errors
 /// Also that the caller asked to stop.

@@ -1,8 +1,8 @@
-//! What of a row is not known yet.
+//! Metrics of a row that are not known yet.
 
 use super::{CRITERIA, Loads, Searches};
 
-/// What a row still misses: criteria by their place in [`CRITERIA`], and the status behind them.
+/// Missing metrics of a row: criteria by their place in [`CRITERIA`], and the status behind them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Missing(u32);
 
@@ -30,13 +30,13 @@ impl Missing {
         self.0 |= u32::from(also) << place;
     }
 
-    /// Those of both.
+    /// Metrics missing in either.
     #[must_use]
     pub fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// What is left when some are known.
+    /// Missing metrics beside known ones.
     #[must_use]
     pub fn without(self, known: Self) -> Self {
         Self(self.0 & !known.0)
@@ -62,7 +62,7 @@ impl Missing {
         self.0 & Self::STATUS != 0
     }
 
-    /// What has to be searched for it.
+    /// Searches that the missing metrics need.
     #[must_use]
     pub fn searches(self) -> Searches {
         let mut place = 0;

@@ -16,7 +16,7 @@ enum Command {
     AtLimit(f64),
 }
 
-/// What dry friction does.
+/// State of dry friction: against a direction of motion, or holding the joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum FrictionMode {
     Moving(f64),
@@ -38,7 +38,7 @@ struct Mode {
     contact: FoamContact,
 }
 
-/// What changes the equations.
+/// Part of the mode that an event changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ModeChange {
     Command,
