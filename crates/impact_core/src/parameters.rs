@@ -175,10 +175,4 @@ impl System {
         }
         Ok(self)
     }
-
-    /// The system with another foam.
-    #[must_use]
-    pub fn with_foam(self, foam: Foam) -> Self {
-        Self { foam, ..self }
-    }
 }

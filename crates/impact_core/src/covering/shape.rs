@@ -84,16 +84,6 @@ impl Shape {
             Self::Cylinder { radius, .. } => Some([width(radius); 2]),
         }
     }
-
-    /// Smaller radius; `None` for a flat one.
-    #[must_use]
-    pub fn smaller_radius(&self) -> Option<f64> {
-        match *self {
-            Self::Flat { .. } => None,
-            Self::Curved { radii } => Some(radii[0].min(radii[1])),
-            Self::Cylinder { radius, .. } => Some(radius),
-        }
-    }
 }
 
 /// A part of the law that is a power from an origin on, half an order further.
