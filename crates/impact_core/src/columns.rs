@@ -117,7 +117,7 @@ impl<'a> Columns<'a> {
             foam: Foam {
                 stiffness: self.foam_stiffness.at(row),
                 damping: self.foam_damping.at(row),
-                // Rows have none; whoever knows it tells crushed foams from the compression.
+                // Rows have none; crushed foams are found from the compression where it is known.
                 thickness: f64::MAX,
                 linear_range: self.linear_range.at(row),
             },

@@ -3,7 +3,7 @@
 //! Along the stiffness `K_c` at a given damping `C_c`, the ratio of a metric to its limit crosses
 //! 1 at boundaries. It need not be continuous: the impact period jumps where a local minimum of
 //! the head's acceleration touches zero, and with it a maximum at its end. Every crossing is
-//! therefore found on a grid, closed in by halving, and told apart by what the metric does there.
+//! therefore found on a grid, closed in by halving, and classed by the behavior of the metric there.
 
 mod fastest;
 
@@ -14,7 +14,7 @@ use crate::error::{Failure, Given, Result, not_negative, positive};
 use crate::metrics::INJURY_WINDOWS;
 use crate::parameters::{Foam, GRAVITY, Manipulator, System, Target};
 
-/// Stiffnesses that are looked at by default, in N/m.
+/// Range of stiffness to search by default, in N/m.
 pub const STIFFNESS_RANGE: [f64; 2] = [1.0, 1e7];
 /// Nodes of the grid, evenly spaced in the logarithm.
 const NODES: usize = 420;
@@ -79,7 +79,7 @@ pub struct Requirement {
     pub head: Target,
 }
 
-/// Manipulator and impact of a design, and the stiffness to look at.
+/// Manipulator and impact of a design, and the range of stiffness to search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignProblem {
     /// The manipulator.
@@ -90,7 +90,7 @@ pub struct DesignProblem {
     pub horizon: Option<f64>,
     /// Acceleration of gravity, in m/s^2.
     pub gravity: f64,
-    /// Range of stiffness to look at, in N/m.
+    /// Range of stiffness to search, in N/m.
     pub range: [f64; 2],
 }
 
@@ -232,7 +232,7 @@ fn boundary(
     })
 }
 
-/// Halves a bracket down to neighbouring numbers and tells what is there.
+/// Halves a bracket down to neighboring numbers and classes the crossing there.
 fn close_in(
     load: &impl Fn(f64) -> Result<Load>,
     mut low: (f64, Load),

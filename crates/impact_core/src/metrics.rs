@@ -15,7 +15,7 @@ pub const INJURY_WINDOWS: [f64; 2] = [0.015, 0.036];
 pub const HELD_WINDOW: f64 = 0.003;
 /// Default time without release after which an impact counts as lasting, in s.
 pub const FREE_HORIZON: f64 = 0.2;
-/// Default time over which a constrained impact is looked at, in s.
+/// Default time over which a constrained impact is evaluated, in s.
 pub const CONSTRAINED_HORIZON: f64 = 0.05;
 
 /// Searches along a response.

@@ -98,7 +98,7 @@ pub fn first_fall(
         [value, slope]
     };
     let [low, high] = [jet(from), jet(to)];
-    // Noise is looked at where something is below zero: it takes longer than everything else.
+    // Noise is computed where something is below zero: it takes longer than everything else.
     if high[1] < 0.0 && high[1] < -noise(to) {
         return Some(if low[1] > 0.0 {
             root(pair, from, to)

@@ -196,7 +196,7 @@ impl Limits {
                 };
                 if fine {
                     if strain > covering.bottoming.strain {
-                        // So far nobody asked whether the law falls there: a force would be met twice.
+                        // Not checked before: where the law falls, a force would be met twice.
                         let law = covering.material.clone().checked(strain);
                         law.map_err(|failure| failure.within("covering.material"))?;
                     }

@@ -10,7 +10,7 @@ use crate::collision::{
 };
 use crate::covering::Shape;
 
-/// Speeds that are looked at where loads might fall with the speed, in m/s.
+/// Range of speeds to search where loads might fall with the speed, in m/s.
 pub const SCANNED: [f64; 2] = [1e-3, 20.0];
 /// How many.
 const SCANS: usize = 48;

@@ -95,7 +95,7 @@ fn code_of(place: usize) -> u8 {
 }
 
 /// A row of results: numbers, the place of its status among all, and a second code.
-type Found<const N: usize> = ([f64; N], usize, u8);
+type ResultRow<const N: usize> = ([f64; N], usize, u8);
 
 /// Inputs of all rows, with their law where it does not differ.
 struct RowInputs<'a> {
@@ -137,7 +137,11 @@ struct Kinds {
 
 impl Kinds {
     /// Numbers and codes of a result.
-    fn codes<const N: usize>(self, setup: &Setup, found: Result<Found<N>>) -> ([f64; N], u8, u8) {
+    fn codes<const N: usize>(
+        self,
+        setup: &Setup,
+        found: Result<ResultRow<N>>,
+    ) -> ([f64; N], u8, u8) {
         match found {
             Ok((numbers, status, word)) => (numbers, code_of(status), word),
             Err(failure) => {
@@ -155,7 +159,7 @@ fn each_row<const N: usize, M: Default>(
     rows: &RowInputs<'_>,
     (kinds, room): (Kinds, Room<'_>),
     work: Work<'_>,
-    of: impl Fn(&Row, Option<&Material>, &mut M) -> Result<Found<N>> + Sync + Send,
+    of: impl Fn(&Row, Option<&Material>, &mut M) -> Result<ResultRow<N>> + Sync + Send,
 ) -> Result<()> {
     room.fill(work, |piece: &mut RowColumns<'_, N>| {
         let (mut row, mut remembered) = (rows.given.row(piece.first), M::default());
@@ -268,7 +272,7 @@ pub fn collide_rows(
 }
 
 /// Numbers and codes of loads.
-fn loads(found: &Outcome) -> Found<14> {
+fn loads(found: &Outcome) -> ResultRow<14> {
     let bottomed = BOTTOMED * u8::from(found.bottomed);
     let word = bottomed + RISING * u8::from(found.rising);
     (

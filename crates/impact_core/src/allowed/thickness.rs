@@ -3,7 +3,7 @@
 use super::LimitedContact;
 use crate::covering::{Pad, Shape};
 
-/// Thicknesses that are looked at, in m.
+/// Range of thicknesses to search, in m.
 const RANGE: [f64; 2] = [1e-4, 1.0];
 /// How many, where a thicker covering may be slower.
 const LOOKS: usize = 97;

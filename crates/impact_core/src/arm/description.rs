@@ -86,7 +86,7 @@ pub struct Description {
     pub turned: Vec<String>,
 }
 
-/// Angles of more than this are no directions that somebody has written in radians (rad): one turn, and rounding.
+/// Angles of more than this are no directions in radians (rad): one turn, and rounding.
 const TURN: f64 = 6.3;
 
 const ROBOT: [&str; 5] = ["link", "joint", "material", "transmission", "gazebo"];
@@ -193,7 +193,7 @@ fn no_xml(error: &roxmltree::Error, text: &str) -> Failure {
     }
 }
 
-/// Refuses macros that nobody has expanded.
+/// Refuses macros that are not expanded.
 fn refuse_xacro(document: &Document<'_>) -> Result<()> {
     for node in document.descendants().filter(Node::is_element) {
         // By the name of its space, or by the prefix that such files give it.

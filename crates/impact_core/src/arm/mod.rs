@@ -1,4 +1,4 @@
-//! Arms as trees of joints: what mass a point of an arm has for whom it hits.
+//! Arms as trees of joints, and the effective mass of their points in a contact.
 //!
 //! At a point that is fixed to a link, with world axes, the mobility is
 //! `L = J M^-1 J^T` (1/kg), and the effective mass along a unit vector `u` is
@@ -6,10 +6,10 @@
 //! (R. Featherstone, *Rigid Body Dynamics Algorithms*, 2008, section 6.2), `J` the Jacobian of
 //! the velocity of the point. Joints that mimic others fold both: `M' = G^T M G`, `J' = J G`.
 //!
-//! `element` reads XML elements, `foreign` knows other formats, `description` what a URDF says, `shape` how
-//! large its links are, `tree` checks how they hang together, `body` holds inertias, `build` makes
-//! the `model` of the arm; `survey` finds what tells whether it may be real, `pose` is the kernel, `mobility`
-//! what follows from $L$, `batch` does both for arrays.
+//! `element` reads XML elements, `foreign` knows other formats, `description` holds the contents of a URDF,
+//! `shape` the sizes of its links, `tree` checks how they hang together, `body` holds inertias, `build` makes
+//! the `model` of the arm; `survey` finds signs that it may not be real, `pose` is the kernel, `mobility`
+//! gives effective masses from `L`, `batch` does both for arrays.
 
 pub mod batch;
 pub mod body;

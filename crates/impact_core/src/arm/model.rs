@@ -170,7 +170,7 @@ impl Segment {
 }
 
 /// Calls with a size that the mass matrix fits into, known when the program is compiled. Few of them:
-/// columns without a joint cost less than another copy of everything that looks at a pose.
+/// columns without a joint cost less than another copy of all code of a pose.
 macro_rules! sized {
     ($arm:expr, $size:ident => $call:expr) => {
         match $arm.free {

@@ -280,7 +280,7 @@ fn component(segment: &Segment, frame: &Frame, force: &Vector3<f64>, moment: &Ve
     }
 }
 
-/// Poses in which the inertia that joints move is looked at.
+/// Poses in which the inertia that joints move is computed.
 const SURVEYED: u32 = 64;
 
 /// The largest inertia that each free joint of an arm moves without motors (kg m^2, or kg where it slides), over zero and

@@ -1,7 +1,7 @@
 //! Events of a collision: values that fall below zero.
 
 use super::Collision;
-use super::mechanics::{Carried, CollisionState, Local, Mechanics, Past, SPEED, TOTAL};
+use super::mechanics::{Carried, CollisionState, History, Local, Mechanics, SPEED, TOTAL};
 use super::step::{Step, step};
 use crate::covering::Kinks;
 
@@ -65,7 +65,7 @@ impl Marks {
         &self,
         event: CollisionEvent,
         mechanics: &Mechanics<'_, N>,
-        past: &Past,
+        past: &History,
         (state, local): (&CollisionState<N>, &Local),
     ) -> [f64; 2] {
         const NEVER: [f64; 2] = [f64::INFINITY, 0.0];
@@ -111,7 +111,7 @@ fn release<const N: usize>(
     }
 }
 
-/// A start with what is known there.
+/// Start of a step, with state, rates and forces.
 pub struct Start<'a, const N: usize> {
     /// Time, in s.
     pub time: f64,
@@ -126,7 +126,7 @@ pub struct Start<'a, const N: usize> {
 /// The first event within a step, and the step that leads to it.
 pub fn first_event<const N: usize>(
     mechanics: &Mechanics<'_, N>,
-    past: &Past,
+    past: &History,
     marks: &Marks,
     sizes: &Sizes,
     start: &Start<'_, N>,
@@ -198,7 +198,7 @@ fn size_of<const N: usize>(
 /// The shorter step to where a value that falls below zero within the given one is zero.
 pub fn located<const N: usize>(
     mechanics: &Mechanics<'_, N>,
-    past: &Past,
+    past: &History,
     start: &Start<'_, N>,
     (taken, length): (Step<N>, f64),
     before: [f64; 2],

@@ -30,7 +30,7 @@ pub enum Carried {
 
 /// History of the motion: its direction, the last reversal, braking.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Past {
+pub struct History {
     /// Whether `eps` rises.
     pub loading: bool,
     /// Strain at the last reversal of `eps`, the largest so far.
@@ -128,7 +128,7 @@ impl<'a, const N: usize> Mechanics<'a, N> {
         collision.reduced_mass() * self.body_share * (collision.closing_speed - state[SPEED])
     }
 
-    fn column(&self, pad: &Pad, compression: f64, speed: f64, past: &Past) -> CoveringForce {
+    fn column(&self, pad: &Pad, compression: f64, speed: f64, past: &History) -> CoveringForce {
         let [force, slope] = pad.force(compression);
         let mut column = CoveringForce {
             force,
@@ -159,7 +159,7 @@ impl<'a, const N: usize> Mechanics<'a, N> {
         time: f64,
         state: &CollisionState<N>,
         force: f64,
-        past: &Past,
+        past: &History,
     ) -> [f64; 2] {
         let collision = self.collision;
         if N <= BODY_SPEED {
@@ -184,7 +184,7 @@ impl<'a, const N: usize> Mechanics<'a, N> {
 
     /// Force and rates.
     #[inline]
-    pub fn local(&self, time: f64, state: &CollisionState<N>, past: &Past) -> Local {
+    pub fn local(&self, time: f64, state: &CollisionState<N>, past: &History) -> Local {
         let (total, speed, part) = (state[TOTAL], state[SPEED], state[PART]);
         let region = self.collision.region;
         let mut local = Local::default();
@@ -254,7 +254,7 @@ impl<'a, const N: usize> Mechanics<'a, N> {
 
     /// `d` at some `eps` shortly after the touch, where `d = 0` may be a rest that is none: a force that starts like
     /// `d^p`, `p < 1`, or like `delta^n`, `n > 1`. Newton steps on logarithms, in which powers are lines.
-    pub fn share(&self, total: f64, speed: f64, past: &Past) -> f64 {
+    pub fn share(&self, total: f64, speed: f64, past: &History) -> f64 {
         let Some(pad) = self.collision.pad else {
             return 0.0;
         };
@@ -297,7 +297,7 @@ impl<'a, const N: usize> Mechanics<'a, N> {
     }
 
     /// Pressure at the apex of a curved contact and its rate; NaN of flat ones.
-    pub fn apex(&self, state: &CollisionState<N>, local: &Local, past: &Past) -> [f64; 2] {
+    pub fn apex(&self, state: &CollisionState<N>, local: &Local, past: &History) -> [f64; 2] {
         let Some(pad) = self.collision.pad else {
             return [f64::NAN; 2];
         };
@@ -343,7 +343,7 @@ impl<'a, const N: usize> Mechanics<'a, N> {
         time: f64,
         state: &CollisionState<N>,
         local: &Local,
-        past: &Past,
+        past: &History,
     ) -> MotionSample {
         MotionSample {
             time,
@@ -366,7 +366,7 @@ fn steep(slope: f64, rate: f64) -> f64 {
 }
 
 /// Set point of the robot and its speed.
-fn set_point(collision: &Collision<'_>, time: f64, past: &Past) -> [f64; 2] {
+fn set_point(collision: &Collision<'_>, time: f64, past: &History) -> [f64; 2] {
     let speed = collision.closing_speed;
     let Some(Braking {
         time: start,

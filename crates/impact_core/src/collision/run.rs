@@ -8,7 +8,7 @@ use super::events::{CollisionEvent, Marks, Sizes, Start, first_event};
 use super::injury::injury_of;
 use super::loading::Turn;
 use super::mechanics::{
-    BODY_SPEED, Carried, CollisionState, Local, Mechanics, PART, Past, SPEED, TOTAL,
+    BODY_SPEED, Carried, CollisionState, History, Local, Mechanics, PART, SPEED, TOTAL,
 };
 use super::outcome::{CollisionStatus, MotionSample, Outcome};
 use super::statics::rest_of;
@@ -139,7 +139,7 @@ fn relaxed(collision: &Collision<'_>, largest: f64, most: f64) -> Option<[f64; 2
 
 struct Run<'a, const N: usize> {
     mechanics: Mechanics<'a, N>,
-    past: Past,
+    past: History,
     marks: Marks,
     sizes: Sizes,
     scales: CollisionState<N>,
@@ -167,7 +167,7 @@ impl<'a, const N: usize> Run<'a, N> {
         if N > BODY_SPEED {
             scales[BODY_SPEED] = speed;
         }
-        let past = Past {
+        let past = History {
             loading: true,
             largest_strain: 0.0,
             largest_work: 0.0,

@@ -1,6 +1,6 @@
 //! One step of the embedded Runge-Kutta pair of orders 5 and 4 of Dormand and Prince (1980).
 
-use super::mechanics::{CollisionState, Mechanics, Past};
+use super::mechanics::{CollisionState, History, Mechanics};
 
 const NODES: [f64; 5] = [0.2, 0.3, 0.8, 8.0 / 9.0, 1.0];
 const STAGES: [[f64; 5]; 5] = [
@@ -57,7 +57,7 @@ pub struct Step<const N: usize> {
 #[inline]
 pub fn step<const N: usize>(
     mechanics: &Mechanics<'_, N>,
-    past: &Past,
+    past: &History,
     time: f64,
     state: &CollisionState<N>,
     first: &CollisionState<N>,

@@ -187,7 +187,7 @@ impl CompressedStack<'_> {
         marks.push(largest);
         let goal = (size, tolerance);
         let (first, power) = (marks[0], self.power());
-        let start = Late {
+        let start = TimeIntegrand {
             column: self,
             // As every other work, for their difference.
             all: self.at(Lanes::<2>::splat(largest))[0].lane(0),
@@ -199,7 +199,7 @@ impl CompressedStack<'_> {
             let mut from = pair[0];
             if self.starts_with_half_power(from) {
                 from = 0.5 * (pair[0] + pair[1]);
-                let beyond = Late {
+                let beyond = TimeIntegrand {
                     over: Substitution::Beyond(pair[0]),
                     ..start
                 };
@@ -208,7 +208,7 @@ impl CompressedStack<'_> {
             // The speed falls like the square root of what is left.
             let [near, far] = [pair[1], from].map(|mark| (largest - mark).max(0.0).sqrt());
             if far > near {
-                let left = Late {
+                let left = TimeIntegrand {
                     over: Substitution::Left(largest),
                     ..start
                 };
@@ -232,7 +232,7 @@ enum Substitution {
 
 /// Rate of the time over a variable.
 #[derive(Clone, Copy)]
-struct Late<'a> {
+struct TimeIntegrand<'a> {
     column: &'a CompressedStack<'a>,
     /// Work at the largest compression.
     all: f64,
@@ -240,7 +240,7 @@ struct Late<'a> {
     over: Substitution,
 }
 
-impl Integrand for Late<'_> {
+impl Integrand for TimeIntegrand<'_> {
     #[inline(always)]
     fn at<R: Real>(&self, x: R) -> R {
         let two = R::splat(2.0);

@@ -6,12 +6,12 @@ use super::modes::{Basis, Wave};
 use super::scan::{Piece, Tops};
 use super::space::Walked;
 use super::windows::{FreeWindow, LaneWindow, SETTLED, criterion};
-use super::{Known, MAX_STEPS, Solved};
+use super::{MAX_STEPS, MaskedValue, Solved};
 use crate::metrics::INJURY_WINDOWS;
 use numeric::lanes::{Number, Truth};
 use pulp::Simd;
 
-/// Places of windows that are looked at, at most.
+/// Places of windows from which Newton steps set out, at most.
 const SEEDS: usize = 6;
 /// How much better than in the middle of its cells a window may be.
 const NEAR: f64 = 1.5;
@@ -86,7 +86,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
     }
 
     /// Tops of a function between 0 and an end whose derivative with its slope is given, and lanes that
-    /// have more of them or may hide one. It is looked at in the nodes and at the end.
+    /// have more of them or may hide one. It is evaluated in the nodes and at the end.
     #[inline(always)]
     fn tops_along(
         &self,
@@ -172,7 +172,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
     /// Injury criteria where there may be several good windows: Newton steps set out from windows
     /// between nodes that are better than their neighbors.
     #[inline(always)]
-    pub(super) fn injuries_of_humps(&mut self, humps: R::Mask, known: &mut [Known<R>; 2]) {
+    pub(super) fn injuries_of_humps(&mut self, humps: R::Mask, known: &mut [MaskedValue<R>; 2]) {
         apart(
             self.simd,
             #[inline(always)]
@@ -181,13 +181,13 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
     }
 
     #[inline(always)]
-    fn injuries_of_humps_here(&mut self, humps: R::Mask, known: &mut [Known<R>; 2]) {
+    fn injuries_of_humps_here(&mut self, humps: R::Mask, known: &mut [MaskedValue<R>; 2]) {
         let rate = self.motion.modes.rate;
         let zero = rate.like(0.0);
         let mut best = [zero; 2];
         let mut shrinks = [zero.truth(false); 2];
         let mut holds = [humps; 2];
-        // What the narrower windows give tells where the wider ones are not looked for.
+        // The narrower windows show where the wider ones need no search.
         let asked = [true, self.searches.injury[1]];
         // No level is wanted that a valley would limit.
         let nowhere = [zero.like(-1.0), zero];

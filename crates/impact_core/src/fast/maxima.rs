@@ -4,7 +4,7 @@ use super::apart::{apart, inlined};
 use super::arithmetic::{MapWith, product, third_order};
 use super::modes::{Basis, Wave};
 use super::scan::Tops;
-use super::{GroupPeaks, Known, MAX_STEPS, Solved};
+use super::{GroupPeaks, MAX_STEPS, MaskedValue, Solved};
 use numeric::lanes::{Number, Truth};
 use pulp::Simd;
 
@@ -147,7 +147,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
         self.climb(&mut climbs);
         let known = inlined(
             #[inline(always)]
-            |value: R| Known {
+            |value: R| MaskedValue {
                 value,
                 holds: self.accepted,
             },
@@ -155,11 +155,11 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
         let largest = inlined(
             #[inline(always)]
             |index: usize| match &climbs[index] {
-                Some(climb) => Known {
+                Some(climb) => MaskedValue {
                     value: climb.best,
                     holds: self.accepted & !climb.lost,
                 },
-                None => Known::nothing(zero),
+                None => MaskedValue::nothing(zero),
             },
         );
         let gained = velocity.at(&self.at_end) - velocity.at_contact();

@@ -12,7 +12,7 @@ pub(crate) mod apart;
 mod arithmetic;
 mod factors;
 mod humps;
-mod known;
+mod masked;
 mod maxima;
 mod modes;
 mod scan;
@@ -24,11 +24,11 @@ use crate::metrics::Searches;
 use crate::series::Plant;
 use apart::apart;
 use arithmetic::{Each, product, third_order};
-use known::{GroupPeaks, GroupRest, Known};
+use masked::{GroupPeaks, GroupRest, MaskedValue};
 use modes::{Basis, LaneMotion, Wave};
 use numeric::lanes::{Number, Truth};
 use pulp::Simd;
-use scan::{Place, touching};
+use scan::{SignChange, touching};
 pub(crate) use side::{MOST_LANES, Rows, Side, Walk, usual};
 pub use space::Workspace;
 use space::{NODES, Node, NodePair, Walked};
@@ -160,7 +160,7 @@ impl<R: Number> Group<R> {
         solved.space.head[0] = first.head();
         // Also false for what is not a number.
         let mut alive = solved.accepted & turn[0].le(one);
-        let mut end = Place::none(zero);
+        let mut end = SignChange::none(zero);
         for index in 1..NODES {
             basis = solved.motion.modes.turned(&basis, &turn);
             let time = zero.like(index as f64);
@@ -329,7 +329,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
     /// Newton steps to the end of the impact, and a look at the piece before it, or before the horizon
     /// if that comes first.
     #[inline(always)]
-    fn finish<const POWERS: bool>(&mut self, end: &Place<R>, horizon: R) {
+    fn finish<const POWERS: bool>(&mut self, end: &SignChange<R>, horizon: R) {
         apart(
             self.simd,
             #[inline(always)]
@@ -338,7 +338,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
     }
 
     #[inline(always)]
-    fn finish_here<const POWERS: bool>(&mut self, end: &Place<R>, horizon: R) {
+    fn finish_here<const POWERS: bool>(&mut self, end: &SignChange<R>, horizon: R) {
         let mut time = end.piece().zero();
         let mut open = self.accepted & end.found & !self.lasting;
         let zero = time.like(0.0);
@@ -391,7 +391,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
     pub fn rest(&mut self, peaks: &GroupPeaks<R>) -> GroupRest<R> {
         let searches = self.searches;
         let zero = self.end.like(0.0);
-        let nothing = [Known::nothing(zero); 2];
+        let nothing = [MaskedValue::nothing(zero); 2];
         let found = &self.space.found;
         let hidden = found.acceleration.hidden.0;
         let course = peaks.head_acceleration.holds & !hidden;

@@ -82,7 +82,7 @@ impl<R: Number> Piece<R> {
 
 /// A place where a function changes sign.
 #[derive(Clone, Copy)]
-pub struct Place<R: Number> {
+pub struct SignChange<R: Number> {
     /// Lanes that have one.
     pub found: R::Mask,
     /// The piece that it is in, and what it was before the last note: written where it was read it would
@@ -91,7 +91,7 @@ pub struct Place<R: Number> {
     latest: usize,
 }
 
-impl<R: Number> Place<R> {
+impl<R: Number> SignChange<R> {
     /// No place yet, with lanes like those of zero.
     #[inline(always)]
     pub fn none(zero: R) -> Self {
@@ -173,7 +173,7 @@ pub fn touching<R: Number>(inside: R::Mask, piece: &Piece<R>, slack: R) -> ([R::
 #[derive(Clone, Copy)]
 pub struct Tops<R: Number> {
     /// Up to two tops.
-    pub places: [Place<R>; 2],
+    pub places: [SignChange<R>; 2],
     /// A piece that may hide a top: the function is not above its value at this time by more than
     /// what follows.
     pub hidden: (R::Mask, R, R),
@@ -186,13 +186,13 @@ impl<R: Number> Tops<R> {
     #[inline(always)]
     pub fn new(zero: R) -> Self {
         Self {
-            places: [Place::none(zero); 2],
+            places: [SignChange::none(zero); 2],
             hidden: (zero.truth(false), zero, zero),
             odd: zero.truth(false),
         }
     }
 
-    /// Forgets the tops; nobody reads numbers of lanes without one.
+    /// Forgets the tops; numbers of lanes without one are not read.
     #[inline(always)]
     pub fn clear(&mut self) {
         for place in &mut self.places {

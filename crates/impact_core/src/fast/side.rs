@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::apart::{apart, inlined};
-use super::{CELL_ANGLE, FINE_CELL_ANGLE, Group, GroupPeaks, GroupRest, Known, Workspace};
+use super::{CELL_ANGLE, FINE_CELL_ANGLE, Group, GroupPeaks, GroupRest, MaskedValue, Workspace};
 use crate::columns::{Column, Columns, HeadColumns};
 use crate::metrics::{
     CRITERIA, FREE_HORIZON, Loads, MetricOptions, Metrics, Missing, Searches, Status,
@@ -149,10 +149,10 @@ impl<R: Number> Side<R> {
 
     /// The criteria; NaN where they were not asked for.
     #[inline(always)]
-    fn loads(&self, gravity: f64) -> Loads<Known<R>> {
+    fn loads(&self, gravity: f64) -> Loads<MaskedValue<R>> {
         let peaks = &self.peaks;
         let per_g = peaks.mean.value.like(gravity);
-        let nothing = Known::nothing(per_g);
+        let nothing = MaskedValue::nothing(per_g);
         let loads = Loads {
             peak_head_acceleration: peaks.head_acceleration,
             peak_head_acceleration_g: peaks.head_acceleration.over(per_g),

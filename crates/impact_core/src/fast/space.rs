@@ -1,7 +1,7 @@
 //! Space for the walk along a response: nodes, pieces between them, what was found in them.
 
 use super::modes::LaneMotion;
-use super::scan::{Piece, Place, Tops};
+use super::scan::{Piece, SignChange, Tops};
 use numeric::lanes::Number;
 
 /// Nodes after which an impact is refused.
@@ -43,20 +43,20 @@ pub(super) struct Walked<R: Number> {
     pub(super) signs: [Vec<[R::Mask; 2]>; 2],
     /// Two nodes that follow each other, by turns.
     pub(super) pair: [Node<R>; 2],
-    pub(super) found: Found<R>,
+    pub(super) found: Extrema<R>,
 }
 
 /// Tops of all quantities that have a maximum, and a valley of the acceleration.
-pub(super) struct Found<R: Number> {
+pub(super) struct Extrema<R: Number> {
     pub(super) acceleration: Tops<R>,
     pub(super) force: Tops<R>,
     pub(super) compression: Tops<R>,
     pub(super) manipulator_power: Tops<R>,
     pub(super) foam_power: Tops<R>,
-    pub(super) valley: Place<R>,
+    pub(super) valley: SignChange<R>,
 }
 
-impl<R: Number> Found<R> {
+impl<R: Number> Extrema<R> {
     #[inline(always)]
     fn new(zero: R) -> Self {
         Self {
@@ -65,11 +65,11 @@ impl<R: Number> Found<R> {
             compression: Tops::new(zero),
             manipulator_power: Tops::new(zero),
             foam_power: Tops::new(zero),
-            valley: Place::none(zero),
+            valley: SignChange::none(zero),
         }
     }
 
-    /// Forgets what was found; the numbers stay, as nobody reads them.
+    /// Forgets the extrema; their numbers stay, as none of them is read.
     #[inline(always)]
     pub(super) fn clear(&mut self) {
         self.acceleration.clear();
@@ -89,7 +89,7 @@ impl<R: Number> Walked<R> {
             clipped: Vec::new(),
             signs: [Vec::new(), Vec::new()],
             pair: [Node::at_rest(zero); 2],
-            found: Found::new(zero),
+            found: Extrema::new(zero),
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::apart::apart;
 use super::arithmetic::{Each, MapWith, third_order};
 use super::modes::{Basis, Wave};
-use super::{Known, MAX_STEPS, Solved};
+use super::{MAX_STEPS, MaskedValue, Solved};
 use crate::metrics::{HELD_WINDOW, INJURY_WINDOWS};
 use numeric::lanes::{Number, Truth};
 use pulp::Simd;
@@ -113,7 +113,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
 
     /// Largest 3 ms mean and largest level held for 3 ms, in m/s^2, in lanes of a mask.
     #[inline(always)]
-    pub(super) fn held(&self, mask: R::Mask, [time, curve, third]: &[R; 3]) -> [Known<R>; 2] {
+    pub(super) fn held(&self, mask: R::Mask, [time, curve, third]: &[R; 3]) -> [MaskedValue<R>; 2] {
         let rate = self.motion.modes.rate;
         let width = rate * HELD_WINDOW;
         let exists = width.le(self.end);
@@ -139,7 +139,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
         ]
         .each(
             #[inline(always)]
-            |value| Known {
+            |value| MaskedValue {
                 value: R::select(exists, value, nan),
                 holds: mask & !window.restless,
             },
@@ -149,7 +149,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
     /// Injury criteria in lanes of a mask: the window with free ends where it is not too wide, else
     /// the full one.
     #[inline(always)]
-    pub(super) fn injuries(&mut self, mask: R::Mask) -> [Known<R>; 2] {
+    pub(super) fn injuries(&mut self, mask: R::Mask) -> [MaskedValue<R>; 2] {
         let rate = self.motion.modes.rate;
         let humps = self.space.found.valley.found | self.shelf;
         let plain = mask & !humps;
@@ -158,7 +158,7 @@ impl<S: Simd, R: Number> Solved<'_, S, R> {
         let cut = self.lasting & end.ge(self.end);
         let plain = plain & free.settled & free.concave & !cut;
         let free_width = end - start;
-        let mut found = [Known {
+        let mut found = [MaskedValue {
             value: free.value,
             holds: plain,
         }; 2];

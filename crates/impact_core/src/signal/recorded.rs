@@ -38,7 +38,7 @@ pub struct Recorded {
     pub whole: Loads<f64>,
 }
 
-/// The part of the record that is looked at: whole cells between two interpolated ends.
+/// The part of the record that is evaluated: whole cells between two interpolated ends.
 struct Part<'a> {
     time: &'a [f64],
     start: f64,

@@ -19,7 +19,7 @@ const FEW: usize = 2;
 
 /// A step that a collision asks for.
 #[derive(Clone, Copy)]
-pub(super) struct Asked {
+pub(super) struct StepRequest {
     pub(super) variable: Variable,
     pub(super) at: f64,
     pub(super) state: [f64; 2],
@@ -30,7 +30,7 @@ pub(super) struct Asked {
     pub(super) exponents: Option<[f64; 2]>,
 }
 
-impl Asked {
+impl StepRequest {
     /// Whether both steps can be taken side by side.
     pub(super) fn is_like(&self, other: &Self) -> bool {
         self.variable.is_like(other.variable) && self.exponents == other.exponents
@@ -43,7 +43,7 @@ pub(super) fn most() -> usize {
 }
 
 /// Takes steps that are alike, up to [`most`], with their collisions.
-pub(super) fn take(steps: &[(&Loading<'_>, Asked)], taken: &mut Steps<Wide>) {
+pub(super) fn take(steps: &[(&Loading<'_>, StepRequest)], taken: &mut Steps<Wide>) {
     match vectors() {
         Some(vectors) if steps.len() > FEW => Simd::vectorize(vectors, StepGroup(steps, taken)),
         _ => {
@@ -56,12 +56,12 @@ pub(super) fn take(steps: &[(&Loading<'_>, Asked)], taken: &mut Steps<Wide>) {
 
 /// Takes steps of few collisions: of one that is alone most lanes would be idle.
 #[inline(never)]
-pub(super) fn take_few(steps: &[(&Loading<'_>, Asked)], taken: &mut Steps<Lanes<FEW>>) {
+pub(super) fn take_few(steps: &[(&Loading<'_>, StepRequest)], taken: &mut Steps<Lanes<FEW>>) {
     fill(steps, taken);
 }
 
 /// Steps of many collisions; the arithmetic is the same, bit for bit.
-struct StepGroup<'a, 'b>(&'a [(&'a Loading<'b>, Asked)], &'a mut Steps<Wide>);
+struct StepGroup<'a, 'b>(&'a [(&'a Loading<'b>, StepRequest)], &'a mut Steps<Wide>);
 
 impl WithSimd for StepGroup<'_, '_> {
     type Output = ();
@@ -74,12 +74,13 @@ impl WithSimd for StepGroup<'_, '_> {
 }
 
 #[inline(always)]
-fn fill<R: Real>(steps: &[(&Loading<'_>, Asked)], taken: &mut Steps<R>) {
+fn fill<R: Real>(steps: &[(&Loading<'_>, StepRequest)], taken: &mut Steps<R>) {
     // Lanes that are left over repeat the last step.
     let last = steps.len() - 1;
     let asked = |lane: usize| &steps[lane.min(last)].1;
-    let pair =
-        |of: fn(&Asked) -> [f64; 2]| [0, 1].map(|entry| R::from_fn(|lane| of(asked(lane))[entry]));
+    let pair = |of: fn(&StepRequest) -> [f64; 2]| {
+        [0, 1].map(|entry| R::from_fn(|lane| of(asked(lane))[entry]))
+    };
     let loading = |lane: usize| steps[lane.min(last)].0;
     let numbers = Numbers::<R>::of(loading);
     let over = LaneVariable::<R>::of(asked(0).variable, |lane| asked(lane).variable);
@@ -109,7 +110,7 @@ fn fill<R: Real>(steps: &[(&Loading<'_>, Asked)], taken: &mut Steps<R>) {
 
 /// Coverings and regions side by side.
 struct ContactLanes<'a, 'b, R> {
-    steps: &'a [(&'a Loading<'b>, Asked)],
+    steps: &'a [(&'a Loading<'b>, StepRequest)],
     /// Exponents and factors, where forces are sums of powers.
     powers: Option<([f64; 2], [R; 2])>,
     per_thickness: R,
@@ -121,7 +122,7 @@ struct ContactLanes<'a, 'b, R> {
 
 impl<'a, 'b, R: Real> ContactLanes<'a, 'b, R> {
     #[inline(always)]
-    fn of(steps: &'a [(&'a Loading<'b>, Asked)]) -> Self {
+    fn of(steps: &'a [(&'a Loading<'b>, StepRequest)]) -> Self {
         let last = steps.len() - 1;
         let each = |lane: usize| steps[lane.min(last)].0;
         let factor = |place: usize| {

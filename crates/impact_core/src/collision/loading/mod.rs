@@ -26,7 +26,7 @@ use super::statics::rest_of;
 use super::{Collision, Region};
 use crate::covering::{Kinks, Pad, Powers, Shape};
 use crate::roots::Peak;
-use beside::{Asked, most, take, take_few};
+use beside::{StepRequest, most, take, take_few};
 use plane::{Point, Scales};
 use steps::{Progress, StepLength, finer_than_usual};
 use variable::Variable;
@@ -83,11 +83,11 @@ struct Loading<'a> {
 
 impl Loading<'_> {
     /// A step to ask for.
-    fn asked(&self, variable: Variable, from: &Point, length: f64) -> Asked {
+    fn asked(&self, variable: Variable, from: &Point, length: f64) -> StepRequest {
         // The end of a step is evaluated as well.
         self.evaluations
             .set(self.evaluations.get() + EVALUATIONS + 1);
-        Asked {
+        StepRequest {
             variable,
             at: from.at,
             state: from.state,
@@ -171,8 +171,8 @@ impl Loading<'_> {
     }
 }
 
-/// A collision on its way to the turn.
-struct Way<'a> {
+/// Loading of a collision up to the turn.
+struct LoadingPath<'a> {
     loading: Loading<'a>,
     now: Progress,
     tops: [Peak; 2],
@@ -182,7 +182,7 @@ struct Way<'a> {
     turn: Option<Turn>,
 }
 
-impl<'a> Way<'a> {
+impl<'a> LoadingPath<'a> {
     /// At the touch.
     fn new(loading: Loading<'a>) -> Self {
         let variable = loading.from_touch;
@@ -197,7 +197,7 @@ impl<'a> Way<'a> {
     }
 
     /// The next step.
-    fn ask(&mut self) -> Option<Asked> {
+    fn ask(&mut self) -> Option<StepRequest> {
         self.ended |= self.loading.evaluations.get() >= MOST_EVALUATIONS;
         if self.ended {
             return None;
@@ -258,14 +258,14 @@ impl<'a> Way<'a> {
 }
 
 /// Takes steps of all of them until each has ended.
-fn travel(ways: &mut [Way<'_>]) {
+fn travel(ways: &mut [LoadingPath<'_>]) {
     if let [alone] = ways {
         return alone.travel_alone();
     }
     let mut taken = Steps::none();
     loop {
         let asked = ways.iter_mut().enumerate();
-        let mut asked: Vec<(usize, Asked)> = asked
+        let mut asked: Vec<(usize, StepRequest)> = asked
             .filter_map(|(place, way)| Some((place, way.ask()?)))
             .collect();
         if asked.is_empty() {
@@ -307,7 +307,7 @@ pub fn turns_of(collisions: &[&Collision<'_>]) -> Vec<Option<Turn>> {
     let mut found = vec![None; collisions.len()];
     let starts = collisions.iter().enumerate();
     let (places, mut ways): (Vec<usize>, Vec<_>) = starts
-        .filter_map(|(place, collision)| Some((place, Way::new(start(collision)?))))
+        .filter_map(|(place, collision)| Some((place, LoadingPath::new(start(collision)?))))
         .unzip();
     travel(&mut ways);
     for (place, way) in places.into_iter().zip(ways) {

@@ -18,7 +18,7 @@ pub(super) struct Forces<R> {
     inertia: R,
 }
 
-/// A place of the plane, seen over a variable.
+/// Point of the plane over a variable.
 #[derive(Clone, Copy)]
 pub(super) struct PhasePoint<R> {
     pub(super) depth: R,

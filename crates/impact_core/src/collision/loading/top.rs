@@ -8,7 +8,7 @@ use crate::roots::Peak;
 
 /// Most steps towards a top.
 const MOST_TRIALS: usize = 12;
-/// Shares of a step from a half power at which a load is looked at.
+/// Shares of a step from a half power at which a load is evaluated.
 const RISES: [f64; 2] = [0.5, 0.2];
 
 impl Loading<'_> {

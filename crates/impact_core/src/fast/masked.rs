@@ -2,16 +2,16 @@
 
 use numeric::lanes::Number;
 
-/// A number of each lane.
+/// A number of each lane, with the lanes in which it holds.
 #[derive(Clone, Copy)]
-pub struct Known<R: Number> {
+pub struct MaskedValue<R: Number> {
     /// The number.
     pub value: R,
     /// Lanes in which it holds.
     pub holds: R::Mask,
 }
 
-impl<R: Number> Known<R> {
+impl<R: Number> MaskedValue<R> {
     /// A number that was not asked for, with lanes like those of another one.
     #[inline(always)]
     pub fn nothing(like: R) -> Self {
@@ -43,17 +43,17 @@ impl<R: Number> Known<R> {
 /// Peaks, duration, mean and powers, accelerations in m/s^2.
 pub struct GroupPeaks<R: Number> {
     /// Acceleration of the head.
-    pub head_acceleration: Known<R>,
+    pub head_acceleration: MaskedValue<R>,
     /// Contact force, in N.
-    pub contact_force: Known<R>,
+    pub contact_force: MaskedValue<R>,
     /// Compression, in m.
-    pub compression: Known<R>,
+    pub compression: MaskedValue<R>,
     /// Impact period, in s.
-    pub duration: Known<R>,
+    pub duration: MaskedValue<R>,
     /// Mean acceleration.
-    pub mean: Known<R>,
+    pub mean: MaskedValue<R>,
     /// Power from the manipulator and power of compression, in W.
-    pub powers: [Known<R>; 2],
+    pub powers: [MaskedValue<R>; 2],
     /// Time of the peak acceleration and two derivatives after it.
     pub(super) top: [R; 3],
 }
@@ -61,9 +61,9 @@ pub struct GroupPeaks<R: Number> {
 /// All other metrics, accelerations in m/s^2.
 pub struct GroupRest<R: Number> {
     /// Injury criteria for both windows.
-    pub injury: [Known<R>; 2],
+    pub injury: [MaskedValue<R>; 2],
     /// Largest 3 ms mean and largest level held for 3 ms.
-    pub held: [Known<R>; 2],
+    pub held: [MaskedValue<R>; 2],
     /// Deferred lanes.
     pub put_off: R::Mask,
 }
