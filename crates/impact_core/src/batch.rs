@@ -14,7 +14,7 @@ use crate::parameters::GRAVITY;
 /// Rows of a task; the bits of a row do not depend on it.
 const BLOCK: usize = 1024;
 
-/// Which criteria a batch computes, besides the status.
+/// Criteria that a batch computes, besides the status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FieldSet(Loads<bool>);
 

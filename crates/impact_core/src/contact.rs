@@ -74,7 +74,7 @@ pub struct Stretch {
     pub start: f64,
     /// Length, in s.
     pub length: f64,
-    /// Where the stretch ends inside the cell, in s from its start.
+    /// End of the stretch inside the cell, in s from its start.
     pub used: f64,
     /// Its phase.
     pub phase: Phase,

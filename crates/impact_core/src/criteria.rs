@@ -17,7 +17,7 @@ pub(crate) const PIECES: usize = 8;
 /// Rounding errors of the acceleration over the terms that it is the sum of.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// The four numbers that design needs, and where the compression is largest.
+/// Peaks and impact duration, which design needs, and the end of their search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Peaks {
     /// Acceleration of the head, in m/s^2; NaN if constrained.
@@ -32,7 +32,7 @@ pub struct Peaks {
     pub end: f64,
 }
 
-/// Everything found on one response, with places.
+/// Results of all searches on one response, with their times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Findings {
     /// The peaks.
@@ -234,7 +234,7 @@ impl Impact {
         maximum(function, 0.0, self.end, self.pieces)
     }
 
-    /// Everything, for a speed of the manipulator.
+    /// Results of all searches, for a speed of the manipulator.
     #[must_use]
     pub fn findings(&self, manipulator_speed: f64) -> Findings {
         self.findings_of(manipulator_speed, Searches::ALL)

@@ -1,4 +1,4 @@
-//! Which foams keep an impact within limits.
+//! Foams that keep an impact within limits.
 //!
 //! Along the stiffness `K_c` at a given damping `C_c`, the ratio of a metric to its limit crosses
 //! 1 at boundaries. It need not be continuous: the impact period jumps where a local minimum of

@@ -242,7 +242,7 @@ criteria! {
 pub enum Status {
     /// The acceleration of the head came back to zero.
     Released,
-    /// It did not within the horizon; maxima are over the horizon.
+    /// No release within the horizon; maxima are over the horizon.
     NoRelease,
     /// Released, but the foam was compressed beyond its linear range.
     BeyondLinearRange,

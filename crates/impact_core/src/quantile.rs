@@ -63,7 +63,7 @@ fn class(value: f64) -> usize {
     (rising(value) >> (64 - BITS)) as usize
 }
 
-/// How many numbers each class has.
+/// Count of numbers in each class.
 fn counted(values: &[f64], interrupted: Interrupted<'_>) -> Result<Vec<usize>> {
     let mut counts = vec![0; 1 << BITS];
     for piece in values.chunks(PIECE) {

@@ -21,7 +21,7 @@ const PIECES: usize = 8;
 /// Samples between two looks whether to stop.
 const CHECK: usize = 4096;
 
-/// How the motion is found.
+/// Method of the solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// Series of the exact solution.
@@ -39,7 +39,7 @@ pub enum Contact {
     Unilateral,
 }
 
-/// Which coefficients the motion has.
+/// Coefficients of the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Equations {
     /// Coefficients of the bodies.
@@ -65,13 +65,13 @@ pub struct SimulationOptions {
     pub duration: f64,
     /// Time between samples, in s.
     pub step: f64,
-    /// How the motion is found.
+    /// Method of the solution.
     pub method: Method,
     /// Forces that the foam can give.
     pub contact: Contact,
     /// Motion of the set-point.
     pub set_point: SetPoint,
-    /// Which coefficients the motion has; the printed ones need the exact method, linear contact
+    /// Coefficients of the motion; the printed ones need the exact method, linear contact
     /// and a set-point at constant speed.
     pub equations: Equations,
 }

@@ -17,7 +17,7 @@ pub struct Separation {
     pub human_speed: f64,
     /// Time before the robot begins to brake (s).
     pub reaction_time: f64,
-    /// How far a part of the body reaches before it is detected (m).
+    /// Distance that a part of the body reaches before it is detected, `C` (m).
     pub intrusion: f64,
     /// Uncertainty of the positions of person and robot together (m).
     pub uncertainty: f64,

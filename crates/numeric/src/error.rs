@@ -59,16 +59,16 @@ impl fmt::Display for InvalidParameter {
     }
 }
 
-/// Where a run was no longer finite.
+/// A run whose state or force is no longer finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NonFinite {
     /// Index of the run.
     pub run: usize,
-    /// When, in s.
+    /// Time, in s.
     pub time: f64,
 }
 
-/// Why there is no thread pool.
+/// Failure to make a thread pool.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoThreads {
     /// Number of threads asked for.

@@ -13,7 +13,7 @@ const MOST_IN_BLOCK: usize = 64;
 /// Blocks for each thread, so that all end at about the same time.
 const BLOCKS_OF_THREAD: usize = 16;
 
-/// How a batch is carried out, and who listens.
+/// Threads of a batch, and its interruption and progress.
 #[derive(Clone, Copy)]
 pub struct Work<'a> {
     /// Number of threads; all cores when `None`.

@@ -80,7 +80,7 @@ impl Governs {
     }
 }
 
-/// How a speed was found.
+/// Method that gave a speed, or why there is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpeedStatus {
     /// From the stored energy.
@@ -145,7 +145,7 @@ pub struct Allowed {
     pub rising: bool,
 }
 
-/// A contact at rest: what stores energy, and what is limited.
+/// A contact at rest with its limits: masses, covering and region.
 #[derive(Clone, Copy, Debug)]
 pub struct LimitedContact<'a> {
     /// Mass of the robot, in kg, which may be infinite.

@@ -12,7 +12,7 @@ use crate::covering::Shape;
 
 /// Range of speeds to search where loads might fall with the speed, in m/s.
 pub const SCANNED: [f64; 2] = [1e-3, 20.0];
-/// How many.
+/// Number of such speeds.
 const SCANS: usize = 48;
 /// Loads that the energy bounds below this share of their limits need no simulation.
 const WELL_INSIDE: f64 = 0.99;
@@ -79,7 +79,7 @@ fn bounds(
     ])
 }
 
-/// Whether a support or a set point pushes.
+/// Whether a support or the stop of the set point pushes.
 fn is_held(collision: &Collision<'_>) -> bool {
     let held = |body: &SupportedBody| body.damping > 0.0 || body.stiffness > 0.0;
     held(&collision.robot) || held(&collision.body) || collision.stop.is_some()

@@ -1,4 +1,4 @@
-//! How rows of numbers are made into contacts.
+//! Contacts made from rows of numbers.
 
 use numeric::threads::Interrupted;
 
@@ -28,7 +28,7 @@ pub struct PreparedContact {
     limits: Limits,
 }
 
-/// How rows are made into contacts.
+/// Recipe of contacts from rows.
 #[derive(Clone, Debug)]
 pub struct Setup {
     /// Kinds of covering and region, shared by all rows.

@@ -5,7 +5,7 @@ use crate::covering::{Pad, Shape};
 
 /// Range of thicknesses to search, in m.
 const RANGE: [f64; 2] = [1e-4, 1.0];
-/// How many, where a thicker covering may be slower.
+/// Number of thicknesses, where a thicker covering may be slower.
 const LOOKS: usize = 97;
 
 /// Result of the search for a least thickness.
@@ -34,12 +34,12 @@ impl ThicknessStatus {
     }
 }
 
-/// A thickness with how it was found.
+/// A thickness and the result of its search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thickness {
     /// Thickness, in m; 0 if bare is enough, NaN if none is found.
     pub thickness: f64,
-    /// How.
+    /// Result of the search.
     pub status: ThicknessStatus,
 }
 

@@ -61,7 +61,7 @@ pub struct Places<'a> {
 /// Position and mobility of a point.
 #[derive(Clone, Copy, Debug)]
 pub struct PointState {
-    /// Where it stands (m).
+    /// Position in the world (m).
     pub position: Vector3<f64>,
     /// Its mobility (1/kg).
     pub mobility: Mobility,
@@ -285,7 +285,7 @@ fn units(directions: &Broadcast<'_>) -> Result<Vec<f64>> {
     Ok(found)
 }
 
-/// Which rows belong to an element of the result.
+/// Rows that belong to each element of the result.
 struct Spots<'a> {
     shape: &'a [usize],
     strides: [Option<&'a [usize]>; 3],

@@ -106,7 +106,7 @@ struct Builder<'a> {
     value: Vec<Option<usize>>,
     joints: Vec<ArmJoint>,
     segments: Vec<Segment>,
-    /// Where each link hangs.
+    /// Segment of each link, and its pose there.
     places: Vec<(Option<usize>, Isometry3<f64>)>,
 }
 

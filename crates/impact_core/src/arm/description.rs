@@ -28,7 +28,7 @@ pub struct LinkText {
     pub size: Option<Size>,
 }
 
-/// How a joint moves.
+/// Type of a joint's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointType {
     /// About its axis.
@@ -61,7 +61,7 @@ pub struct JointText {
     pub parent: String,
     /// The link that it moves.
     pub child: String,
-    /// Where its frame stands in that of the parent, at zero.
+    /// Pose of its frame in that of the parent, at zero.
     pub origin: Isometry3<f64>,
     /// Unit axis in its frame.
     pub axis: Vector3<f64>,
@@ -267,7 +267,7 @@ fn body(inertial: &Element<'_, '_>, notes: &mut Vec<String>) -> Result<Body> {
     Ok(own.finite()?.placed(&origin(inertial, notes)?))
 }
 
-/// Where something stands: `rpy` turns about the fixed axes x, y, z in this order.
+/// Pose of an element: `rpy` turns about the fixed axes x, y, z in this order.
 fn origin(owner: &Element<'_, '_>, notes: &mut Vec<String>) -> Result<Isometry3<f64>> {
     let Some(origin) = owner.child("origin")? else {
         return Ok(Isometry3::identity());

@@ -7,7 +7,7 @@ use super::body::{Body, Symmetric};
 use super::shape::Size;
 use super::survey::Survey;
 
-/// How a joint moves.
+/// Type of a joint's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
     /// About its axis; values in rad.
@@ -29,7 +29,7 @@ pub struct ArmJoint {
     pub column: Option<usize>,
 }
 
-/// A link: where it hangs.
+/// A link and its place on the arm.
 #[derive(Clone, Debug)]
 pub struct Link {
     /// Name.
@@ -38,7 +38,7 @@ pub struct Link {
     pub parent: Option<usize>,
     /// The segment that it belongs to; none for what stands still.
     pub segment: Option<usize>,
-    /// Where it stands in the frame of the segment, or in the world.
+    /// Pose in the frame of the segment, or in the world.
     pub frame: Isometry3<f64>,
     /// Mass (kg).
     pub mass: f64,
@@ -76,19 +76,19 @@ pub struct Segment {
     pub kind: JointKind,
     /// The joint whose value it takes.
     pub source: usize,
-    /// Factor of that value, and what is added.
+    /// Factor of that value.
     pub multiplier: f64,
-    /// See `multiplier`.
+    /// Offset of that value.
     pub addend: f64,
     /// Limits of its own where it mimics another joint.
     pub own_limits: Option<[f64; 2]>,
     /// Column of the mass matrix; none if the joint is locked.
     pub column: Option<usize>,
-    /// Mass (kg), first moment (kg m) and inertia about the origin (kg m^2) in its frame.
+    /// Mass (kg).
     pub mass: f64,
-    /// See `mass`.
+    /// First moment in its frame (kg m).
     pub moment: Vector3<f64>,
-    /// See `mass`.
+    /// Inertia about the origin in its frame (kg m^2).
     pub inertia: Symmetric,
     /// Reflected motor inertia.
     pub armature: f64,

@@ -41,7 +41,7 @@ pub struct Pose<'a, const N: usize> {
     pivots: SVector<f64, N>,
 }
 
-/// Why a pose has no mass matrix that could be inverted.
+/// A pose with a singular mass matrix.
 #[derive(Debug)]
 pub struct Singular {
     /// Column of the mass matrix.
@@ -196,7 +196,7 @@ impl<'a, const N: usize> Pose<'a, N> {
         Ok(())
     }
 
-    /// Where a point of a link stands in the world (m).
+    /// Position of a point of a link in the world (m).
     #[must_use]
     pub fn position(&self, link: usize, point: &Vector3<f64>) -> Vector3<f64> {
         let link = &self.arm.links[link];

@@ -11,7 +11,7 @@ const PART: f64 = 0.05;
 /// Axes with a cosine above this are parallel.
 const PARALLEL: f64 = 0.999;
 
-/// See the module.
+/// Signs that an arm may not be real.
 #[derive(Clone, Debug, Default)]
 pub struct Survey {
     /// Longest way from the first joint through the others to a link or its center of mass (m); slides do not count.

@@ -1,4 +1,4 @@
-//! How the links of a description hang together: one root, no loop, every name once.
+//! Tree of the links of a description: one root, no loop, every name once.
 
 use std::collections::HashMap;
 

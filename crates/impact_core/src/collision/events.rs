@@ -55,7 +55,7 @@ pub struct Sizes {
     pub speed: f64,
     /// Force, in N.
     pub force: f64,
-    /// How exactly events are located, over these sizes.
+    /// Tolerance of the place of events, over these sizes.
     pub sharpness: f64,
 }
 

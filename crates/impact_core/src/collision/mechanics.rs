@@ -35,7 +35,7 @@ pub struct History {
     pub loading: bool,
     /// Strain at the last reversal of `eps`, the largest so far.
     pub largest_strain: f64,
-    /// Its work.
+    /// Work up to that strain.
     pub largest_work: f64,
     /// Whether the set point brakes, or rests.
     pub braking: bool,

@@ -83,7 +83,7 @@ impl SupportedBody {
 /// The robot's set point brakes from a time on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Braking {
-    /// When, in s after the first touch.
+    /// Start of braking, in s after the first touch.
     pub time: f64,
     /// Deceleration, in m/s^2.
     pub deceleration: f64,
@@ -104,7 +104,7 @@ pub struct Collision<'a> {
     pub closing_speed: f64,
     /// Stop of the set point.
     pub stop: Option<Braking>,
-    /// When it is left alone, in s.
+    /// Horizon of the simulation, in s.
     pub horizon: f64,
     /// Relative tolerance.
     pub tolerance: f64,

@@ -1,6 +1,6 @@
 //! Outcome of a collision.
 
-/// How a collision ended.
+/// End of a collision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CollisionStatus {
     /// The bodies parted.
@@ -57,7 +57,7 @@ pub struct MotionSample {
     pub body_speed: f64,
     /// `x_h''`, in m/s^2.
     pub body_acceleration: f64,
-    /// Its derivative, in m/s^3.
+    /// `x_h'''`, in m/s^3.
     pub body_jerk: f64,
     /// Pressure at the apex of a curved contact, in Pa.
     pub apex_pressure: f64,
@@ -68,11 +68,11 @@ pub struct MotionSample {
 pub struct Outcome {
     /// Way in which the collision ended.
     pub status: CollisionStatus,
-    /// When it ended, in s.
+    /// Time of the end, in s.
     pub release_time: f64,
     /// Largest force, in N.
     pub peak_force: f64,
-    /// When, in s; NaN on a plateau.
+    /// Time of the largest force, in s; NaN on a plateau.
     pub peak_force_time: f64,
     /// Largest `eps`, in m.
     pub peak_total_compression: f64,

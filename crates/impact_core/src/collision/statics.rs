@@ -16,7 +16,7 @@ pub struct Rest {
     pub work: f64,
 }
 
-/// Where some energy is stored in covering and region; as far as the data reach.
+/// Equilibrium at which covering and region store an energy in J; as far as the data reach.
 #[must_use]
 pub fn rest_of(pad: Option<&Pad>, region: Region, energy: f64) -> Rest {
     let at_force = |force: f64| Rest {

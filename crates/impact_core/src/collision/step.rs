@@ -40,7 +40,7 @@ const ERROR: [f64; 7] = [
     -1.0 / 40.0,
 ];
 
-/// Where a step led.
+/// End of a step.
 #[derive(Clone, Copy)]
 pub struct Step<const N: usize> {
     /// State at its end.

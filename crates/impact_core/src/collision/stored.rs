@@ -39,7 +39,7 @@ type Nodes = Lanes<8>;
 
 /// A function to integrate.
 trait Integrand {
-    /// Its values side by side.
+    /// Values of the integrand side by side.
     fn at<R: Real>(&self, x: R) -> R;
 }
 

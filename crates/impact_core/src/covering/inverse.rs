@@ -1,4 +1,4 @@
-//! Where a rising function reaches a value.
+//! Inverse of a rising function.
 
 /// Steps after which a bracket has no room left.
 const MAX_STEPS: usize = 200;
@@ -77,7 +77,7 @@ pub fn between(target: f64, low: f64, bound: f64, function: impl Fn(f64) -> [f64
     low
 }
 
-/// How many steps from one double number to the next lead from `low` to `high`, both not negative.
+/// Number of steps from one double number to the next between `low` and `high`, both not negative.
 fn numbers_between(low: f64, high: f64) -> u64 {
     high.to_bits().saturating_sub(low.to_bits())
 }

@@ -25,7 +25,7 @@ use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 use shape::HalfOrders;
 use smallvec::SmallVec;
 
-/// Where a law has kinks: mostly so few that a collision asks for no memory, which threads would wait for.
+/// Kinks of a law: mostly so few that a collision asks for no memory, which threads would wait for.
 pub type Kinks = SmallVec<[f64; 8]>;
 
 /// Argument in [0, infinity) at which a rising function from (0, 0) reaches a value.
@@ -76,10 +76,10 @@ pub struct Bottoming {
     pub stiffness: f64,
 }
 
-/// A covering as it is described.
+/// Description of a covering.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Covering {
-    /// Its law.
+    /// Law of the stress.
     pub material: Material,
     /// `T`, in m.
     pub thickness: f64,
@@ -195,7 +195,7 @@ impl Covering {
     }
 }
 
-/// A covering with what is known before it is compressed.
+/// A covering with numbers that do not depend on its compression.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pad {
     /// Description of the covering.

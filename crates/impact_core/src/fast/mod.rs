@@ -83,7 +83,7 @@ pub struct Solved<'a, S, R: Number> {
     manipulator_speed: R,
     /// Impact period, in cells; the horizon in lanes without a release before it.
     end: R,
-    /// Such lanes.
+    /// Lanes without a release before the horizon.
     lasting: R::Mask,
     at_end: Basis<R>,
     /// Nodes before the end, at most.
@@ -97,7 +97,7 @@ pub struct Solved<'a, S, R: Number> {
     ragged: R::Mask,
     /// Lanes whose acceleration has a flank that flattens and steepens again.
     shelf: R::Mask,
-    /// Whether such lanes are followed.
+    /// Whether lanes with two humps or a shelf are followed.
     humps: bool,
     /// Quantities to search for.
     searches: Searches,

@@ -62,7 +62,7 @@ pub type Basis<R> = [R; 4];
 pub struct Wave<R>(pub [R; 4]);
 
 impl<R: Number> Wave<R> {
-    /// Its value.
+    /// Value of the wave.
     #[inline(always)]
     pub fn at(&self, basis: &Basis<R>) -> R {
         let [p, q, r, s] = self.0;
@@ -81,7 +81,7 @@ impl<R: Number> Wave<R> {
         values
     }
 
-    /// Its value at first contact.
+    /// Value of the wave at first contact.
     #[inline(always)]
     pub fn at_contact(&self) -> R {
         self.0[0] + self.0[2]

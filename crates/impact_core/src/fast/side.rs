@@ -16,7 +16,7 @@ use pulp::{Scalar, Simd};
 /// Most rows side by side.
 pub const MOST_LANES: usize = 8;
 
-/// How the responses of rows side by side are walked along.
+/// Settings of the walk along the responses of rows side by side.
 #[derive(Clone, Copy)]
 pub struct Walk {
     /// Time until which a release counts, in s.

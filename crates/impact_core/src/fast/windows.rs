@@ -300,7 +300,7 @@ pub(super) struct FreeWindow<R: Number> {
     pub(super) ends: [R; 2],
     /// Slopes of the acceleration there.
     slopes: [R; 2],
-    /// Its criterion.
+    /// Criterion of the window.
     pub(super) value: R,
     /// Lanes in which the steps came to rest.
     pub(super) settled: R::Mask,

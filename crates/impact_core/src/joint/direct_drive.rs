@@ -89,7 +89,7 @@ impl DirectDrive {
     }
 }
 
-/// How joint and head meet, and how it is recorded.
+/// Impact of joint and head, and its record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveImpact {
     /// Closing speed `v_c`, in m/s.
@@ -136,7 +136,7 @@ pub struct DriveRun {
     pub impact_duration: f64,
     /// First time at which the command is at its limit, in s.
     pub saturated_from: Option<f64>,
-    /// How long the command is at its limit, in s.
+    /// Duration of the command at its limit, in s.
     pub saturated_time: f64,
 }
 

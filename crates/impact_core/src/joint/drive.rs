@@ -1,11 +1,11 @@
-//! How the set-point of the manipulator moves during an impact.
+//! Motion of the manipulator's set-point during an impact.
 
 use crate::error::{Failure, Given, Result, finite, not_negative, positive};
 
 /// Constant acceleration of the set-point from a time on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveSegment {
-    /// When it begins, in s.
+    /// Start, in s.
     pub start: f64,
     /// Acceleration, in m/s^2.
     pub acceleration: f64,
@@ -120,8 +120,8 @@ impl SetPoint {
 pub struct Stop {
     /// Speed before, in m/s.
     pub manipulator_speed: f64,
-    /// When the impact is detected, in s.
+    /// Time of detection of the impact, in s.
     pub detection: f64,
-    /// When the set-point rests, in s.
+    /// Time from which the set-point rests, in s.
     pub rest: f64,
 }

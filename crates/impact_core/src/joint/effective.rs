@@ -89,7 +89,7 @@ impl UniformLinks {
     }
 }
 
-/// Where two joints hit: what the speed of the impact point depends on.
+/// Geometry of the impact point of two joints, on which its speed depends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
     /// Length of the second link `a_2`, in m.
@@ -148,7 +148,7 @@ impl Reach {
 }
 
 impl TwoJoints {
-    /// Where the joints hit.
+    /// Geometry of the impact point.
     #[must_use]
     pub fn reach(&self) -> Reach {
         Reach {

@@ -46,7 +46,7 @@ pub struct PulseShape {
     pub rest: f64,
     /// Root mean square about that level.
     pub noise: f64,
-    /// Samples from which both are told.
+    /// Number of samples from which level and noise are found.
     pub rest_samples: usize,
     /// That level at the peak, along the slope of these samples where noise alone does not make it; else the same.
     pub level: f64,

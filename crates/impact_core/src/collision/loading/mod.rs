@@ -35,15 +35,15 @@ use variable::Variable;
 const MOST_EVALUATIONS: usize = 20_000;
 /// Shortest step over its variable.
 const SHORTEST: f64 = 1e-13;
-/// How far a side of a kink is from it, relatively.
+/// Relative distance of a side of a kink from it.
 const SIDE: f64 = 4.0 * f64::EPSILON;
 
-/// Where the compression turns, and what peaked before.
+/// Turn of the compression, and the peaks up to it.
 #[derive(Clone, Copy, Debug)]
 pub struct Turn {
     /// `d`, in m.
     pub compression: f64,
-    /// When, in s.
+    /// Time, in s.
     pub time: f64,
     /// Largest force, in N.
     pub force: Peak,
@@ -64,7 +64,7 @@ struct Loading<'a> {
     /// Whether the force beyond a kink of the law grows like a half power.
     half_powers: bool,
     kinks: Kinks,
-    /// The next one.
+    /// Compression at the next kink.
     kink: f64,
     /// Compressions at the ends of the piece of the law.
     piece: [f64; 2],
@@ -72,9 +72,9 @@ struct Loading<'a> {
     size: f64,
     /// Power with which the force rises at the touch.
     exponent: f64,
-    /// How the start is integrated over.
+    /// Variable of integration from the touch on.
     from_touch: Variable,
-    /// How the end is integrated over.
+    /// Variable of integration towards the turn.
     to_turn: Variable,
     /// How much shorter first steps are than at a tolerance of 1e-6.
     finer: f64,

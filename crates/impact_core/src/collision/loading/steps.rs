@@ -1,4 +1,4 @@
-//! Which variable the next step is over, how far it goes, and whether it is good.
+//! Choice of the variable and the length of the next step, and the test of its error.
 
 use super::Loading;
 use super::plane::Point;
@@ -26,7 +26,7 @@ const STRETCH: f64 = 1.1;
 const FIRST_TO_TURN: f64 = 0.3;
 const LONGEST: f64 = 0.36;
 
-/// How far the motion is.
+/// Progress of the motion.
 pub(super) struct Progress {
     pub(super) variable: Variable,
     pub(super) point: Point,
@@ -51,7 +51,7 @@ impl Progress {
     }
 }
 
-/// How far the next step goes.
+/// Length of the next step.
 pub(super) struct StepLength {
     pub(super) length: f64,
     /// Whether the step ends at the kink, or at the turn.

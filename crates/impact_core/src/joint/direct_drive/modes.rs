@@ -9,7 +9,7 @@ const HALVINGS: u32 = 60;
 /// Positions and velocities of impact point and head.
 type DriveState = [f64; 4];
 
-/// How the command stands to its limit.
+/// State of the command: free, or at a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Command {
     Free,
@@ -27,7 +27,7 @@ enum FrictionMode {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum FoamContact {
     Touching,
-    /// Since when, and how far the foam was compressed then; it relaxes by itself.
+    /// Time and compression at release; the foam relaxes by itself.
     Apart(f64, f64),
 }
 
@@ -46,7 +46,7 @@ enum ModeChange {
     Contact,
 }
 
-/// Everything that is recorded.
+/// Recorded quantities at one time.
 pub(super) struct Quantities {
     pub(super) manipulator: [f64; 2],
     pub(super) head: [f64; 2],
