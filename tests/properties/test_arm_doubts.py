@@ -62,7 +62,10 @@ def test_motors_on_the_side_of_the_rotor_never_silence_the_doubt(powers: list[fl
     assert "armature_suspicious" in {each.code for each in unsafe_doubts(arm.effective_mass(POSE, **PLACE).warnings)}
 
 
-@given(mass=some.floats(0.0, 20.0), center=some.tuples(NUMBERS, NUMBERS, NUMBERS), unit=some.sampled_from([1e2, 1e3]))
+PAYLOADS = some.just(0.0) | some.floats(0.005, 20.0)
+
+
+@given(mass=PAYLOADS, center=some.tuples(NUMBERS, NUMBERS, NUMBERS), unit=some.sampled_from([1e2, 1e3]))
 def test_payloads_in_another_unit_are_told(mass: float, center: Any, unit: float) -> None:
     place = np.array(center) * 0.3 / max(np.linalg.norm(center), 0.3)
     assert arms.Arm.example(armature=MOTORS, payload=("tool", mass, place)).warnings == ()

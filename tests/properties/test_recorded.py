@@ -8,7 +8,7 @@ import warnings
 import numpy as np
 import numpy.typing as npt
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from hrsafety import impact
@@ -77,7 +77,8 @@ def test_what_is_small_elsewhere_changes_nothing(
     # Samples of noise beside flat ends of the pulse may belong to it.
     assert found.impact_duration == pytest.approx(clean.impact_duration, abs=0.15 * duration + 5.0 / RATE)
     assert found.mean_head_acceleration_g == pytest.approx(clean.mean_head_acceleration_g, rel=0.1)
-    assert doubts(found) == set()
+    # Where half of what comes before is undershoot, it may be an offset.
+    assert doubts(found) <= ({"offset"} if begin < 2.0 * 0.4 * duration else set())
 
 
 @given(shape=shapes, peak=peaks, duration=durations, begin=begins, force=st.booleans())
@@ -142,6 +143,7 @@ def test_an_offset_below_zero_is_always_doubted(
 
 @given(shape=shapes, peak=peaks, duration=durations, begin=begins, digits=st.integers(0, 3))
 def test_rounded_values_are_no_saturation(shape: str, peak: float, duration: float, begin: float, digits: int) -> None:
+    assume(10.0**-digits <= 0.01 * peak)  # coarser digits cannot be told from a clipped channel
     time, values = record(shape, peak, duration, begin)
     assert "saturated" not in doubts(impact.recorded_metrics(time, values.round(digits)))
 

@@ -386,7 +386,7 @@ def test_commands_with_shares_fill_a_folder_and_one_without_writes_the_page(
     assert main(["sweep", study, "--out", out, "--chunks", "0:9"]) == 0
     assert "19 of 20 chunks" in capsys.readouterr().out
     assert main(["sweep", study, "--out", out, "--chunks", "9:10"]) == 0
-    assert "rows     1,000 in 20 chunks" in capsys.readouterr().out
+    assert "rows 1,000 in 20 chunks" in " ".join(capsys.readouterr().out.split())
     assert (tmp_path / "out" / "summary.html").exists()
 
 

@@ -34,34 +34,25 @@ impl Shield {
             };
             return fits(from).then_some(rest);
         }
-        let parts = [[from.max(ramp), end], [from, ramp]];
-        let mut parts = parts.into_iter().filter(|[first, last]| first < last);
-        // From a time of a part back to its begin, and through the part before.
-        let earliest = |found: f64, first: f64| {
-            if fits(from) {
-                return from;
+        let parts = [[from, ramp], [from.max(ramp), end]];
+        // A plan that speeds up and brakes can have two times for one measurement.
+        let (mut earliest, mut latest) = (f64::INFINITY, f64::NEG_INFINITY);
+        for [first, last] in parts.into_iter().filter(|[first, last]| first < last) {
+            let mut hold = |found: f64| {
+                earliest = earliest.min(farthest(found, first, fits));
+                latest = latest.max(farthest(found, last, fits));
+            };
+            if let Some(found) = self.fitting(course, [first, last], robot) {
+                hold(found);
             }
-            let time = farthest(found, first, fits);
-            if time > first {
-                time
-            } else {
-                farthest(time, from, fits)
+            if fits(last) {
+                hold(last);
             }
-        };
-        if fits(end) {
-            let [first, _] = parts.next()?;
-            return Some(Reading {
-                earliest: earliest(end, first),
-                latest: f64::INFINITY,
-            });
         }
-        parts.find_map(|[first, last]| {
-            let found = self.fitting(course, [first, last], robot)?;
-            Some(Reading {
-                earliest: earliest(found, first),
-                latest: farthest(found, last, fits),
-            })
-        })
+        if fits(end) {
+            latest = f64::INFINITY;
+        }
+        (earliest < f64::INFINITY).then_some(Reading { earliest, latest })
     }
 
     /// Any time of a part of a plan that a measurement does not refute, in s: where place and velocity fit best, or
