@@ -21,7 +21,7 @@ from hrsafety.benchmarks import SUITES, entry
 from hrsafety.benchmarks.protocol import Case
 from hrsafety.benchmarks.reacting import SCENES
 from hrsafety.navigation.crowd.contacts import contacts_of
-from page_tables import DOCS, head, line, percent, print_or_write
+from page_tables import DOCS, SENSING, head, line, percent, print_or_write
 
 MODELS = (
     nav.crowd.CollisionFreeSpeed,
@@ -148,25 +148,28 @@ def suite(name: str) -> Iterator[str]:
     yield f"`{name}`, {SUITE_CASES[name]} episodes: {kind.summary}; shields assume people of up to {speed:g} m/s."
     yield ""
     kinds = ("contact with people %", "with walls %", "moving toward %", "moving away %", "at fault %")
-    words = ("law", "success %", *kinds, "time, s", "least gap, m", "delay of people, s")
+    words = ("law", "people measured", "success %", *kinds, "time, s", "least gap, m", "delay of people, s")
     yield from head(*words, *(("exits, 1/s", "deadlocked %") if name in COUNTED else ()))
-    alone = nav.crowd.simulate_crowds([replace(world, robots=()) for world in worlds_of(name, LAWS[0])])
+    alone = nav.crowd.simulate_crowds([replace(world, robots=()) for world in worlds_of(name, LAWS[0], "exact")])
     for law in LAWS:
         for word in (law, f"{law}+shield"):
-            say(name, word)
-            yield row(worlds_of(name, word), word, alone, counted=name in COUNTED)
+            for sensing in SENSING:
+                say(name, word, sensing)
+                yield row(worlds_of(name, word, sensing), (word, sensing), alone, counted=name in COUNTED)
 
 
-def worlds_of(name: str, word: str) -> list[nav.crowd.World]:
-    """Return the worlds of a suite with a law."""
+def worlds_of(name: str, word: str, sensing: str) -> list[nav.crowd.World]:
+    """Return the worlds of a suite with a law, which knows how people are measured."""
     speed = SUITES[name].fastest or 0.0
     cases = range(SUITE_CASES[name])
-    case = Case(cases=cases, entry=entry(word), person_speed=speed, data=None, seed=0, threads=None)
+    case = Case(cases=cases, entry=entry(word), person_speed=speed, data=None, seed=0, threads=None, **SENSING[sensing])
     return [SCENES[name](case, index) for index in cases]
 
 
-def row(worlds: list[nav.crowd.World], word: str, alone: list[nav.crowd.CrowdTrajectories], *, counted: bool) -> str:
-    """Return the row of a law."""
+def row(
+    worlds: list[nav.crowd.World], words: tuple[str, str], alone: list[nav.crowd.CrowdTrajectories], *, counted: bool
+) -> str:
+    """Return the row of a law and of how people are measured."""
     runs = nav.crowd.simulate_crowds(worlds)
     episodes = [nav.crowd.episodes_of(run, other)[0] for run, other in zip(runs, alone, strict=True)]
     table = nav.metrics.evaluate_many(episodes)
@@ -184,7 +187,7 @@ def row(worlds: list[nav.crowd.World], word: str, alone: list[nav.crowd.CrowdTra
     toward, away = (np.array([getattr(each, kind) > 0 for each in found]) for kind in ("toward", "away"))
     counts = (int(np.sum(each)) for each in (table.success, people, walls, toward, away, faults))
     return line(
-        word,
+        *words,
         *(percent(count, len(worlds)) for count in counts),
         f"{mean(table.arrival_time):.2f}",
         f"{np.mean(table.min_clearance):.2f}",

@@ -20,7 +20,7 @@ import numpy as np
 from hrsafety import navigation as nav
 from hrsafety.benchmarks import Result, benchmark, entry
 from hrsafety.benchmarks.suites import ERROR, LATENCY, PURSUED
-from page_tables import DOCS, head, line, percent, print_or_write
+from page_tables import DOCS, SENSING, head, line, percent, print_or_write
 
 GUARDED = "field+shield+yielding"
 SUITES = (
@@ -50,12 +50,7 @@ def say(*words: object) -> None:
     print(time.strftime("%H:%M:%S"), *words, file=sys.stderr, flush=True)
 
 
-EXACT = "exact"
-SENSING = {EXACT: {}, f"±{1e3 * ERROR:g} mm, {LATENCY:g} s late": {"noise": ERROR, "latency": LATENCY}}
-"""Arguments of a benchmark by how people are measured; shields know it."""
-
-
-def rows_of(result: Result, where: str, speed: float, sensing: str = EXACT) -> Iterator[str]:
+def rows_of(result: Result, where: str, speed: float, sensing: str = "exact") -> Iterator[str]:
     """Return the lines of a suite."""
     for name, rows in result.rows.items():
         counts = [sum(row.outcome == "arrived" for row in rows)]

@@ -10,6 +10,11 @@ from hrsafety import navigation as nav
 from hrsafety.navigation.metrics import wilson
 
 DOCS = Path(__file__).resolve().parent
+ERROR, LATENCY = 0.025, 0.1
+"""Half width of the error of each coordinate of measured people in m, and their age in s, beside exact sensing."""
+LATE = f"±{1e3 * ERROR:g} mm, {LATENCY:g} s late"
+SENSING: dict[str, dict[str, float]] = {"exact": {}, LATE: {"noise": ERROR, "latency": LATENCY}}
+"""Arguments of a benchmark by how people are measured; shields know it."""
 
 
 def line(*cells: object) -> str:
