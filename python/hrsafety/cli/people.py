@@ -171,8 +171,8 @@ def _heading(
 
 RUN_HEADER = (
     ("run", "start", "people", "entered", "outcome", "arrival", "least", *("contacts",) * 5),
-    ("", "time", "seen", "active", "", "time", "clearance", "robot", "robot", "robot", "at", "counted"),
-    ("", "s", "", "region", "", "s", "m", "toward", "away", "standing", "fault", "apart"),
+    ("", "time", "seen", "active region", "", "time", "clearance", "toward", "away", "standing", "at fault", "apart"),
+    ("", "s", "", "", "", "s", "m", *("",) * 5),
 )
 
 
