@@ -8,11 +8,12 @@ use crate::crowd::sight::{Known, Sight};
 use crate::crowd::world::CrowdWorld;
 use crate::error::Result;
 use crate::lanes::Vector2;
+use crate::laws::BoxedLaw;
 use crate::laws::trace::Trace;
 use crate::laws::{Situation, Stop, force_toward};
 use crate::robots::drives::{MotorDrive, Order, PointMass, Reading};
 use crate::run::as_built::{AsBuilt, robot_under};
-use crate::run::{BoxedLaw, Interrupted, Request};
+use crate::run::{Interrupted, Request};
 use crate::world::geometry::RobotState;
 use crate::world::scenario::{Rules, Scenario};
 

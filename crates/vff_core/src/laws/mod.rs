@@ -189,6 +189,31 @@ pub trait Law<R: Real, B: Wide<R> = f64> {
     }
 }
 
+/// A law of any kind at work on one robot: loops of runs one after the other are compiled once, not once for each law.
+pub(crate) type BoxedLaw = Box<dyn Law<f64> + Send>;
+
+impl Law<f64> for BoxedLaw {
+    fn thinks(&self) -> bool {
+        (**self).thinks()
+    }
+
+    fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
+        (**self).command(situation)
+    }
+
+    fn felt_within(&self, obstacle: &PlacedObstacle) -> f64 {
+        (**self).felt_within(obstacle)
+    }
+
+    fn aim(&mut self, goal: [f64; 2]) {
+        (**self).aim(goal);
+    }
+
+    fn trace(&self) -> Option<Trace> {
+        (**self).trace()
+    }
+}
+
 /// A law for robots side by side, each in a scene of its own.
 pub trait SceneLaw<R: Real + Wide<R>>: Law<R, R> {
     /// A run begins in a lane: it forgets what it knew of the lane. The scenarios of all lanes have

@@ -4,8 +4,7 @@ use std::marker::PhantomData;
 use std::sync::Arc;
 
 use crate::error::{Failure, Result};
-use crate::laws::trace::Trace;
-use crate::laws::{Command, FieldTerms, Law, LawFamily, Situation};
+use crate::laws::{BoxedLaw, Command, FieldTerms, Law, LawFamily, Situation};
 use crate::run::Interrupted;
 use crate::run::lanes::group::{Group, Keep, Known, SceneGroup};
 use crate::run::lanes::kernels::{Kernels, One};
@@ -16,7 +15,7 @@ use crate::run::record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorde
 use crate::run::rollout::{Member, run_team};
 use crate::run::walls::Maps;
 use crate::world::map::StaticMap;
-use crate::world::scenario::{PlacedObstacle, Scenario};
+use crate::world::scenario::Scenario;
 
 /// A law of any kind up to its gains.
 ///
@@ -81,31 +80,6 @@ impl AnyLaw {
     pub fn checked(self) -> Result<Self> {
         self.0.check_gains(&self.0.gains())?;
         Ok(self)
-    }
-}
-
-/// A law of any kind at work on one robot: loops of runs one after the other are compiled once, not once for each law.
-pub(crate) type BoxedLaw = Box<dyn Law<f64> + Send>;
-
-impl Law<f64> for BoxedLaw {
-    fn thinks(&self) -> bool {
-        (**self).thinks()
-    }
-
-    fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
-        (**self).command(situation)
-    }
-
-    fn felt_within(&self, obstacle: &PlacedObstacle) -> f64 {
-        (**self).felt_within(obstacle)
-    }
-
-    fn aim(&mut self, goal: [f64; 2]) {
-        (**self).aim(goal);
-    }
-
-    fn trace(&self) -> Option<Trace> {
-        (**self).trace()
     }
 }
 

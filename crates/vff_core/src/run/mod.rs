@@ -38,7 +38,6 @@ pub use plan::{Instructions, Width};
 pub use record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
 pub use table::BatchTable;
 
-pub(crate) use any_law::BoxedLaw;
 pub(crate) use lanes::group::Group;
 pub(crate) use nominal::{Ways, nominal_runs};
 pub(crate) use plan::{Key, Plan, key_of};

@@ -7,11 +7,12 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::lanes::{Planar, Vector2};
+use crate::laws::BoxedLaw;
 use crate::laws::trace::Trace;
 use crate::laws::{Command, Situation, Stop, force_toward};
 use crate::robots::drives::{Fix, MotorDrive, Order, Reading};
 use crate::run::Interrupted;
-use crate::run::any_law::{AnyLaw, BoxedLaw};
+use crate::run::any_law::AnyLaw;
 use crate::run::as_built::AsBuilt;
 use crate::run::as_built::history::{AsBuiltTrajectory, Everything, Listener};
 use crate::run::as_built::sight::{SensedState, Sight};

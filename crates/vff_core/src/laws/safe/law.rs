@@ -11,10 +11,9 @@ use crate::laws::shield::{
 };
 use crate::laws::trace::Trace;
 use crate::laws::yielding::{Outlook, Yielder};
-use crate::laws::{Command, Situation};
+use crate::laws::{BoxedLaw, Command, Situation};
 use crate::robots::differential::{DifferentialLimits, Twist};
 use crate::robots::drives::velocity_of;
-use crate::run::BoxedLaw;
 use crate::world::geometry::RobotState;
 use crate::world::scenario::Scenario;
 

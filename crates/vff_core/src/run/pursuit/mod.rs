@@ -13,10 +13,11 @@ use nalgebra::Vector2;
 
 use crate::error::{Failure, Given, Result};
 use crate::lanes::Planar;
+use crate::laws::BoxedLaw;
 use crate::laws::{Situation, Stop};
 use crate::robots::drives::{MotorDrive, Reading};
 use crate::run::Interrupted;
-use crate::run::any_law::{AnyLaw, BoxedLaw};
+use crate::run::any_law::AnyLaw;
 use crate::run::as_built::sight::{SensedState, Sight};
 use crate::run::as_built::{AsBuilt, clock_of, robot_under};
 use crate::run::episode::{Episode, Parts};
