@@ -52,21 +52,21 @@ fn criteria(criterion: &mut Criterion) {
     signals.push(("white_noise", noise));
     for (name, signal) in &signals {
         criterion.bench_function(&format!("hic15/{name}"), |bencher| {
-            bencher.iter(|| hic(black_box(&time), black_box(signal), 0.015, false));
+            bencher.iter(|| hic(black_box(&time), black_box(signal), 0.015, false, &|| false));
         });
     }
     let pulse = &signals[2].1;
     criterion.bench_function("hic36/pulse_with_ringing_and_noise", |bencher| {
-        bencher.iter(|| hic(black_box(&time), black_box(pulse), 0.036, false));
+        bencher.iter(|| hic(black_box(&time), black_box(pulse), 0.036, false, &|| false));
     });
     criterion.bench_function("hic15_free_ends/pulse_with_ringing_and_noise", |bencher| {
-        bencher.iter(|| hic(black_box(&time), black_box(pulse), 0.015, true));
+        bencher.iter(|| hic(black_box(&time), black_box(pulse), 0.015, true, &|| false));
     });
     criterion.bench_function("average_3ms/pulse_with_ringing_and_noise", |bencher| {
-        bencher.iter(|| moving_average(black_box(&time), black_box(pulse), 0.003));
+        bencher.iter(|| moving_average(black_box(&time), black_box(pulse), 0.003, &|| false));
     });
     criterion.bench_function("clip_3ms/pulse_with_ringing_and_noise", |bencher| {
-        bencher.iter(|| contiguous_level(black_box(&time), black_box(pulse), 0.003));
+        bencher.iter(|| contiguous_level(black_box(&time), black_box(pulse), 0.003, &|| false));
     });
 }
 

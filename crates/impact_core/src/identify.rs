@@ -12,10 +12,10 @@ mod line;
 pub use cylinder::{CylinderController, DesiredMotion};
 pub use drive::{
     DirectDriveFit, DriveConstants, OpenLoop, PdGains, Tube, TubeInertia, fit_open_loop,
-    fit_open_loop_until, identify_direct_drive, pd_gains, tube_inertia,
+    identify_direct_drive, pd_gains, tube_inertia,
 };
-pub use drop_test::{DropContact, DropModel, drop_trajectory, drop_trajectory_until};
-pub use foam::{Drop, FoamFit, FoamFitSettings, identify_foam, identify_foam_until};
+pub use drop_test::{DropContact, DropModel, drop_trajectory};
+pub use foam::{Drop, FoamFit, FoamFitSettings, identify_foam};
 pub use line::{Line, fit_static, student_quantile};
 
 use crate::error::{Failure, Given, Result};

@@ -15,13 +15,11 @@ mod tops;
 mod windows;
 
 pub use closed_form::{hic_half_sine, hic_square, hic_triangle};
-pub use injury::{HeadInjury, hic, hic_until};
+pub use injury::{HeadInjury, hic};
 pub use push::push_around;
 pub use recorded::{Recorded, Recording};
 pub use shape::{PulseShape, shape_until};
-pub use windows::{
-    Level, contiguous_level, contiguous_level_until, moving_average, moving_average_until,
-};
+pub use windows::{Level, contiguous_level, moving_average};
 
 use crate::error::{Failure, Given, Result, proceed};
 use numeric::threads::Interrupted;

@@ -47,7 +47,7 @@ pub fn simulate_direct_drive<'py>(
     let (drive, foam, head) = (&drive.0, &foam.0, &head.0);
     let run = watched(py, Report::none(), |control| {
         let interrupted = || control.interrupted();
-        direct_drive::simulate_direct_drive_until(drive, foam, head, &impact, &interrupted)
+        direct_drive::simulate_direct_drive(drive, foam, head, &impact, &interrupted)
     })?;
     let fields = Fields::new(py);
     fields.vector("time", run.time)?;

@@ -65,7 +65,7 @@ pub fn identify_foam<'py>(
             interrupted: &|| control.interrupted(),
             progress: &|more| control.count(more),
         };
-        identify::identify_foam_until(force, compression, &signals, &settings, work)
+        identify::identify_foam(force, compression, &signals, &settings, work)
     })?;
     let fields = Fields::new(py);
     fields.value("stiffness", fit.stiffness)?;
@@ -128,7 +128,7 @@ pub fn drop_trajectory<'py>(
     let time = time.as_slice()?;
     // How many events there are is known only afterwards: work of any length looks at signals.
     let heights = here(py, Report::none(), |control| {
-        identify::drop_trajectory_until(time, &model, &|| control.interrupted())
+        identify::drop_trajectory(time, &model, &|| control.interrupted())
     })?;
     Ok(heights.into_pyarray(py).into_any())
 }
@@ -142,7 +142,7 @@ pub fn fit_open_loop<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let (time, angle) = (time.as_slice()?, angle.as_slice()?);
     let fit = watched(py, Report::none(), |control| {
-        identify::fit_open_loop_until(time, angle, &|| control.interrupted())
+        identify::fit_open_loop(time, angle, &|| control.interrupted())
     })?;
     let fields = Fields::new(py);
     fields.value("acceleration", fit.acceleration)?;

@@ -49,7 +49,7 @@ pub fn hic(
 ) -> PyResult<Window> {
     let (time, signal) = (time.as_slice()?, acceleration_g.as_slice()?);
     let found = stopped(py, time.len(), |interrupted| {
-        let found = signal::hic_until(time, signal, window, interpolate, interrupted)?;
+        let found = signal::hic(time, signal, window, interpolate, interrupted)?;
         // With free ends the signal is what its straight lines say, however far apart the samples.
         if !interpolate {
             signal::check_step(time, window, interrupted)?;
@@ -114,7 +114,7 @@ pub fn moving_average(
 ) -> PyResult<Window> {
     let (time, signal) = (time.as_slice()?, acceleration_g.as_slice()?);
     let found = stopped(py, time.len(), |interrupted| {
-        signal::moving_average_until(time, signal, width, interrupted)
+        signal::moving_average(time, signal, width, interrupted)
     })?;
     Ok((found.value, found.start, found.end))
 }
@@ -129,7 +129,7 @@ pub fn contiguous_level(
 ) -> PyResult<Window> {
     let (time, signal) = (time.as_slice()?, acceleration_g.as_slice()?);
     let found = stopped(py, time.len(), |interrupted| {
-        signal::contiguous_level_until(time, signal, width, interrupted)
+        signal::contiguous_level(time, signal, width, interrupted)
     })?;
     Ok((found.value, found.start, found.end))
 }

@@ -26,16 +26,8 @@ pub struct OpenLoop {
 /// their places) to an open-loop test that starts at rest at angle 0.
 ///
 /// # Errors
-/// Fewer than four samples, times that do not rise, unequal lengths, a joint that does not move.
-pub fn fit_open_loop(time: &[f64], angle: &[f64]) -> Result<OpenLoop> {
-    fit_open_loop_until(time, angle, &|| false)
-}
-
-/// Interruptible [`fit_open_loop`]: asks whether to stop whenever the residuals are computed.
-///
-/// # Errors
-/// Also that the caller asked to stop.
-pub fn fit_open_loop_until(
+/// Fewer than four samples, times that do not rise, unequal lengths, a joint that does not move, or the caller asked to stop.
+pub fn fit_open_loop(
     time: &[f64],
     angle: &[f64],
     interrupted: Interrupted<'_>,
@@ -344,11 +336,11 @@ mod tests {
                     1.5 * elapsed * elapsed * lag(decay * elapsed)
                 })
                 .collect();
-            let found = fit_open_loop(&time, &angle).unwrap();
+            let found = fit_open_loop(&time, &angle, &|| false).unwrap();
             for looks in 0..8 {
                 let looked = AtomicUsize::new(0);
                 let stopped = || looked.fetch_add(1, Ordering::Relaxed) >= looks;
-                let stopped = fit_open_loop_until(&time, &angle, &stopped);
+                let stopped = fit_open_loop(&time, &angle, &stopped);
                 assert!(matches!(stopped, Err(Failure::Interrupted)), "{looks}");
             }
             assert!((found.acceleration - 1.5).abs() < 1e-6, "{decay} {found:?}");
@@ -357,7 +349,7 @@ mod tests {
                 "{decay} {found:?}"
             );
         }
-        assert!(fit_open_loop(&time, &vec![0.0; 800]).is_err());
+        assert!(fit_open_loop(&time, &vec![0.0; 800], &|| false).is_err());
     }
 
     #[test]

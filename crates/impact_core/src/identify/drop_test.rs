@@ -81,16 +81,8 @@ impl DropModel {
 /// slide stays where friction can hold it.
 ///
 /// # Errors
-/// A parameter out of range, times that do not rise, numbers so far apart that positions overflow.
-pub fn drop_trajectory(time: &[f64], model: &DropModel) -> Result<Vec<f64>> {
-    drop_trajectory_until(time, model, &|| false)
-}
-
-/// Interruptible [`drop_trajectory`].
-///
-/// # Errors
-/// Also that the caller asked to stop.
-pub fn drop_trajectory_until(
+/// A parameter out of range, times that do not rise, numbers so far apart that positions overflow, or the caller asked to stop.
+pub fn drop_trajectory(
     time: &[f64],
     model: &DropModel,
     interrupted: Interrupted<'_>,

@@ -106,29 +106,12 @@ impl FoamFit {
 /// the solution of the equation of motion, never differentiated. Where a record ends with equal
 /// readings the slide rests; those readings say nothing new and are left out.
 ///
-/// # Errors
-/// Bad samples; a drop that starts in the foam or never reaches it; measurements that do not
-/// determine the three numbers.
-pub fn identify_foam(
-    static_force: &[f64],
-    static_compression: &[f64],
-    drops: &[Drop<'_>],
-    settings: &FoamFitSettings,
-) -> Result<FoamFit> {
-    let work = Work {
-        threads: Some(1),
-        interrupted: &|| false,
-        progress: &|_| (),
-    };
-    identify_foam_until(static_force, static_compression, drops, settings, work)
-}
-
-/// Interruptible [`identify_foam`]: asks whether to stop between the repeats of the bootstrap; each of them is
-/// progress.
+/// It is asked whether to stop between the repeats of the bootstrap; each of them is progress.
 ///
 /// # Errors
-/// Also that the caller asked to stop.
-pub fn identify_foam_until(
+/// Bad samples; a drop that starts in the foam or never reaches it; measurements that do not
+/// determine the three numbers, or the caller asked to stop.
+pub fn identify_foam(
     static_force: &[f64],
     static_compression: &[f64],
     drops: &[Drop<'_>],

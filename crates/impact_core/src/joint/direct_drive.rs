@@ -146,21 +146,8 @@ pub struct DriveRun {
 /// turns and sticking of the joint are located and change the equations exactly there.
 ///
 /// # Errors
-/// A parameter out of range, a closing speed that is not positive, a record of more than 1e7 samples.
+/// A parameter out of range, a closing speed that is not positive, a record of more than 1e7 samples, or the caller asked to stop.
 pub fn simulate_direct_drive(
-    drive: &DirectDrive,
-    foam: &Foam,
-    head: &Head,
-    impact: &DriveImpact,
-) -> Result<DriveRun> {
-    simulate_direct_drive_until(drive, foam, head, impact, &|| false)
-}
-
-/// Interruptible [`simulate_direct_drive`].
-///
-/// # Errors
-/// Also that the caller asked to stop.
-pub fn simulate_direct_drive_until(
     drive: &DirectDrive,
     foam: &Foam,
     head: &Head,

@@ -41,21 +41,8 @@ pub struct HeadInjury {
 ///
 /// # Errors
 /// Times that do not rise, fewer than two samples, unequal lengths, numbers that are not finite, a
-/// window that is not positive.
+/// window that is not positive, or the caller asked to stop.
 pub fn hic(
-    time: &[f64],
-    acceleration_g: &[f64],
-    window: f64,
-    interpolate: bool,
-) -> Result<HeadInjury> {
-    hic_until(time, acceleration_g, window, interpolate, &|| false)
-}
-
-/// Interruptible [`hic`].
-///
-/// # Errors
-/// Also that the caller asked to stop.
-pub fn hic_until(
     time: &[f64],
     acceleration_g: &[f64],
     window: f64,

@@ -1,6 +1,6 @@
 //! Loads of a recorded impact, from signals that are linear between their samples.
 
-use super::{Signal, check_finite, contiguous_level_until, hic_until, moving_average_until};
+use super::{Signal, check_finite, contiguous_level, hic, moving_average};
 use crate::error::{Failure, Given, Result, finite, positive, proceed};
 use crate::metrics::{HELD_WINDOW, INJURY_WINDOWS, Loads, Metrics, Status};
 use crate::parameters::Foam;
@@ -168,20 +168,15 @@ fn acceleration(
         peak_head_acceleration: peak * gravity,
         peak_head_acceleration_g: peak,
         mean_head_acceleration_g: integral[integral.len() - 1] / signal.span(),
-        hic15: hic_until(time, value, short, true, interrupted)?.value,
-        hic36: hic_until(time, value, long, true, interrupted)?.value,
+        hic15: hic(time, value, short, true, interrupted)?.value,
+        hic36: hic(time, value, long, true, interrupted)?.value,
         average_3ms_g: if lasts {
-            level(moving_average_until(time, value, HELD_WINDOW, interrupted))?
+            level(moving_average(time, value, HELD_WINDOW, interrupted))?
         } else {
             f64::NAN
         },
         clip_3ms_g: if lasts {
-            level(contiguous_level_until(
-                time,
-                value,
-                HELD_WINDOW,
-                interrupted,
-            ))?
+            level(contiguous_level(time, value, HELD_WINDOW, interrupted))?
         } else {
             f64::NAN
         },

@@ -24,16 +24,8 @@ pub struct Level {
 /// Largest mean over windows that are exactly `width` wide (the 3 ms average with 0.003 s).
 ///
 /// # Errors
-/// A bad signal, a width that is not positive, a signal shorter than the width.
-pub fn moving_average(time: &[f64], acceleration_g: &[f64], width: f64) -> Result<Level> {
-    moving_average_until(time, acceleration_g, width, &|| false)
-}
-
-/// Interruptible [`moving_average`].
-///
-/// # Errors
-/// Also that the caller asked to stop.
-pub fn moving_average_until(
+/// A bad signal, a width that is not positive, a signal shorter than the width, or the caller asked to stop.
+pub fn moving_average(
     time: &[f64],
     acceleration_g: &[f64],
     width: f64,
@@ -67,16 +59,8 @@ pub fn moving_average_until(
 /// Highest level that the signal keeps for `width` without a break (the 3 ms clip with 0.003 s).
 ///
 /// # Errors
-/// A bad signal, a width that is not positive, a signal shorter than the width.
-pub fn contiguous_level(time: &[f64], acceleration_g: &[f64], width: f64) -> Result<Level> {
-    contiguous_level_until(time, acceleration_g, width, &|| false)
-}
-
-/// Interruptible [`contiguous_level`].
-///
-/// # Errors
-/// Also that the caller asked to stop.
-pub fn contiguous_level_until(
+/// A bad signal, a width that is not positive, a signal shorter than the width, or the caller asked to stop.
+pub fn contiguous_level(
     time: &[f64],
     acceleration_g: &[f64],
     width: f64,
@@ -307,8 +291,8 @@ mod tests {
             let width = 0.003;
             let (first, last) = (time[0], time[time.len() - 1]);
             prop_assume!(last - first > width);
-            let average = moving_average(&time, &value, width).unwrap();
-            let held = contiguous_level(&time, &value, width).unwrap();
+            let average = moving_average(&time, &value, width, &|| false).unwrap();
+            let held = contiguous_level(&time, &value, width, &|| false).unwrap();
             let average_again = direct(&time, &value, average.start, average.end).0;
             let held_again = direct(&time, &value, held.start, held.end).1;
             prop_assert!((average.value - average_again).abs() < 1e-9);
@@ -325,8 +309,8 @@ mod tests {
     #[test]
     fn a_triangle_has_formulas() {
         let (time, value) = ([0.0, 0.006, 0.012], [0.0, 60.0, 0.0]);
-        let average = moving_average(&time, &value, 0.003).unwrap();
-        let held = contiguous_level(&time, &value, 0.003).unwrap();
+        let average = moving_average(&time, &value, 0.003, &|| false).unwrap();
+        let held = contiguous_level(&time, &value, 0.003, &|| false).unwrap();
         assert!((average.value - 52.5).abs() < 60.0 * ROUNDING);
         assert!((held.value - 45.0).abs() < 60.0 * ROUNDING);
         for level in [average, held] {
@@ -340,20 +324,36 @@ mod tests {
     fn a_constant_is_its_own_criterion() {
         let time: Vec<f64> = (0..31).map(|k| f64::from(k) * 1e-4).collect();
         let value = [-2.5; 31];
-        assert!((moving_average(&time, &value, 0.003).unwrap().value + 2.5).abs() < ROUNDING);
-        assert!((contiguous_level(&time, &value, 0.003).unwrap().value + 2.5).abs() < ROUNDING);
+        assert!(
+            (moving_average(&time, &value, 0.003, &|| false)
+                .unwrap()
+                .value
+                + 2.5)
+                .abs()
+                < ROUNDING
+        );
+        assert!(
+            (contiguous_level(&time, &value, 0.003, &|| false)
+                .unwrap()
+                .value
+                + 2.5)
+                .abs()
+                < ROUNDING
+        );
     }
 
     #[test]
     fn short_signals_are_refused() {
         let (time, value) = ([0.0, 0.001, 0.002], [1.0, 2.0, 1.0]);
         for criterion in [moving_average, contiguous_level] {
-            let message = criterion(&time, &value, 0.003).unwrap_err().to_string();
+            let message = criterion(&time, &value, 0.003, &|| false)
+                .unwrap_err()
+                .to_string();
             assert_eq!(
                 message,
                 "time must span at least the width of the window, got 0.002"
             );
-            assert!(criterion(&time, &value, -0.003).is_err());
+            assert!(criterion(&time, &value, -0.003, &|| false).is_err());
         }
     }
 }

@@ -53,7 +53,7 @@ fn stepped(model: &DropModel, count: usize) -> Vec<f64> {
 
 #[test]
 fn free_fall_is_a_parabola() {
-    let fall = drop_trajectory(&times(80), &model()).unwrap();
+    let fall = drop_trajectory(&times(80), &model(), &|| false).unwrap();
     for (time, position) in times(80).iter().zip(fall) {
         let expected = 0.045 - 0.5 * (9.80665 - 2.0 / 1.54) * time * time;
         assert!((position - expected).abs() < 1e-15);
@@ -69,7 +69,7 @@ fn closed_forms_follow_the_equation_of_motion() {
                 contact,
                 ..model()
             };
-            let exact = drop_trajectory(&times(400), &model).unwrap();
+            let exact = drop_trajectory(&times(400), &model, &|| false).unwrap();
             let steps = stepped(&model, 400);
             for (k, (exact, stepped)) in exact.iter().zip(&steps).enumerate() {
                 // First-order steps of 0.25 us.
@@ -90,19 +90,22 @@ fn without_loss_every_bounce_returns_to_its_height() {
         ..model()
     };
     let fine: Vec<f64> = (0..200_000).map(|k| f64::from(k) * 1e-5).collect();
-    let path = drop_trajectory(&fine, &model).unwrap();
+    let path = drop_trajectory(&fine, &model, &|| false).unwrap();
     let late = path[100_000..].iter().fold(0.0_f64, |high, y| high.max(*y));
     assert!((late - model.height).abs() < 1e-9, "{late}");
 }
 
 #[test]
 fn friction_holds_the_slide_at_the_end() {
-    let path = drop_trajectory(&[0.0, 0.01, 30.0, 31.0], &model()).unwrap();
+    let path = drop_trajectory(&[0.0, 0.01, 30.0, 31.0], &model(), &|| false).unwrap();
     assert_eq!(path[2], path[3]);
     assert!((24_250.0 * path[3] + 1.54 * 9.80665).abs() <= 2.0);
     let stuck = DropModel {
         friction: 20.0,
         ..model()
     };
-    assert_eq!(drop_trajectory(&[0.0, 5.0], &stuck), Ok(vec![0.045; 2]));
+    assert_eq!(
+        drop_trajectory(&[0.0, 5.0], &stuck, &|| false),
+        Ok(vec![0.045; 2])
+    );
 }

@@ -42,7 +42,7 @@ fn measured(seed: u64, contact: DropContact) -> Bench {
         contact,
     };
     let time: Vec<f64> = (0..500).map(|k| f64::from(k) * 1e-3).collect();
-    let path = drop_trajectory(&time, &model).unwrap();
+    let path = drop_trajectory(&time, &model, &|| false).unwrap();
     let mut force = Vec::new();
     let mut compression = Vec::new();
     for k in 1..=12 {
@@ -63,7 +63,12 @@ fn fit(bench: &Bench, settings: &FoamFitSettings) -> FoamFit {
         time: &bench.time,
         position: &bench.position,
     };
-    identify_foam(&bench.force, &bench.compression, &[drop], settings).unwrap()
+    let work = Work {
+        threads: Some(1),
+        interrupted: &|| false,
+        progress: &|_| (),
+    };
+    identify_foam(&bench.force, &bench.compression, &[drop], settings, work).unwrap()
 }
 
 #[test]
@@ -78,7 +83,7 @@ fn exact_measurements_give_the_truth() {
         gravity: GRAVITY,
         contact: DropContact::Unilateral,
     };
-    bench.position = drop_trajectory(&bench.time, &model).unwrap();
+    bench.position = drop_trajectory(&bench.time, &model, &|| false).unwrap();
     bench.force = bench
         .compression
         .iter()

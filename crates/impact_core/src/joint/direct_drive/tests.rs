@@ -40,7 +40,14 @@ fn impact(manipulator_speed: f64) -> DriveImpact {
 }
 
 fn run(drive: DirectDrive, manipulator_speed: f64) -> DriveRun {
-    simulate_direct_drive(&drive, &foam(), &HEAD_APPARATUS, &impact(manipulator_speed)).unwrap()
+    simulate_direct_drive(
+        &drive,
+        &foam(),
+        &HEAD_APPARATUS,
+        &impact(manipulator_speed),
+        &|| false,
+    )
+    .unwrap()
 }
 
 fn unlimited() -> DirectDrive {
@@ -130,7 +137,8 @@ fn momentum_accounts_for_every_force() {
             step: 1e-6,
             ..impact(speed)
         };
-        let run = simulate_direct_drive(&drive, &foam(), &HEAD_APPARATUS, &fine).unwrap();
+        let run =
+            simulate_direct_drive(&drive, &foam(), &HEAD_APPARATUS, &fine, &|| false).unwrap();
         let mut impulse = 0.0;
         for k in 1..run.time.len() {
             for k in [k - 1, k] {
@@ -168,7 +176,8 @@ fn events_leave_the_order_of_the_steps_as_it_is() {
             stiffness: 60.6e3,
             ..foam()
         };
-        let run = simulate_direct_drive(&nominal(), &stiff, &HEAD_APPARATUS, &impact).unwrap();
+        let run =
+            simulate_direct_drive(&nominal(), &stiff, &HEAD_APPARATUS, &impact, &|| false).unwrap();
         let last = run.time.len() - 1;
         (run.manipulator_position[last], run.head_velocity[last])
     };
@@ -193,6 +202,7 @@ fn foam_never_pulls_and_lets_go() {
             stiffness: 3e3,
         },
         &impact(1.25),
+        &|| false,
     )
     .unwrap();
     assert!(run.contact_force.iter().all(|force| *force >= 0.0));
@@ -237,12 +247,13 @@ fn bad_joints_are_named() {
             ..nominal()
         },
     ] {
-        let refused = simulate_direct_drive(&drive, &foam(), &HEAD_APPARATUS, &impact(1.25));
+        let refused =
+            simulate_direct_drive(&drive, &foam(), &HEAD_APPARATUS, &impact(1.25), &|| false);
         assert!(refused.unwrap_err().to_string().starts_with("drive."));
     }
     let slow = DriveImpact {
         closing_speed: 0.0,
         ..impact(1.25)
     };
-    assert!(simulate_direct_drive(&nominal(), &foam(), &HEAD_APPARATUS, &slow).is_err());
+    assert!(simulate_direct_drive(&nominal(), &foam(), &HEAD_APPARATUS, &slow, &|| false).is_err());
 }

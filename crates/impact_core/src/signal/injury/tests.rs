@@ -107,7 +107,7 @@ proptest! {
 
     #[test]
     fn samples_equal_brute_force((time, value) in any_signal(), window in prop_oneof![Just(0.015), Just(0.036), 0.0005..0.1]) {
-        let found = hic(&time, &value, window, false).unwrap();
+        let found = hic(&time, &value, window, false, &|| false).unwrap();
         let expected = all_sample_windows(&time, &value, window);
         prop_assert!(close(found.value, expected, BRUTE_FORCE), "{} {}", found.value, expected);
     }
@@ -115,7 +115,7 @@ proptest! {
     #[test]
     fn free_ends_equal_all_cells((time, value) in any_signal(), window in prop_oneof![Just(0.015), Just(0.036), 0.0005..0.1]) {
         prop_assume!(value.iter().any(|&value| value > 0.0));
-        let found = hic(&time, &value, window, true).unwrap();
+        let found = hic(&time, &value, window, true, &|| false).unwrap();
         let expected = all_cells(&time, &value, window);
         prop_assert!(close(found.value, expected, BRUTE_FORCE), "{} {}", found.value, expected);
         let rounding = 4.0 * f64::EPSILON * time[0].abs().max(found.end.abs());
@@ -125,14 +125,14 @@ proptest! {
     #[test]
     fn nothing_on_a_fine_grid_beats_free_ends((time, value) in any_signal(), window in 0.0005..0.1) {
         let (time, value) = (&time[..time.len().min(40)], &value[..time.len().min(40)]);
-        let found = hic(time, value, window, true).unwrap().value;
+        let found = hic(time, value, window, true, &|| false).unwrap().value;
         let grid = fine_grid(time, value, window, 24);
         prop_assert!(grid <= found * (1.0 + 1e-8) , "{found} {grid}");
     }
 
     #[test]
     fn the_window_gives_the_value((time, value) in any_signal()) {
-        let found = hic(&time, &value, 0.015, false).unwrap();
+        let found = hic(&time, &value, 0.015, false, &|| false).unwrap();
         if found.value > 0.0 {
             let start = time.iter().position(|&time| time == found.start).unwrap();
             let end = time.iter().position(|&time| time == found.end).unwrap();
@@ -156,7 +156,7 @@ fn half_sine_of_5_ms_and_100_g_is_207_3() {
         100.0 * (std::f64::consts::PI * share).sin()
     });
     for interpolate in [false, true] {
-        let found = hic(&time, &value, 0.015, interpolate).unwrap();
+        let found = hic(&time, &value, 0.015, interpolate, &|| false).unwrap();
         assert!((found.value - 207.3).abs() < 0.05, "{found:?}");
     }
 }
@@ -168,7 +168,7 @@ fn half_sines_reach_the_formula() {
         let (time, value) = pulse(100_001, 0.02, |share| {
             100.0 * (std::f64::consts::PI * share).sin()
         });
-        let found = hic(&time, &value, window, true).unwrap().value;
+        let found = hic(&time, &value, window, true, &|| false).unwrap().value;
         let expected = hic_half_sine(100.0, 0.02, window).unwrap();
         assert!(
             close(found, expected, FORMULA),
@@ -183,7 +183,7 @@ fn triangles_and_squares_are_exact() {
     for window in [0.015, 0.036, 0.004] {
         for peak in [0.5, 0.2, 0.9] {
             let (time, value) = ([0.0, 0.02 * peak, 0.02], [0.0, 50.0, 0.0]);
-            let found = hic(&time, &value, window, true).unwrap().value;
+            let found = hic(&time, &value, window, true, &|| false).unwrap().value;
             let expected = hic_triangle(50.0, 0.02, window).unwrap();
             assert!(
                 close(found, expected, 1e-13),
@@ -193,7 +193,7 @@ fn triangles_and_squares_are_exact() {
         }
         for samples in [2, 3, 64, 4001] {
             let (time, value) = pulse(samples, 0.02, |_| 50.0);
-            let found = hic(&time, &value, window, true).unwrap().value;
+            let found = hic(&time, &value, window, true, &|| false).unwrap().value;
             let expected = hic_square(50.0, 0.02, window).unwrap();
             assert!(
                 close(found, expected, 1e-13),
@@ -208,7 +208,7 @@ fn triangles_and_squares_are_exact() {
 fn negative_signals_count_0() {
     let (time, value) = pulse(100, 0.02, |share| -1.0 - share);
     for interpolate in [false, true] {
-        let found = hic(&time, &value, 0.015, interpolate).unwrap();
+        let found = hic(&time, &value, 0.015, interpolate, &|| false).unwrap();
         assert_eq!((found.value, found.start, found.end), (0.0, 0.0, 0.0));
     }
 }
@@ -217,17 +217,17 @@ fn negative_signals_count_0() {
 fn times_may_be_rounded() {
     let time: Vec<f64> = (0..2001).map(|k| 3.0 + f64::from(k) * 1e-4).collect();
     let value = vec![10.0; 2001];
-    let found = hic(&time, &value, 0.015, false).unwrap();
+    let found = hic(&time, &value, 0.015, false, &|| false).unwrap();
     assert!(close(found.value, 0.015 * 10.0_f64.powf(2.5), 1e-9));
 }
 
 #[test]
 fn huge_and_tiny_signals_keep_their_digits() {
     let (time, value) = pulse(301, 0.03, |share| (9.0 * share).sin());
-    let plain = hic(&time, &value, 0.015, true).unwrap().value;
+    let plain = hic(&time, &value, 0.015, true, &|| false).unwrap().value;
     for factor in [1e-90_f64, 1e90] {
         let scaled: Vec<f64> = value.iter().map(|value| value * factor).collect();
-        let found = hic(&time, &scaled, 0.015, true).unwrap().value;
+        let found = hic(&time, &scaled, 0.015, true, &|| false).unwrap().value;
         assert!(close(found, plain * factor.powf(2.5), 1e-12));
     }
 }
@@ -235,12 +235,12 @@ fn huge_and_tiny_signals_keep_their_digits() {
 #[test]
 fn bad_signals_are_named() {
     let good = [0.0, 1.0, 2.0];
-    assert!(hic(&good[..1], &good[..1], 0.015, false).is_err());
-    assert!(hic(&good, &good[..2], 0.015, false).is_err());
-    assert!(hic(&[0.0, 2.0, 1.0], &good, 0.015, false).is_err());
-    assert!(hic(&[0.0, 1.0, 1.0], &good, 0.015, false).is_err());
-    assert!(hic(&good, &[0.0, f64::NAN, 1.0], 0.015, false).is_err());
-    assert!(hic(&[0.0, 1.0, f64::INFINITY], &good, 0.015, false).is_err());
-    assert!(hic(&good, &good, 0.0, false).is_err());
-    assert!(hic(&good, &good, f64::NAN, true).is_err());
+    assert!(hic(&good[..1], &good[..1], 0.015, false, &|| false).is_err());
+    assert!(hic(&good, &good[..2], 0.015, false, &|| false).is_err());
+    assert!(hic(&[0.0, 2.0, 1.0], &good, 0.015, false, &|| false).is_err());
+    assert!(hic(&[0.0, 1.0, 1.0], &good, 0.015, false, &|| false).is_err());
+    assert!(hic(&good, &[0.0, f64::NAN, 1.0], 0.015, false, &|| false).is_err());
+    assert!(hic(&[0.0, 1.0, f64::INFINITY], &good, 0.015, false, &|| false).is_err());
+    assert!(hic(&good, &good, 0.0, false, &|| false).is_err());
+    assert!(hic(&good, &good, f64::NAN, true, &|| false).is_err());
 }
