@@ -52,6 +52,18 @@ def test_a_robot_farther_on_than_the_time_tells_executes_its_plan(gone_by: float
         assert left <= 1.001 * math.hypot(*first.velocity_after(gone_by + later))
 
 
+@pytest.mark.parametrize("gone_by", [0.2, 0.25, 0.28])
+@pytest.mark.parametrize("ahead", [0.01, 0.02])
+def test_a_clock_that_is_set_right_does_not_make_the_robot_brake_more_gently(gone_by: float, ahead: float) -> None:
+    driven = controller(acceleration=3.0)
+    first = driven.update(0.0, (0.0, 0.0), (0.6, 0.0), people=FAR)
+    place, velocity = place_after(first, gone_by), first.velocity_after(gone_by)
+    again = driven.update(gone_by + ahead, place, velocity, people={"b": (0.85, 0.0, 0.0, 0.0)})
+    assert (again.status, again.refuted) == ("braking", ("robot_off_plan",))
+    for later in (0.0, 0.02, 0.05, 0.1):
+        assert again.velocity_after(later)[0] <= first.velocity_after(gone_by + later)[0] + 1e-6
+
+
 @settings(max_examples=150, deadline=None)
 @given(
     before=st.floats(0.0, 0.6),

@@ -111,9 +111,9 @@ impl Controller {
             return Reckoned::Counts(resting, None);
         };
         let since = course.since(now);
-        // The robot is off its plan at any time of it, whatever the clock tells.
         let Some(reading) = shield.reading(&course, since, &robot) else {
-            return Reckoned::Counts(0.0, None);
+            // It is behind its plan, as by a clock that is set right, or off it at any time, whatever the clock tells.
+            return Reckoned::Counts(0.0, shield.reading(&course, 0.0, &robot));
         };
         // Who is slower than planned can have slipped; who is ahead has had more time.
         let off = shield.refuted(&course, since, &robot);
@@ -131,7 +131,8 @@ impl Controller {
         Reckoned::Counts(more, Some(reading))
     }
 
-    /// Where nothing is verified for a robot that may be farther on in its plan: the plan runs on from there.
+    /// Where nothing is verified for a robot that may be at another time of its plan: the plan runs on from there. It was
+    /// verified, and brakes as hard as the robot can; of a robot that is behind it if that comes to rest no later.
     pub(super) fn run_on_if_off(&self, order: Order, now: f64, reading: Option<Reading>) -> Order {
         let last = self.last.as_ref().and_then(Last::verified);
         let braking = order.status == Some(Status::Braking) && order.off_plan.is_some();
@@ -139,6 +140,12 @@ impl Controller {
             return order;
         };
         let since = reading.latest.min(course.end());
+        let rest = order
+            .course
+            .map_or(0.0, |(braking, begun)| braking.end() - begun);
+        if reading.latest < course.since(now) && course.end() - since > rest {
+            return order;
+        }
         Order {
             timing: order.timing,
             off_plan: order.off_plan,
