@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from hrsafety import contact, standards
@@ -57,9 +57,10 @@ def test_an_ordinary_run_is_not_doubted() -> None:
 
 @settings(max_examples=50, deadline=None)
 @given(speed=st.floats(0.6, 2.0), share=st.floats(-1.0, 0.1))
+@example(speed=1.0, share=0.0)  # stands in the person at one instant, where no direction leads to it
 def test_velocities_that_positions_refute_keep_no_limit(speed: float, share: float) -> None:
     found = judged(run(speed, told=share * speed))
-    assert codes(found) == ["closing_speed_unknown"]
+    assert set(codes(found)) == {"closing_speed_unknown"}
     assert "within_limits" not in found.verdict
 
 
