@@ -55,3 +55,8 @@ def test_ages_that_a_clock_tells_too_short_lead_into_nobody(
     """Each of these was a fault where ages and plans were counted by the clock alone."""
     for seed in seeds:
         assert not episode(seed, wheels=wheels, period=period, set_back=(0.001, 9.0)).fault
+
+
+def test_a_robot_off_its_plan_does_not_trust_a_clock_that_was_set_back() -> None:
+    """It carried out an answer that did not count: its place told nothing about the time that went by."""
+    assert not episode(42603, wheels=True, period=0.1, set_back=(0.001, 9.0), takes_all=True).fault

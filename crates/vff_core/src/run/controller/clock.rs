@@ -112,8 +112,11 @@ impl Controller {
         };
         let since = course.since(now);
         let Some(reading) = shield.reading(&course, since, &robot) else {
-            // It is behind its plan, as by a clock that is set right, or off it at any time, whatever the clock tells.
-            return Reckoned::Counts(0.0, shield.reading(&course, 0.0, &robot));
+            // It is behind its plan, as by a clock that is set right, or off it at any time: then nothing tells how much
+            // time went by, and a clock that was set back does not either.
+            let reading = shield.reading(&course, 0.0, &robot);
+            let unknown = reading.is_none() && last.set_back;
+            return Reckoned::Counts(if unknown { ANY } else { 0.0 }, reading);
         };
         // Who is slower than planned can have slipped; who is ahead has had more time.
         let off = shield.refuted(&course, since, &robot);
