@@ -4,8 +4,8 @@
 scores how well and how safely they reach their goal. `impact` gives the loads of a foam-covered
 manipulator that hits a head, and designs the foam; `reactive` follows a sound and avoids what
 ultrasonic sensors see. `arms` reads arms from URDF and gives the masses of their points, `standards` holds
-limits of contact and separation distances. Sub-modules load on first use, so importing
-the package costs little more than importing numpy.
+limits of contact and separation distances. `io` reads and writes the files of others. Sub-modules load on
+first use, so importing the package costs little more than importing numpy.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
         datasets,
         gym,
         impact,
+        io,
         navigation,
         pages,
         plausibility,
@@ -55,6 +56,7 @@ __all__ = [
     "datasets",
     "gym",
     "impact",
+    "io",
     "navigation",
     "pages",
     "plausibility",

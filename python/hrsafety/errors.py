@@ -10,6 +10,7 @@ import re
 from hrsafety._words import meant
 
 __all__ = [
+    "FileError",
     "FolderInUseError",
     "HrsafetyError",
     "InfeasibleError",
@@ -95,6 +96,48 @@ def _words(value: object) -> str:
     if len(shown) <= LONGEST_SHOWN:
         return shown
     return f"{re.sub(_HALF, '', shown[:LONGEST_SHOWN])}..."
+
+
+class FileError(InvalidParameterError):
+    """A file breaks a rule of its format, or does not say what is needed to read it.
+
+    Parameters
+    ----------
+    argument : str
+        File with the place in it: ``"walk.csv, line 4, column x"``, ``"nav2.yaml, key robot_radius"``.
+    requirement : str
+        The rule it must obey.
+    value : object
+        What stands there.
+    remedy : str or None
+        What would mend it.
+    code : str
+        Kind of error for programs, for example ``"frame_rate_needed"``.
+
+    Examples
+    --------
+    >>> from hrsafety.errors import FileError
+    >>> print(FileError("walk.csv, line 4, column x", "be a finite number", "1.234,5", code="unreadable_number"))
+    walk.csv, line 4, column x must be a finite number, got '1.234,5'
+    """
+
+    def __init__(
+        self, argument: str, requirement: str, value: object, remedy: str | None = None, *, code: str = "unreadable"
+    ) -> None:
+        super().__init__(argument, requirement, value, remedy)
+        self.code = code
+
+    def renamed(self, argument: str) -> FileError:
+        """Return the same error under another name of its argument."""
+        return FileError(argument, self.requirement, self.value, self.remedy, code=self.code)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickle by what the sentence is made of."""
+        return _file_error, (self.argument, self.requirement, self.value, self.remedy, self.code)
+
+
+def _file_error(argument: str, requirement: str, value: object, remedy: str | None, code: str) -> FileError:
+    return FileError(argument, requirement, value, remedy, code=code)
 
 
 class Shown(str):

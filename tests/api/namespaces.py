@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import ModuleType
 from typing import Any
 
-from hrsafety import arms, contact, impact, plotting, reactive, standards
+from hrsafety import arms, contact, impact, io, plotting, reactive, standards
 from hrsafety import navigation as nav
 
 BELOW = {
@@ -14,6 +14,7 @@ BELOW = {
     arms: (),
     standards: (),
     contact: (),
+    io: (),
     reactive: ("follower", "skirt", "sonar", "sound"),
     plotting: ("arms", "comparisons", "gains", "impacts", "reactive", "robots", "runs", "sweeps"),
 }

@@ -249,9 +249,20 @@ def test_plotting_computes_nothing_reactive(path: Path) -> None:
 
 def test_importing_the_package_loads_no_optional_dependency() -> None:
     optional = {"matplotlib", "PIL", "scipy", "polars", "xarray", "dask", "distributed", "numba", "pandas"}
-    optional |= {"jinja2", "markupsafe", "rich", "shtab", "gymnasium", "pettingzoo"}
+    optional |= {
+        "h5py",
+        "rosbags",
+        "foxglove",
+        "yaml",
+        "jinja2",
+        "markupsafe",
+        "rich",
+        "shtab",
+        "gymnasium",
+        "pettingzoo",
+    }
     parts = ("navigation", "impact", "reactive", "scenarios", "datasets", "plotting", "sweep", "cli")
-    parts += ("arms", "contact", "standards", "benchmarks")
+    parts += ("arms", "contact", "standards", "benchmarks", "io")
     modules = ", ".join(["hrsafety", *(f"hrsafety.{part}" for part in parts)])
     code = f"import sys, {modules}; print(*sorted({optional} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -1,0 +1,11 @@
+"""Files of others: recorded people, logs of robots, maps, scenes and settings, read by their contents and written."""
+
+from typing import TYPE_CHECKING
+
+from hrsafety._namespace import names_of
+
+if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
+    from hrsafety.errors import FileError as FileError
+    from hrsafety.io.reader import Source as Source
+else:
+    __all__, __getattr__, __dir__ = names_of(__name__)
