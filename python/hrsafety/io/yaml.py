@@ -24,6 +24,8 @@ from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Section", "YamlDocument", "read_yaml"]
 
+LARGEST = 1e300
+"""Numbers are smaller: squares of larger ones are not finite."""
 _MARKS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
 
 
@@ -99,7 +101,7 @@ class Section:
             kind = "a map" if isinstance(node.value, dict) else "a list"
             value: object = self.plain if node.size < 20 else Shown(f"{kind} of {len(node.value)} values")
         else:
-            value = node.value if node.quoted or not node.text else Shown(node.text[:200])
+            value = node.value if isinstance(node.value, str) else Shown(node.text[:200])
         value = Shown("nothing") if node.value is None and not node.text else value
         return FileError(self.place, requirement, value, remedy, code=code)
 
@@ -147,12 +149,21 @@ class Section:
 
     # ---- scalars ---------------------------------------------------------------------------------
 
+    def unquoted(self) -> Section:
+        """Return a scalar as if it stood there without its quotes, which some readers of YAML do not look at."""
+        node = self._node
+        if not node.quoted or isinstance(node.value, (dict, list)):
+            return self
+        other = Node(node.source, node.path, node.start)
+        other.text, other.value = node.text, resolved(node.text)
+        return Section(other)
+
     def number(self) -> float:
         """Return a finite number."""
         value = self._node.value
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise self.error("be a number")
-        if not abs(value) < 1e300:
+        if not abs(value) < LARGEST:
             raise self.error("be finite")
         return float(value)
 

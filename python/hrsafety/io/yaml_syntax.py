@@ -187,7 +187,7 @@ class _Parser:
                 break
             key = self.key()
             if key is None:
-                self.fail("be 'key: value' as the lines above")
+                self.fail("be lines 'key: value' of a map")
         self.at = found.stop
         found.value = values
 
@@ -223,8 +223,8 @@ class _Parser:
             where = self.source.line(values[key].start)
             raise FileError(
                 f"{self.source.name}, line {self.source.line(self.at)}, {key_path((*found.path, key))}",
-                "stand once",
-                Shown(f"another one after that of line {where}"),
+                f"stand once in {self.source.name}",
+                Shown(f"another one in line {self.source.line(self.at)}, after that of line {where}"),
                 code="repeated_key",
             )
         if key == "<<":

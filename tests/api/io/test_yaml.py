@@ -126,7 +126,7 @@ def test_values_of_another_kind_name_their_place(tmp_path: Path) -> None:
     path.write_text("a:\n  b: [1, x]\n  c: .nan\n  d: 'on'\n", encoding="utf-8")
     root = read_yaml(path).root
     for call, place in (
-        (lambda: root["a"]["b"].numbers(), r"nav2\.yaml, line 2, a\.b\[1\] must be a number, got x"),
+        (lambda: root["a"]["b"].numbers(), r"nav2\.yaml, line 2, a\.b\[1\] must be a number, got 'x'"),
         (lambda: root["a"]["c"].number(), r"nav2\.yaml, line 3, a\.c must be finite, got \.nan"),
         (lambda: root["a"]["d"].flag(), r"nav2\.yaml, line 4, a\.d must be true or false, got 'on'"),
         (lambda: root["a"]["e"], r"nav2\.yaml, line 2, a must hold e, got b, c, d"),

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from os import PathLike
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import count, meant, positive, readable, word
-from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety._arguments import count, meant, readable, word
+from hrsafety.errors import FileError, Shown
+from hrsafety.io.yaml import LARGEST, Section, read_yaml
 from hrsafety.navigation.maps.pgm import Picture
 from hrsafety.navigation.maps.pictures import read_picture
-from hrsafety.navigation.maps.yaml_entries import yaml_entries
 from hrsafety.plausibility import ResultWarning, implausible
 
 if TYPE_CHECKING:
@@ -32,8 +31,8 @@ SAVED_FREE = 0.196
 FEW_CELLS, MANY_CELLS = 1e-3, 0.1
 """Shares of cells that are an accident, and that are none."""
 _NEEDED = ("image", "resolution", "origin", "occupied_thresh", "free_thresh")
+_KEYS = (*_NEEDED, "negate", "mode")
 _MODES = ("trinary", "scale", "raw")
-_TRUTH = {"true": 1.0, "yes": 1.0, "on": 1.0, "false": 0.0, "no": 0.0, "off": 0.0}
 
 Bits = npt.NDArray[np.bool_]
 Classes = npt.NDArray[np.uint8]
@@ -89,15 +88,18 @@ def read_map_server(
     fills = word("unknown", unknown, ("occupied", "free")) == "occupied"
     letter = word("rule", rule, ("saved", "nav2")) == "nav2"
     least = None if occupied_from is None else count("occupied_from", occupied_from, least=1, most=100)
-    file, entries = _entries(path)
+    entries, assumed = _entries(path)
     rules = _rules(entries, letter=letter, occupied_from=least)
-    resolution = positive("resolution", _number(entries, "resolution"))
+    resolution = _number(entries["resolution"])
+    if not resolution > 0.0:
+        raise entries["resolution"].error("be finite and positive")
     x, y, yaw = _origin(entries["origin"])
-    picture = read_picture(_image(file, str(entries["image"]), trust_path=trust_path))
+    picture = read_picture(_image(readable("path", path), entries["image"], trust_path=trust_path))
     classes, freed = _classes(picture.most, rules)
     seen = _histogram(picture)
     kept = _kept(classes, rules, picture.most, fills)
     found = (
+        *assumed,
         *doubts_of_place(resolution, (x, y), yaw),
         *_doubts_of_cells(picture, rules, classes, freed, kept, seen, fills=fills),
     )
@@ -109,8 +111,8 @@ def read_map_server(
 
 def cell_classes(path: str | PathLike[str]) -> Classes:
     """Return what each cell of a map is, whatever it counts as; row 0 has the lowest y."""
-    file, entries = _entries(path)
-    picture = read_picture(_image(file, str(entries["image"]), trust_path=False))
+    entries, _ = _entries(path)
+    picture = read_picture(_image(readable("path", path), entries["image"], trust_path=False))
     classes, _ = _classes(picture.most, _rules(entries))
     found: Classes = classes[picture.values[::-1]]
     if picture.hidden is not None:
@@ -118,24 +120,27 @@ def cell_classes(path: str | PathLike[str]) -> Classes:
     return found
 
 
-def _entries(path: str | PathLike[str]) -> tuple[Path, dict[str, Any]]:
-    file = readable("path", path)
-    entries = yaml_entries(file)
+def _entries(path: str | PathLike[str]) -> tuple[Section, tuple[ResultWarning, ...]]:
+    document = read_yaml(path)
+    root = document.root
+    held = root.keys()
     for key in _NEEDED:
-        if key not in entries or entries[key] == []:
-            raise InvalidParameterError(key, f"stand in {file.name}", Shown("nothing"))
-    return file, entries
+        if key not in held or root[key].plain in (None, "", []):
+            alike = meant(key, [each for each in held if each not in _KEYS])
+            raise FileError(key, f"stand in {readable('path', path).name}", Shown("nothing"), alike, code="missing_key")
+    return root, document.warnings
 
 
-def _rules(entries: dict[str, Any], *, letter: bool = False, occupied_from: int | None = None) -> _Rules:
-    mode = entries.get("mode", "trinary")
+def _rules(entries: Section, *, letter: bool = False, occupied_from: int | None = None) -> _Rules:
+    mode = "trinary" if "mode" not in entries else entries["mode"].text()
     if mode not in _MODES:
-        raise InvalidParameterError("mode", 'be "trinary", "scale" or "raw"', mode, meant(mode, _MODES))
-    free, occupied = _number(entries, "free_thresh"), _number(entries, "occupied_thresh")
+        raise entries["mode"].error('be "trinary", "scale" or "raw"', meant(mode, _MODES), code="mode")
+    free, occupied = _number(entries["free_thresh"]), _number(entries["occupied_thresh"])
     if not 0.0 <= free < occupied <= 1.0:
         shown = Shown(f"free_thresh {free!r} and occupied_thresh {occupied!r}")
-        raise InvalidParameterError("thresholds", "be 0 <= free_thresh < occupied_thresh <= 1", shown)
-    return _Rules(str(mode), _truth(entries, "negate"), free, occupied, letter, occupied_from)
+        place = entries["free_thresh"].place
+        raise FileError(place, "be 0 <= free_thresh < occupied_thresh <= 1", shown, code="thresholds")
+    return _Rules(mode, _negate(entries), free, occupied, letter, occupied_from)
 
 
 # ---- gray values -----------------------------------------------------------------------------------
@@ -320,49 +325,40 @@ def _as(fills: bool) -> str:
 # ---- keys ------------------------------------------------------------------------------------------
 
 
-def _number(entries: dict[str, Any], key: str) -> float:
-    given = entries[key]
-    try:
-        value = float(given.replace(".nan", "nan").replace(".inf", "inf") if isinstance(given, str) else given)
-    except (TypeError, ValueError):
-        raise InvalidParameterError(key, "be a number", given) from None
-    if not math.isfinite(value):
-        raise InvalidParameterError(key, "be finite", value)
-    return value
+def _number(entry: Section) -> float:
+    """Return a number, which may stand in quotes: the map server reads it all the same."""
+    return entry.unquoted().number()
 
 
-def _truth(entries: dict[str, Any], key: str) -> bool:
+def _negate(entries: Section) -> bool:
     """Return a value of 0 or 1, or a word for it; 0 where there is none."""
-    given = entries.get(key, "0")
-    value = _TRUTH.get(given.lower()) if isinstance(given, str) else None
-    if value is None:
-        value = _number(entries, key) if key in entries else 0.0
-    if value not in (0.0, 1.0):
-        raise InvalidParameterError(key, "be 0 or 1", value)
+    if "negate" not in entries:
+        return False
+    entry = entries["negate"].unquoted()
+    value = entry.plain
+    if value not in (0, 1):
+        raise entry.error("be 0 or 1")
     return bool(value)
 
 
-def _origin(given: Any) -> tuple[float, float, float]:
-    rule = "be three numbers, x, y and yaw"
-    try:
-        if isinstance(given, str):
-            raise TypeError
-        x, y, yaw = (float(each.replace(".nan", "nan").replace(".inf", "inf")) for each in given)
-    except (TypeError, ValueError):
-        raise InvalidParameterError("origin", rule, given) from None
-    if not all(map(math.isfinite, (x, y, yaw))):
-        raise InvalidParameterError("origin", "be finite", (x, y, yaw))
+def _origin(entry: Section) -> tuple[float, float, float]:
+    found = [each.unquoted().plain for each in entry.values()] if isinstance(entry.plain, list) else []
+    if len(found) != 3 or not all(type(each) in (int, float) for each in found):
+        raise entry.error("be three numbers, x, y and yaw", code="origin")
+    if not all(abs(each) < LARGEST for each in found):
+        raise entry.error("be finite", code="origin")
+    x, y, yaw = map(float, found)
     return x, y, yaw
 
 
-def _image(file: Path, name: str, *, trust_path: bool) -> Path:
+def _image(file: Path, entry: Section, *, trust_path: bool) -> Path:
     """Return the image of a map, which lies in its folder unless another place is trusted."""
     folder = file.resolve().parent
+    name = entry.text()
     try:
         image = (folder / name).resolve()
-    except (OSError, ValueError) as error:
-        raise InvalidParameterError("image", "name a file", Shown(f"{name[:80]!r} ({error})")) from None
+    except (OSError, ValueError, RuntimeError) as error:
+        raise entry.error("name a file", str(error)) from None
     if not trust_path and not image.is_relative_to(folder):
-        remedy = "trust_path=True reads it from there"
-        raise InvalidParameterError("image", "lie in the folder of the YAML file", name, remedy)
-    return readable("image", image)
+        raise entry.error("lie in the folder of the YAML file", "trust_path=True reads it from there")
+    return readable(entry.place, image)
