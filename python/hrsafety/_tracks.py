@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from hrsafety.plausibility import RANGES, ResultWarning
 
-__all__ = ["Ways", "cutoff", "position_noise", "smoothed_ways"]
+__all__ = ["Motion", "Ways", "cutoff", "fitted_rows", "motion_of_ways", "position_noise", "smoothed_ways"]
 
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.intp]
@@ -374,23 +374,57 @@ def smoothed_ways(ways: Ways, window: float, cuts: Flags) -> Array:
 
     At the ends of a way the window is one-sided; ways of fewer than 5 rows stay as they are.
     """
-    found = ways.position.copy()
+    return motion_of_ways(ways, window, cuts).position
+
+
+class Motion(NamedTuple):
+    """Local quadratic fits of ways, row by row.
+
+    Attributes
+    ----------
+    position, velocity, acceleration : ndarray, shape (n, 2)
+        In m, m/s and m/s^2; of fewer than 5 rows positions as they are, differences, and NaN. NaN for the velocity of a
+        single row.
+    whole : ndarray of bool, shape (n,)
+        Whether the window lies within the way on both sides.
+    """
+
+    position: Array
+    velocity: Array
+    acceleration: Array
+    whole: Flags
+
+
+def motion_of_ways(ways: Ways, window: float, cuts: Flags) -> Motion:
+    """Return positions, velocities and accelerations of local quadratic fits; see `smoothed_ways`."""
+    place = ways.position.copy()
+    velocity, acceleration = np.full_like(place, np.nan), np.full_like(place, np.nan)
+    whole = np.zeros(len(place), dtype=np.bool_)
     ends = np.flatnonzero(np.concatenate([~ways.same | cuts, [True]])) + 1
     for begin, end in zip(np.concatenate([[0], ends[:-1]]).tolist(), ends.tolist(), strict=True):
+        some, time = slice(begin, end), ways.time[begin:end]
         if end - begin >= LEAST_ROWS:
-            found[begin:end] = _fitted(ways.time[begin:end], ways.position[begin:end], window)
-    return found
+            found = _fitted(time, ways.position[some], window)
+            place[some], velocity[some], acceleration[some] = found[:, 0], found[:, 1], 2.0 * found[:, 2]
+            half = 0.5 * window * (1.0 - 1e-9)
+            whole[some] = (time - time[0] >= half) & (time[-1] - time >= half)
+        elif end - begin > 1:
+            velocity[some] = np.gradient(ways.position[some], time, axis=0)
+    return Motion(place, velocity, acceleration, whole)
 
 
 def _fitted(time: Array, position: Array, window: float) -> Array:
-    """Return quadratic fits around each row, by sums over the rows within half a window of it, at least five."""
+    """Return coefficients (n, 3, 2) of quadratic fits in time around each row.
+
+    By sums over the rows within half a window of it, at least five.
+    """
     half = 0.5 * window * (1.0 + 1e-9)
     low, high = np.searchsorted(time, time - half, "left"), np.searchsorted(time, time + half, "right")
     few = high - low < LEAST_ROWS
     row = np.arange(len(time))
     low = np.where(few, np.clip(row - LEAST_ROWS // 2, 0, len(time) - LEAST_ROWS), low)
     high = np.where(few, low + LEAST_ROWS, high)
-    found = np.empty_like(position)
+    found = np.empty((len(position), 3, 2))
     most = max(MOST_PAIRS // int((high - low).max()), 1)
     for begin in range(0, len(time), most):
         some = slice(begin, begin + most)
@@ -402,8 +436,8 @@ def _fitted(time: Array, position: Array, window: float) -> Array:
         powers = np.stack([np.ones_like(ago), ago, ago * ago], axis=-1)
         moments = np.einsum("nk,nki,nkj->nij", weight, powers, powers)
         right = np.einsum("nk,nki,nkd->nid", weight, powers, position[index])
-        found[some] = np.linalg.solve(moments, right)[:, 0]
-    return found
+        found[some] = np.linalg.solve(moments, right)
+    return found / np.array([1.0, half, half * half])[:, None]
 
 
 def _in_parts(sizes: Indices) -> list[slice]:
