@@ -11,7 +11,7 @@ import pytest
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.gain import claims as gain_claims
 from hrsafety.reproduce.gain import deviations as gain_deviations
 from hrsafety.reproduce.gain import tables as gain_tables
@@ -42,11 +42,11 @@ def runs() -> GainRuns:
 
 
 @pytest.fixture(scope="module")
-def cells() -> list[Cell]:
+def cells() -> list[PrintedValue]:
     return gain_tables.appendix_c()
 
 
-def claims(cells: list[Cell], row: str, column: str) -> Cell:
+def claims(cells: list[PrintedValue], row: str, column: str) -> PrintedValue:
     (cell,) = (cell for cell in cells if (cell.table, cell.row, cell.column) == ("Section C.3", row, column))
     return cell
 
@@ -55,7 +55,7 @@ def claims(cells: list[Cell], row: str, column: str) -> Cell:
 
 
 @pytest.mark.parametrize("key", DEVIATIONS)
-def test_mean_and_largest_deviation_over_48_rows(key: tuple[str, str], cells: list[Cell]) -> None:
+def test_mean_and_largest_deviation_over_48_rows(key: tuple[str, str], cells: list[PrintedValue]) -> None:
     found = {(row.configuration, row.quantity): row for row in gain_deviations.deviations(cells)}[key]
     (mean, mean_rounding), (worst, worst_rounding) = DEVIATIONS[key]
     assert found.values == 48
@@ -63,7 +63,7 @@ def test_mean_and_largest_deviation_over_48_rows(key: tuple[str, str], cells: li
     assert found.worst == pytest.approx(worst, abs=worst_rounding)
 
 
-def test_arrival_times_of_configuration_3_have_one_outlier(cells: list[Cell]) -> None:
+def test_arrival_times_of_configuration_3_have_one_outlier(cells: list[PrintedValue]) -> None:
     found = {(row.configuration, row.quantity): row for row in gain_deviations.deviations(cells)}
     # The mean of -6.05 is given as -6.0.
     assert found["c3", "T"].mean == pytest.approx(-6.0, abs=2 * TENTH)
@@ -131,7 +131,9 @@ def test_mean_score_is_flat_around_the_printed_optimum(runs: GainRuns) -> None:
         ("Printed optimum", "arrival time in configuration 3"),
     ],
 )
-def test_claim_that_is_not_reproduced_is_marked_with_its_reason(row: str, column: str, cells: list[Cell]) -> None:
+def test_claim_that_is_not_reproduced_is_marked_with_its_reason(
+    row: str, column: str, cells: list[PrintedValue]
+) -> None:
     cell = claims(cells, row, column)
     assert cell.within is False
     assert "No single change of the scheme that was tried explains it." in cell.reason

@@ -16,7 +16,11 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.contact.cell.study import ContactStudy as ContactStudy, study as study
     from hrsafety.contact.chance import Exceedance as Exceedance
     from hrsafety.contact.contact import Contact as Contact, Support as Support
-    from hrsafety.contact.covering import Column as Column, Covering as Covering, Region as Region
+    from hrsafety.contact.covering import (
+        CompressedCovering as CompressedCovering,
+        Covering as Covering,
+        Region as Region,
+    )
     from hrsafety.contact.least_thickness import LeastThickness as LeastThickness
     from hrsafety.contact.margins import (
         ContactMargins as ContactMargins,

@@ -66,7 +66,7 @@ _WITH_FINGERS = ("hand",)
 """A region that is called so, without an area, is as small as a finger."""
 
 
-class Part(NamedTuple):
+class BodyPart(NamedTuple):
     """A part of a body with the area that it has at most, in m^2."""
 
     name: str
@@ -180,7 +180,7 @@ def spread_agrees(name: str, kind: str, parts: Sequence[float], own: float | Non
 # ---- how large a part of a body is --------------------------------------------------------------
 
 
-def part_of(limits: object) -> Part | None:
+def part_of(limits: object) -> BodyPart | None:
     """Return the part of the body that a limit object is about; of a region without an area its smallest part."""
     region = getattr(limits, "region", None)
     if not isinstance(region, str):
@@ -189,16 +189,16 @@ def part_of(limits: object) -> Part | None:
     for name in (area, region) if isinstance(area, str) else (region,):
         text = name.lower()
         if any(word in text for word in _WHOLE):
-            return Part(name, LARGEST_PART * SQUARE_CENTIMETER)
+            return BodyPart(name, LARGEST_PART * SQUARE_CENTIMETER)
         found = [most for word, most in PARTS.items() if word in text or word.replace("_", " ") in text]
         if name == region and any(word in text for word in _WITH_FINGERS):
             found.append(PARTS["finger"])
         if found:
-            return Part(name, min(found) * SQUARE_CENTIMETER)
-    return Part(area if isinstance(area, str) else region, LARGEST_PART * SQUARE_CENTIMETER)
+            return BodyPart(name, min(found) * SQUARE_CENTIMETER)
+    return BodyPart(area if isinstance(area, str) else region, LARGEST_PART * SQUARE_CENTIMETER)
 
 
-def contact_width_doubt(touched: Any, part: Part, more: str = "") -> ResultWarning:
+def contact_width_doubt(touched: Any, part: BodyPart, more: str = "") -> ResultWarning:
     """Return the doubt about a contact that is larger than the part of the body, in m^2."""
     name = part.name.replace("_", " ")
     return ResultWarning(
@@ -226,7 +226,7 @@ def touched_area(pad: Covering | None, depth: Any, numbers: Mapping[str, Any]) -
 
 def larger_than_part(
     pad: Covering | None, depth: Any, numbers: Mapping[str, Any], limits: object
-) -> tuple[Any, Part | None]:
+) -> tuple[Any, BodyPart | None]:
     """Return where the contact is larger than the part of the body that a limit object is about, and the part."""
     part = part_of(limits)
     if part is None:

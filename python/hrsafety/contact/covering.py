@@ -17,7 +17,7 @@ from hrsafety._words import meant
 from hrsafety.contact.materials import Linear, Material, StressTable, material
 from hrsafety.errors import InvalidParameterError
 
-__all__ = ["Column", "Covering", "Region", "covering_of", "region_of", "shape_flags"]
+__all__ = ["CompressedCovering", "Covering", "Region", "covering_of", "region_of", "shape_flags"]
 
 SHAPES = ("flat", "curved", "sphere", "cylinder")
 _NEEDED = {"flat": ("area",), "curved": ("radius",), "sphere": ("radius",), "cylinder": ("radius", "length")}
@@ -29,7 +29,7 @@ Numbers = tuple[float, ...]
 
 
 @displayed
-class Column(NamedTuple):
+class CompressedCovering(NamedTuple):
     """A covering at rest under a compression.
 
     Attributes
@@ -83,7 +83,7 @@ class Covering:
     bottom : tuple of two floats
         Strain e_b from which a backing of stiffness K_b (N/m) acts; K_b = 0: none.
     half_width : float or None
-        Half-width of the pad under a curved contact in m, for `Column.status`; ``None`` for a flat one.
+        Half-width of the pad under a curved contact in m, for `CompressedCovering.status`; ``None`` for a flat one.
 
     Raises
     ------
@@ -185,7 +185,7 @@ class Covering:
             bottom=(min(foam.linear_range / foam.thickness, _DEEPEST), 1e7),
         )
 
-    def column(self, compression: float) -> Column:
+    def column(self, compression: float) -> CompressedCovering:
         """Return force, stored work, pressure and widths at a compression.
 
         Parameters
@@ -195,7 +195,7 @@ class Covering:
 
         Returns
         -------
-        Column
+        CompressedCovering
             At rest: without rate, damper and unloading.
 
         Raises
@@ -210,7 +210,7 @@ class Covering:
         radii = [from_row["radius"], from_row["second_radius"]]
         flags = shape_flags(depth, radii=radii, thickness=self.thickness, half_width=self.half_width)
         pair = None if widths is None else (widths[0], widths[1])
-        return Column(force, energy, pressure, pair, tuple(name for name, flag in flags.items() if flag))
+        return CompressedCovering(force, energy, pressure, pair, tuple(name for name, flag in flags.items() if flag))
 
     def shared(self) -> dict[str, object]:
         """Return what is no number, as the core reads it."""

@@ -13,7 +13,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, not_negative, positive
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
-from hrsafety.contact.bodies import OWN, Part, agreeing, contact_width_doubt, larger_than_part, touched_area
+from hrsafety.contact.bodies import OWN, BodyPart, agreeing, contact_width_doubt, larger_than_part, touched_area
 from hrsafety.contact.covering import Covering
 from hrsafety.contact.doubts import (
     Doubts,
@@ -125,7 +125,7 @@ def allowed_of(given: Prepared, human_speed: float) -> AllowedSpeed:
 
 
 def _too_wide(
-    pad: Covering | None, shared: dict[str, object], values: dict[str, float], part: Part, depth: float
+    pad: Covering | None, shared: dict[str, object], values: dict[str, float], part: BodyPart, depth: float
 ) -> ResultWarning:
     """Return the doubt about a contact that is larger than the part of the body, with the speed at that area."""
     more = ""

@@ -15,10 +15,10 @@ from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.sensing.calibration import scipy_least_squares
 from hrsafety.pages import require_jinja
 from hrsafety.reproduce import page, parts, trends
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.published import published_tables
 
-__all__ = ["PARTS", "Cell", "published_tables", "run"]
+__all__ = ["PARTS", "PrintedValue", "published_tables", "run"]
 
 PARTS = tuple(parts.PARTS)
 """What `run` can make, in the order in which it is made."""
@@ -74,7 +74,7 @@ def run(
     folder.mkdir(parents=True, exist_ok=True)
     say = progress if progress is not None else _silent
     begin = time.perf_counter()
-    report = page.Report(command=_command(out, only))
+    report = page.ReproductionReport(command=_command(out, only))
     for name in chosen:
         say(f"{name}: {parts.PARTS[name].progress}")
         report.made[name] = parts.PARTS[name].make(say)

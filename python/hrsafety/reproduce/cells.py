@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from hrsafety._records import dataclass
 
-__all__ = ["Cell", "Tolerance", "tolerance_of"]
+__all__ = ["PrintedValue", "Tolerance", "tolerance_of"]
 
 # A deviation that sits on its bound in decimal must not fall off it in binary.
 _ROUNDING = 1e-9
@@ -48,7 +48,7 @@ def tolerance_of(column: str) -> Tolerance:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Cell:
+class PrintedValue:
     """One printed value and what was measured for it.
 
     Attributes
@@ -100,7 +100,7 @@ class Cell:
         measured: float,
         tolerance: Tolerance,
         unit: str,
-    ) -> Cell:
+    ) -> PrintedValue:
         """Return the cell of a measured value, judged; its reason is still empty."""
         deviation = measured - printed
         if tolerance.relative:
@@ -121,7 +121,7 @@ class Cell:
         )
 
     @classmethod
-    def listed(cls, *, table: str, row: str, column: str, printed: float | str, unit: str, reason: str) -> Cell:
+    def listed(cls, *, table: str, row: str, column: str, printed: float | str, unit: str, reason: str) -> PrintedValue:
         """Return the cell of a printed value that nothing was measured for."""
         return cls(
             table=table,
@@ -140,7 +140,7 @@ class Cell:
     @classmethod
     def beside(
         cls, *, table: str, row: str, column: str, printed: float | str, measured: float | str, unit: str, reason: str
-    ) -> Cell:
+    ) -> PrintedValue:
         """Return a value beside another that is no judgment of the source: with deviation, without verdict."""
         cell = cls.listed(table=table, row=row, column=column, printed=printed, unit=unit, reason=reason)
         if isinstance(printed, str) or isinstance(measured, str):

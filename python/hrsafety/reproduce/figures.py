@@ -22,7 +22,7 @@ from hrsafety.reproduce.data import caption
 from hrsafety.reproduce.measured import GAIN_SETS
 from hrsafety.reproduce.names import GAIN_LABELS
 from hrsafety.reproduce.ranking import BASELINE, Outcomes
-from hrsafety.reproduce.study import MODES, NOISE_SCALE, SIDES, Key, Study
+from hrsafety.reproduce.study import MODES, NOISE_SCALE, SIDES, Key, LawComparisons
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -49,7 +49,7 @@ def make() -> list[Picture]:
     return [picture(name, caption, draw()) for name, caption, draw in _pictures()]
 
 
-def of_study(study: Study) -> list[Picture]:
+def of_study(study: LawComparisons) -> list[Picture]:
     """Draw outcomes and clearances of the experiments with many runs."""
     pictures = []
     side = next(iter(SIDES))

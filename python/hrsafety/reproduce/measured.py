@@ -12,7 +12,7 @@ from hrsafety import scenarios
 from hrsafety._records import dataclass
 from hrsafety.navigation.tables.runs import RunTable
 
-__all__ = ["GAIN_SETS", "LAWS", "Measured", "kind_of", "measure", "measure_laws", "score_of_parts"]
+__all__ = ["GAIN_SETS", "LAWS", "MeasuredRun", "kind_of", "measure", "measure_laws", "score_of_parts"]
 
 Gains = tuple[float, float, float, float]
 
@@ -43,7 +43,7 @@ LAWS: Mapping[str, nav.Law] = {name: _field(gains) for name, gains in GAIN_SETS.
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Measured:
+class MeasuredRun:
     """Result of one run.
 
     Attributes
@@ -74,7 +74,7 @@ class Measured:
         return "arrival, no contact" if self.arrived else "no arrival, no contact"
 
 
-def measure(names: Sequence[str], gains: Iterable[Gains]) -> list[list[Measured]]:
+def measure(names: Sequence[str], gains: Iterable[Gains]) -> list[list[MeasuredRun]]:
     """Run every gain set in every configuration, stabilizing force off, in one batch."""
     places = [scenarios.configuration(name) for name in names]
     sets = np.array(list(gains), dtype=np.float64)
@@ -83,7 +83,7 @@ def measure(names: Sequence[str], gains: Iterable[Gains]) -> list[list[Measured]
     return [rows[begin : begin + len(places)] for begin in range(0, len(rows), len(places))]
 
 
-def measure_laws(names: Sequence[str], methods: Iterable[str]) -> dict[str, list[Measured]]:
+def measure_laws(names: Sequence[str], methods: Iterable[str]) -> dict[str, list[MeasuredRun]]:
     """Run the law of each row of the tables in every configuration."""
     places = [scenarios.configuration(name) for name in names]
     runs = {}
@@ -93,14 +93,14 @@ def measure_laws(names: Sequence[str], methods: Iterable[str]) -> dict[str, list
     return runs
 
 
-def _row(summary: RunTable, index: int, scenario: nav.Scenario) -> Measured:
+def _row(summary: RunTable, index: int, scenario: nav.Scenario) -> MeasuredRun:
     time = float(summary.arrival_time[index])
     energy = float(summary.energy[index])
     values = {"T_arrive": time, "L_energy": energy, "H": float(summary.performance_total[index])}
     for obstacle, distance in zip(scenario.obstacles, summary.min_distance[index].tolist(), strict=False):
         column = f"d_{kind_of(obstacle)}_min"
         values[column] = min(distance, values.get(column, math.inf))
-    return Measured(
+    return MeasuredRun(
         values=values,
         arrived=math.isfinite(time),
         contact=bool(summary.contacts_moving[index] + summary.contacts_standing[index]),
@@ -117,7 +117,7 @@ def kind_of(obstacle: nav.Obstacle) -> str:
     return "rectangle" if isinstance(obstacle, nav.Rectangle) else "circle"
 
 
-def score_of_parts(run: Measured, *, time: float, energy: float, distances: Mapping[str, float]) -> float:
+def score_of_parts(run: MeasuredRun, *, time: float, energy: float, distances: Mapping[str, float]) -> float:
     """Return the score H that given times, energies and distances would have.
 
     ``H = (T*/T + mean of min(d_s/d_s*, 1) + L*/L) / 3`` with the T* and L* of the run.

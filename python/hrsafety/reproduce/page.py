@@ -10,12 +10,12 @@ from hrsafety import pages
 from hrsafety._atomic import write_file
 from hrsafety.pages import Picture
 from hrsafety.reproduce import records
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.parts import PARTS, Made
 from hrsafety.reproduce.sections import section_of, shown_parts
 from hrsafety.reproduce.views import by_table, counted, view
 
-__all__ = ["Report", "write"]
+__all__ = ["ReproductionReport", "write"]
 
 LIBRARIES = ("hrsafety", "numpy", "matplotlib")
 # Parts whose cells stand first and last in the files of values.
@@ -23,7 +23,7 @@ FIRST, LAST = "impact", "reactive"
 
 
 @dataclass(kw_only=True, slots=True)
-class Report:
+class ReproductionReport:
     """Content of the page.
 
     Attributes
@@ -41,7 +41,7 @@ class Report:
     seconds: float = 0.0
 
     @property
-    def cells(self) -> list[Cell]:
+    def cells(self) -> list[PrintedValue]:
         """Cells of all parts."""
         order = sorted(self.made, key=lambda name: (name == LAST) - (name == FIRST))
         return [cell for name in order for cell in self.made[name].cells]
@@ -62,7 +62,7 @@ class Report:
         return files
 
 
-def write(report: Report, folder: Path) -> Path:
+def write(report: ReproductionReport, folder: Path) -> Path:
     """Write values, pictures and, last, the page, each file whole or not at all; return the page."""
     if report.pictures:
         (folder / "figures").mkdir(exist_ok=True)
@@ -73,7 +73,7 @@ def write(report: Report, folder: Path) -> Path:
     return write_file(folder / "summary.html", html(report))
 
 
-def html(report: Report) -> str:
+def html(report: ReproductionReport) -> str:
     """Return the page: style and pictures inside, nothing loaded from elsewhere."""
     parts = shown_parts(report.made, report.cells)
     own = [cell for name, made in report.made.items() if PARTS[name].counted for cell in made.cells]
@@ -90,7 +90,7 @@ def html(report: Report) -> str:
     )
 
 
-def _beside(report: Report) -> list[tuple[list[str], str]]:
+def _beside(report: ReproductionReport) -> list[tuple[list[str], str]]:
     """Return what lies beside the page: names, and what they hold."""
     groups = [(["figures"], "pictures")] if report.pictures else []
     groups += [(["tables.csv", "tables.json"], "every value")] if report.cells else []

@@ -11,7 +11,7 @@ from hrsafety.pages import Picture
 from hrsafety.reproduce import data, figures, records, study, tables
 from hrsafety.reproduce.built import camera_figures, camera_tables, wheels_figures, wheels_tables
 from hrsafety.reproduce.built import figures as built_figures
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.gain import figures as gain_figures
 from hrsafety.reproduce.gain import tables as gain_tables
 from hrsafety.reproduce.impact import part as impact_part
@@ -42,7 +42,7 @@ class Made:
         What lies beside the page, by file name.
     """
 
-    cells: Sequence[Cell] = ()
+    cells: Sequence[PrintedValue] = ()
     pictures: Sequence[Picture] = ()
     study: Any = None
     files: Mapping[str, str] = field(default_factory=dict)

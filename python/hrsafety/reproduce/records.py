@@ -10,19 +10,19 @@ from collections.abc import Sequence
 from dataclasses import asdict, fields
 from typing import Any
 
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.laws.study import LawsStudy, rows
-from hrsafety.reproduce.study import Aggregate, Study
+from hrsafety.reproduce.study import Aggregate, LawComparisons
 
 __all__ = ["cells_csv", "cells_json", "laws_csv", "laws_json", "study_csv", "study_json"]
 
 
-def cells_csv(cells: Sequence[Cell]) -> str:
+def cells_csv(cells: Sequence[PrintedValue]) -> str:
     """Return cells as CSV, one line each; ``deviation`` is a share of printed if ``relative``."""
-    return _csv([entry.name for entry in fields(Cell)], [asdict(cell) for cell in cells])
+    return _csv([entry.name for entry in fields(PrintedValue)], [asdict(cell) for cell in cells])
 
 
-def cells_json(cells: Sequence[Cell]) -> str:
+def cells_json(cells: Sequence[PrintedValue]) -> str:
     """Return cells as a JSON list of objects."""
     return json.dumps([asdict(cell) for cell in cells], indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
@@ -38,13 +38,13 @@ def laws_json(study: LawsStudy) -> str:
     return json.dumps(rows(study), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def study_csv(study: Study) -> str:
+def study_csv(study: LawComparisons) -> str:
     """Return the comparison of the stabilizing modes as CSV."""
     rows = [_flat(aggregate) for aggregate in study.aggregates]
     return _csv(list(rows[0]), rows)
 
 
-def study_json(study: Study) -> str:
+def study_json(study: LawComparisons) -> str:
     """Return the comparison of the stabilizing modes and the recommended mode as JSON."""
     content = {
         "recommended": study.recommended,

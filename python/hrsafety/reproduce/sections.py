@@ -7,16 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.gain.deviations import deviations
 from hrsafety.reproduce.impact.cases import parameter_sets
-from hrsafety.reproduce.impact.tables import COLUMNS, Experiment, experiments
+from hrsafety.reproduce.impact.tables import COLUMNS, ImpactRow, experiments
 from hrsafety.reproduce.laws.compared import COMPARED, FORCES, LIKE_SOURCE
 from hrsafety.reproduce.laws.study import LawsStudy, compared_contacts
 from hrsafety.reproduce.names import GAIN_LABELS, beside_none, column_label
 from hrsafety.reproduce.parts import PARTS, Made, Part
 from hrsafety.reproduce.ranking import BASELINE
-from hrsafety.reproduce.study import SIDES, Aggregate, Study
+from hrsafety.reproduce.study import SIDES, Aggregate, LawComparisons
 from hrsafety.reproduce.views import by_table, counted, view
 
 __all__ = ["section_of", "shown_parts"]
@@ -29,7 +29,7 @@ _ORDER = (
 _DIGITS = {"a_h_max": 3, "impact_period": 4, "compression_max": 5}
 
 
-def shown_parts(made: Mapping[str, Made], cells: Sequence[Cell]) -> list[Part]:
+def shown_parts(made: Mapping[str, Made], cells: Sequence[PrintedValue]) -> list[Part]:
     """Return the parts that have a section, in the order of the page."""
     tables = list(by_table(cells))
     return [
@@ -39,7 +39,7 @@ def shown_parts(made: Mapping[str, Made], cells: Sequence[Cell]) -> list[Part]:
     ]
 
 
-def section_of(part: Part, made: Mapping[str, Made], cells: Sequence[Cell]) -> dict[str, Any]:
+def section_of(part: Part, made: Mapping[str, Made], cells: Sequence[PrintedValue]) -> dict[str, Any]:
     """Return what the template of a section shows."""
     own = made[part.name]
     pictures = [picture for name, each in made.items() if PARTS[name].placed for picture in each.pictures]
@@ -65,7 +65,7 @@ def _impact(made: Made) -> dict[str, Any]:
     return {"sets": parameter_sets(), "experiments": rows}
 
 
-def _experiment(row: Experiment, places: Mapping[tuple[str, str], Cell]) -> dict[str, Any]:
+def _experiment(row: ImpactRow, places: Mapping[tuple[str, str], PrintedValue]) -> dict[str, Any]:
     """Return one row of Table 4.1 or 4.2: runs, printed simulation and own values."""
     lines, reasons = [], []
     for column, (name, unit) in COLUMNS.items():
@@ -127,7 +127,7 @@ def _encounter(study: LawsStudy, name: str) -> dict[str, Any]:
 
 
 def _stabilizing(made: Made) -> dict[str, Any]:
-    study: Study = made.study
+    study: LawComparisons = made.study
     sides = [(side, _groups([entry for entry in study.aggregates if entry.key.side == side])) for side in SIDES]
     return {"pictures": made.pictures, "gain_labels": GAIN_LABELS, "baseline": BASELINE, "sides": sides}
 

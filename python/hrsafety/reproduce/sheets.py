@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import Any
 
 from hrsafety.reproduce import data
-from hrsafety.reproduce.cells import Cell, Tolerance
+from hrsafety.reproduce.cells import PrintedValue, Tolerance
 from hrsafety.reproduce.published import printed_figure
 
 __all__ = ["Sheet", "tolerance_from"]
@@ -64,10 +64,10 @@ class Sheet:
         printed: Any = None,
         tolerance: Any = None,
         **words: object,
-    ) -> Cell:
+    ) -> PrintedValue:
         """Return a judged number; ``if_off`` of the file is its reason only where it is off."""
         filled = self._filled(key, words)
-        cell = Cell.compared(
+        cell = PrintedValue.compared(
             **filled.place,
             printed=float(filled.printed if printed is None else printed),
             measured=float(measured),
@@ -76,25 +76,27 @@ class Sheet:
         )
         return replace(cell, reason=filled.reason(cell.within))
 
-    def claim(self, key: str, /, *, holds: bool, printed: Any = None, **words: object) -> Cell:
+    def claim(self, key: str, /, *, holds: bool, printed: Any = None, **words: object) -> PrintedValue:
         """Return a judged claim in words; ``measured`` of the file says what was found."""
         filled = self._filled(key, words)
         place: dict[str, Any] = {**filled.place, "printed": printed or filled.printed}
-        cell = Cell.listed(**place, unit=filled["unit"], reason=filled.reason(holds))
+        cell = PrintedValue.listed(**place, unit=filled["unit"], reason=filled.reason(holds))
         return replace(cell, measured=filled["measured"], within=bool(holds))
 
-    def listed(self, key: str, measured: float | str | None = None, /, *, printed: Any = None, **words: object) -> Cell:
+    def listed(
+        self, key: str, measured: float | str | None = None, /, *, printed: Any = None, **words: object
+    ) -> PrintedValue:
         """Return a value beside another that is no judgment of the source, for example an experiment."""
         filled = self._filled(key, words)
         printed = filled.printed if printed is None else printed
         measured = filled["measured"] if measured is None else measured
         place: dict[str, Any] = {**filled.place, "printed": printed, "measured": measured}
-        return Cell.beside(**place, unit=filled["unit"], reason=filled.reason(None))
+        return PrintedValue.beside(**place, unit=filled["unit"], reason=filled.reason(None))
 
-    def printed_only(self, key: str, /, *, printed: float | str, **words: object) -> Cell:
+    def printed_only(self, key: str, /, *, printed: float | str, **words: object) -> PrintedValue:
         """Return a printed value that nothing is measured for."""
         filled = self._filled(key, words)
-        return Cell.listed(**filled.place, printed=printed, unit=filled["unit"], reason=filled.reason(None))
+        return PrintedValue.listed(**filled.place, printed=printed, unit=filled["unit"], reason=filled.reason(None))
 
     def text(self, key: str, /, **words: object) -> str:
         """Return a shared text with words filled in."""

@@ -18,7 +18,7 @@ from hrsafety.reproduce.measured import GAIN_SETS
 from hrsafety.reproduce.names import GAIN_LABELS
 from hrsafety.reproduce.ranking import BASELINE, Outcomes, Ranking, rank
 
-__all__ = ["MODES", "SIDES", "Aggregate", "Key", "Study", "compare"]
+__all__ = ["MODES", "SIDES", "Aggregate", "Key", "LawComparisons", "compare"]
 
 MODES: Mapping[str, Mapping[str, Any]] = {
     BASELINE: {"stabilizing": "off"},
@@ -97,7 +97,7 @@ class Aggregate:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Study:
+class LawComparisons:
     """All comparisons.
 
     Attributes
@@ -121,7 +121,7 @@ class Study:
         return self.rankings[0].recommended
 
 
-def compare(progress: Callable[[str], object] | None = None) -> Study:
+def compare(progress: Callable[[str], object] | None = None) -> LawComparisons:
     """Run every mode in every experiment, with common random numbers, and rank the modes.
 
     The experiments: configurations c1 to c4 as they are; the same with 200 seeds of
@@ -139,7 +139,7 @@ def compare(progress: Callable[[str], object] | None = None) -> Study:
         runs |= _run(experiment)
         ranked += [experiment.name] if experiment.ranked else []
     aggregates = tuple(_aggregate(key, runs) for key in runs)
-    return Study(aggregates=aggregates, rankings=tuple(_rankings(runs, ranked)), runs=runs)
+    return LawComparisons(aggregates=aggregates, rankings=tuple(_rankings(runs, ranked)), runs=runs)
 
 
 def _experiments() -> Iterator[_Experiment]:

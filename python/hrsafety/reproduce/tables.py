@@ -8,8 +8,8 @@ from typing import Any
 
 from hrsafety.reproduce.built import runs as built_runs
 from hrsafety.reproduce.built import tables as built_tables
-from hrsafety.reproduce.cells import Cell, tolerance_of
-from hrsafety.reproduce.measured import LAWS, Measured, measure_laws, score_of_parts
+from hrsafety.reproduce.cells import PrintedValue, tolerance_of
+from hrsafety.reproduce.measured import LAWS, MeasuredRun, measure_laws, score_of_parts
 from hrsafety.reproduce.published import Row, printed_rows
 from hrsafety.reproduce.reasons import cause_of, note_of, why_not_judged
 
@@ -47,7 +47,7 @@ UNITS = {"T": "s", "L": "J", "d": "m", "H": "1"}
 _DIGITS_OF_SCORES = 2
 
 
-def chapter_6() -> list[Cell]:
+def chapter_6() -> list[PrintedValue]:
     """Return the cells of Tables 6.1 to 6.5: gains, and configurations c1 to c4."""
     names = ("c1", "c2", "c3", "c4")
     runs = measure_laws(names, LAWS)
@@ -57,7 +57,7 @@ def chapter_6() -> list[Cell]:
     return cells
 
 
-def chapter_7() -> list[Cell]:
+def chapter_7() -> list[PrintedValue]:
     """Return the cells of Tables 7.1 to 7.4, configurations n1 to n4, and of section 7.5.5."""
     names = ("n1", "n2", "n3", "n4")
     runs = measure_laws(names, ["new_vff"])["new_vff"]
@@ -68,7 +68,7 @@ def chapter_7() -> list[Cell]:
     return [*cells, *built_tables.multiple_obstacles()]
 
 
-def unpredictable_human() -> list[Cell]:
+def unpredictable_human() -> list[PrintedValue]:
     """Return the cells of Table 5.1: a person who stops and turns."""
     runs = measure_laws(["unpredictable_human"], ["masoud", "ge_cui", "new_vff"])
     renamed = {
@@ -85,7 +85,7 @@ def numbers(row: Row) -> Iterable[tuple[str, float]]:
             yield column, float(value)
 
 
-def _gain_cells(table: str) -> list[Cell]:
+def _gain_cells(table: str) -> list[PrintedValue]:
     """Return the printed gains: inputs, not results."""
     return [
         input_cell(table, row["method"], column, printed)
@@ -94,17 +94,17 @@ def _gain_cells(table: str) -> list[Cell]:
     ]
 
 
-def input_cell(table: str, method: str, column: str, printed: float) -> Cell:
+def input_cell(table: str, method: str, column: str, printed: float) -> PrintedValue:
     """Return the cell of a printed gain that the runs use."""
     names = _GE_CUI_GAINS if method == "ge_cui" else _GAINS
     field, unit = names[column]
     used = getattr(LAWS[method], field)
     rounded = ", printed with fewer digits" if used != printed else ""
     reason = f"An input, not a result: the runs use {used:g}{rounded}."
-    return Cell.listed(table=table, row=method, column=column, printed=printed, unit=unit, reason=reason)
+    return PrintedValue.listed(table=table, row=method, column=column, printed=printed, unit=unit, reason=reason)
 
 
-def _method_cells(table: str, runs: Mapping[str, Measured]) -> list[Cell]:
+def _method_cells(table: str, runs: Mapping[str, MeasuredRun]) -> list[PrintedValue]:
     """Return the cells of a table with one row for each method."""
     cells = []
     for row in printed_rows(table):
@@ -117,14 +117,16 @@ def _method_cells(table: str, runs: Mapping[str, Measured]) -> list[Cell]:
                 continue
             run, unjudged = runs[method], why_not_judged(method, column)
             if unjudged:
-                cells.append(Cell.beside(**place, measured=run.values[column], unit=unit, reason=unjudged))
+                cells.append(PrintedValue.beside(**place, measured=run.values[column], unit=unit, reason=unjudged))
                 continue
-            cell = Cell.compared(**place, measured=run.values[column], tolerance=tolerance_of(column), unit=unit)
+            cell = PrintedValue.compared(
+                **place, measured=run.values[column], tolerance=tolerance_of(column), unit=unit
+            )
             cells.append(explained(cell, printed_score(run, row) if column == "H" else None))
     return cells
 
 
-def printed_score(run: Measured, row: Row, suffix: str = "") -> float:
+def printed_score(run: MeasuredRun, row: Row, suffix: str = "") -> float:
     """Return the score that follows from the printed T, L and d of a row."""
     distances = {
         column.removesuffix(suffix): float(value)
@@ -136,7 +138,7 @@ def printed_score(run: Measured, row: Row, suffix: str = "") -> float:
     return score_of_parts(run, time=row[f"T_arrive{suffix}"], energy=row[f"L_energy{suffix}"], distances=distances)
 
 
-def explained(cell: Cell, score: float | None = None) -> Cell:
+def explained(cell: PrintedValue, score: float | None = None) -> PrintedValue:
     """Return the cell with its reason: the cause if it is off, a note where one is due."""
     reason = note_of(cell.table, cell.row, cell.column)
     if not cell.within:
@@ -149,7 +151,7 @@ def explained(cell: Cell, score: float | None = None) -> Cell:
     return replace(cell, reason=reason.strip())
 
 
-def _agrees_when_rounded(cell: Cell) -> bool:
+def _agrees_when_rounded(cell: PrintedValue) -> bool:
     """Return whether a score would be within its tolerance with no more digits than printed."""
     if cell.unit != "1" or cell.tolerance is None or not isinstance(cell.measured, float):
         return False

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from hrsafety.pages import Picture
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.figures import captioned
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ NAMES = ("c1, disc", "c2, person", "c3, rectangle")
 COLORS = ("#0072B2", "#D55E00", "#009E73")
 
 
-def make(cells: Sequence[Cell]) -> list[Picture]:
+def make(cells: Sequence[PrintedValue]) -> list[Picture]:
     """Draw one picture for each gain: time, distance and score over its change."""
     pictures = []
     for gain, *tables in GAINS:
@@ -45,7 +45,7 @@ def make(cells: Sequence[Cell]) -> list[Picture]:
     return pictures
 
 
-def _figure(gain: str, cells: Sequence[Cell]) -> Figure:
+def _figure(gain: str, cells: Sequence[PrintedValue]) -> Figure:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(8.0, 3.4), layout="constrained")
@@ -63,7 +63,7 @@ def _figure(gain: str, cells: Sequence[Cell]) -> Figure:
     return figure
 
 
-def _draw(axes: Axes, cells: Sequence[Cell], name: str, color: str) -> None:
+def _draw(axes: Axes, cells: Sequence[PrintedValue], name: str, color: str) -> None:
     changes = [float(cell.row.removesuffix(" %")) for cell in cells]
     measured = [cell.measured if isinstance(cell.measured, float) else float("nan") for cell in cells]
     printed = [float(cell.printed) for cell in cells]

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from hrsafety._records import dataclass
 from hrsafety.pages import DASH, Picture
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.names import TABLE_TITLES, beside, column_label, row_label
 
 __all__ = ["Count", "Line", "Matrix", "TableView", "by_table", "counted", "matrix", "view"]
@@ -95,21 +95,21 @@ class TableView:
         return int(digits) if digits.isdigit() else 0
 
 
-def by_table(cells: Iterable[Cell]) -> dict[str, list[Cell]]:
+def by_table(cells: Iterable[PrintedValue]) -> dict[str, list[PrintedValue]]:
     """Return cells grouped by the table they belong to, in the order of first appearance."""
-    groups: dict[str, list[Cell]] = {}
+    groups: dict[str, list[PrintedValue]] = {}
     for cell in cells:
         groups.setdefault(cell.table, []).append(cell)
     return groups
 
 
-def counted(cells: Sequence[Cell]) -> Count:
+def counted(cells: Sequence[PrintedValue]) -> Count:
     """Count cells."""
     judged = [cell for cell in cells if cell.within is not None]
     return Count(len(cells), len(judged), sum(bool(cell.within) for cell in judged))
 
 
-def view(table: str, cells: Sequence[Cell], pictures: Iterable[Picture] = ()) -> TableView:
+def view(table: str, cells: Sequence[PrintedValue], pictures: Iterable[Picture] = ()) -> TableView:
     """Return one published table as the page shows it."""
     plain = table.startswith("Section") or _of_papers(table)
     return TableView(
@@ -124,7 +124,7 @@ def view(table: str, cells: Sequence[Cell], pictures: Iterable[Picture] = ()) ->
     )
 
 
-def _lines(cells: Sequence[Cell]) -> list[Line]:
+def _lines(cells: Sequence[PrintedValue]) -> list[Line]:
     lines = []
     for row, group in groupby(cells, key=lambda cell: cell.row):
         own = list(group)
@@ -140,7 +140,7 @@ def _spans(size: int) -> list[int]:
     return [size, *[0] * (size - 1)]
 
 
-def _values(cell: Cell) -> tuple[tuple[str, bool], ...]:
+def _values(cell: PrintedValue) -> tuple[tuple[str, bool], ...]:
     """Return printed and measured value, deviation and tolerance, each with whether it is words."""
     tolerance = DASH if cell.tolerance is None else f"±{_signed(cell.tolerance, cell, sign=False)}"
     return (
@@ -151,7 +151,7 @@ def _values(cell: Cell) -> tuple[tuple[str, bool], ...]:
     )
 
 
-def matrix(cells: Sequence[Cell]) -> Matrix:
+def matrix(cells: Sequence[PrintedValue]) -> Matrix:
     """Return cells as rows by columns."""
     columns = list(dict.fromkeys((cell.column, cell.unit) for cell in cells if not cell.column.startswith("outcome")))
     rows: list[dict[str, object]] = []
@@ -163,16 +163,16 @@ def matrix(cells: Sequence[Cell]) -> Matrix:
     return Matrix(titles=[column_label(*column) for column in columns], rows=rows, reasons=_reasons(cells))
 
 
-def _entry(cell: Cell | None) -> dict[str, object] | None:
+def _entry(cell: PrintedValue | None) -> dict[str, object] | None:
     if cell is None:
         return None
     values = {"measured": _measured(cell), "printed": _printed(cell), "deviation": _deviation(cell)}
     return {"within": cell.within, **values}
 
 
-def _reasons(cells: Sequence[Cell]) -> list[tuple[str, int, str]]:
+def _reasons(cells: Sequence[PrintedValue]) -> list[tuple[str, int, str]]:
     """Return the reasons, each with the cells that it is given for."""
-    groups: dict[str, list[Cell]] = {}
+    groups: dict[str, list[PrintedValue]] = {}
     for cell in cells:
         if cell.reason:
             groups.setdefault(cell.reason.split(" The printed T, L and d give")[0], []).append(cell)
@@ -187,25 +187,25 @@ def _of_papers(table: str) -> bool:
     return table[0].islower()
 
 
-def _of_many_sizes(cell: Cell) -> bool:
+def _of_many_sizes(cell: PrintedValue) -> bool:
     """Return whether a cell is of the impact part or of a paper, whose quantities differ in size by decades."""
     return cell.table[0] in "34AS" or _of_papers(cell.table)
 
 
-def _digits(cell: Cell) -> int:
+def _digits(cell: PrintedValue) -> int:
     if cell.table.startswith("C.") and cell.unit == "1":
         return 4
     return 2 if cell.unit in {"s", "J", "%"} else 3
 
 
-def _printed(cell: Cell) -> str:
+def _printed(cell: PrintedValue) -> str:
     if isinstance(cell.printed, str):
         return cell.printed
     whole = cell.unit in _UNITS_OF_RESULTS and cell.printed.is_integer()
     return f"{cell.printed:.1f}" if whole else f"{cell.printed:g}"
 
 
-def _measured(cell: Cell) -> str:
+def _measured(cell: PrintedValue) -> str:
     if cell.measured is None:
         return DASH
     if isinstance(cell.measured, str):
@@ -213,11 +213,11 @@ def _measured(cell: Cell) -> str:
     return f"{cell.measured:.4g}" if _of_many_sizes(cell) else f"{cell.measured:.{_digits(cell)}f}"
 
 
-def _deviation(cell: Cell) -> str:
+def _deviation(cell: PrintedValue) -> str:
     return DASH if cell.deviation is None else _signed(cell.deviation, cell)
 
 
-def _signed(value: float, cell: Cell, *, sign: bool = True) -> str:
+def _signed(value: float, cell: PrintedValue, *, sign: bool = True) -> str:
     plus = "+" if sign else ""
     if cell.relative:
         return f"{100.0 * value:{plus}.1f} %" if sign else f"{100.0 * value:g} %"

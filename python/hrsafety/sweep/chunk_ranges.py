@@ -6,7 +6,7 @@ import re
 
 from hrsafety.errors import InvalidParameterError
 
-__all__ = ["Share", "checked_share"]
+__all__ = ["ChunkShare", "checked_share"]
 
 _RULE = 'be a range, "0:8" or "2/16"'
 _SPAN, _PART = re.compile(r"(\d{1,18}):(\d{1,18})"), re.compile(r"(\d{1,18})/(\d{1,18})")
@@ -14,7 +14,7 @@ _SPAN, _PART = re.compile(r"(\d{1,18}):(\d{1,18})"), re.compile(r"(\d{1,18})/(\d
 MOST_PARTS = 10**6
 
 
-class Share:
+class ChunkShare:
     """A share of the chunks: from a first to a last one, or one of equal parts.
 
     Parameters
@@ -52,7 +52,7 @@ class Share:
         return self._span
 
 
-def checked_share(value: object) -> Share | None:
+def checked_share(value: object) -> ChunkShare | None:
     """Return the share that ``chunks`` names.
 
     Parameters
@@ -75,13 +75,13 @@ def checked_share(value: object) -> Share | None:
     if isinstance(value, range):
         if value.step != 1 or value.start < 0 or not value:
             raise InvalidParameterError("chunks", "be a range upward in steps of 1, not empty", str(value))
-        return Share(value, None)
+        return ChunkShare(value, None)
     span = _SPAN.fullmatch(value) if isinstance(value, str) else None
     if span is not None:
         first, stop = int(span[1]), int(span[2])
         if not first < stop:
             raise InvalidParameterError("chunks", "end behind its start", value)
-        return Share(range(first, stop), None)
+        return ChunkShare(range(first, stop), None)
     part = _PART.fullmatch(value) if isinstance(value, str) else None
     if part is None:
         raise InvalidParameterError("chunks", _RULE, value)
@@ -89,4 +89,4 @@ def checked_share(value: object) -> Share | None:
     if not 1 <= number <= parts <= MOST_PARTS:
         rule = f"count parts from 1 to their number, {MOST_PARTS:,} at most"
         raise InvalidParameterError("chunks", rule, value, "number the tasks of a job array from 1")
-    return Share(None, (number, parts))
+    return ChunkShare(None, (number, parts))

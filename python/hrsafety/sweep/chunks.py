@@ -16,7 +16,7 @@ from hrsafety.sweep.designs import Design
 from hrsafety.sweep.identity import described, digest
 from hrsafety.sweep.studies import Study
 
-__all__ = ["Plan", "Task", "computed", "planned"]
+__all__ = ["SweepPlan", "WorkerTask", "computed", "planned"]
 
 MOST_CHUNK_ROWS = 65536
 # Smaller chunks by themselves would cost more than they spread.
@@ -26,7 +26,7 @@ CHUNK_BYTES = 1 << 22
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
+class WorkerTask:
     """Everything that a worker needs to compute any chunk.
 
     Attributes
@@ -48,7 +48,7 @@ class Task:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class SweepPlan:
     """A sweep, divided into chunks.
 
     Attributes
@@ -59,7 +59,7 @@ class Plan:
         Rows of the design in a chunk; the last one may have fewer.
     """
 
-    task: Task
+    task: WorkerTask
     chunk_rows: int
 
     @property
@@ -91,7 +91,9 @@ class Plan:
         return found
 
 
-def planned(design: Design, study: Study, *, chunk_rows: int | None, least_chunks: int, threads: int | None) -> Plan:
+def planned(
+    design: Design, study: Study, *, chunk_rows: int | None, least_chunks: int, threads: int | None
+) -> SweepPlan:
     """Return the plan of a sweep.
 
     Parameters
@@ -132,10 +134,12 @@ def planned(design: Design, study: Study, *, chunk_rows: int | None, least_chunk
         chunk_rows = max(1, min(MOST_CHUNK_ROWS, CHUNK_BYTES // row_bytes))
         if least_chunks:
             chunk_rows = min(chunk_rows, max(-(-len(design) // least_chunks), LEAST_CHUNK_ROWS))
-    return Plan(Task(design, study, tuple(columns), threads), min(count("chunk_rows", chunk_rows), len(design)))
+    return SweepPlan(
+        WorkerTask(design, study, tuple(columns), threads), min(count("chunk_rows", chunk_rows), len(design))
+    )
 
 
-def computed(task: Task, start: int, stop: int) -> dict[str, npt.NDArray[Any]]:
+def computed(task: WorkerTask, start: int, stop: int) -> dict[str, npt.NDArray[Any]]:
     """Return the columns of some rows of a sweep, as they are stored.
 
     Parameters

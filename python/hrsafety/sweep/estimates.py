@@ -11,7 +11,7 @@ from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.sweep.chunk_files import STORES, chunk_files
 from hrsafety.sweep.chunk_ranges import checked_share
-from hrsafety.sweep.chunks import Plan, computed, planned
+from hrsafety.sweep.chunks import SweepPlan, computed, planned
 from hrsafety.sweep.designs import Design, checked_design
 from hrsafety.sweep.studies import Study, checked_study
 
@@ -169,7 +169,7 @@ class _Block(NamedTuple):
     size: int
 
 
-def _measured(plan: Plan, store: str) -> list[_Block]:
+def _measured(plan: SweepPlan, store: str) -> list[_Block]:
     """Return blocks of 1, 4, 16, ... rows, at most a chunk, from all over the design."""
     files = chunk_files(store, plan.task.columns)
 

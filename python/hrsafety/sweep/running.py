@@ -19,7 +19,7 @@ from hrsafety.errors import InvalidParameterError, MissingExtraError
 from hrsafety.plausibility import telling
 from hrsafety.sweep.chunk_files import STORES
 from hrsafety.sweep.chunk_ranges import checked_share
-from hrsafety.sweep.chunks import Plan, Task, computed, planned
+from hrsafety.sweep.chunks import SweepPlan, WorkerTask, computed, planned
 from hrsafety.sweep.designs import Design, checked_design
 from hrsafety.sweep.result import SweepResult
 from hrsafety.sweep.storage import MANIFEST, Folder, Memory, SweepError, locked, new_manifest
@@ -224,7 +224,7 @@ def _missing(wanted: range, store: Folder | Memory) -> list[int]:
 class _Report:
     """What is finished, and who is told."""
 
-    def __init__(self, plan: Plan, wanted: range, missing: Iterable[int], progress: Progress | None) -> None:
+    def __init__(self, plan: SweepPlan, wanted: range, missing: Iterable[int], progress: Progress | None) -> None:
         self._plan, self._progress = plan, progress
         self._all = sum(stop - start for start, stop in map(plan.span, wanted))
         self._left = sum(stop - start for start, stop in map(plan.span, missing))
@@ -265,13 +265,13 @@ def _kept(report: _Report, path: Path | None) -> Iterator[None]:
         raise SweepError(f"the pool broke ({error}); {left}") from error
 
 
-def _here(plan: Plan, missing: Iterable[int]) -> Results:
+def _here(plan: SweepPlan, missing: Iterable[int]) -> Results:
     """Yield the chunks, computed one after the other."""
     for index in missing:
         yield index, _chunk(plan.task, *plan.span(index))
 
 
-def _pooled(plan: Plan, missing: Iterable[int], executor: Executor, most: int) -> Results:
+def _pooled(plan: SweepPlan, missing: Iterable[int], executor: Executor, most: int) -> Results:
     """Yield chunks as a pool finishes them, never more than ``most`` in flight."""
     waiting = iter(missing)
     pending: dict[Future[Stored], int] = {}
@@ -289,7 +289,7 @@ def _pooled(plan: Plan, missing: Iterable[int], executor: Executor, most: int) -
             future.cancel()
 
 
-def _distributed(plan: Plan, missing: Iterable[int], client: Any, most: int, retries: int) -> Results:
+def _distributed(plan: SweepPlan, missing: Iterable[int], client: Any, most: int, retries: int) -> Results:
     """Yield chunks as a Dask cluster finishes them."""
     from distributed import as_completed as untyped
 
@@ -328,7 +328,7 @@ def _some(waiting: Iterator[int], most: int) -> Iterator[int]:
             return
 
 
-def _chunk(task: Task, start: int, stop: int) -> Stored:
+def _chunk(task: WorkerTask, start: int, stop: int) -> Stored:
     """Compute a chunk; an error says in which rows it happened."""
     try:
         return computed(task, start, stop)

@@ -11,7 +11,7 @@ pytest.importorskip("matplotlib")
 from hrsafety.pages import Picture
 from hrsafety.reproduce import figures, names, page, tables
 from hrsafety.reproduce.built import wheels_tables
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.parts import PARTS, Made
 from hrsafety.reproduce.sections import section_of
 
@@ -22,7 +22,7 @@ NAMES = [name for name, _, _ in figures._pictures()]
 def html() -> str:
     pictures = [Picture(name=name, caption=f"About {name}.", png=b"png") for name in NAMES]
     made = {"tables-6": Made(cells=tables.chapter_6()), "figures-6": Made(pictures=pictures)}
-    return page.html(page.Report(command="", made=made))
+    return page.html(page.ReproductionReport(command="", made=made))
 
 
 def test_every_picture_stands_below_the_table_of_its_configuration(html: str) -> None:
@@ -70,17 +70,17 @@ def test_tables_of_the_wheels_stand_robot_by_robot() -> None:
 
 
 def test_reasons_wrap_and_names_of_rows_too() -> None:
-    style = page.html(page.Report(command=""))
+    style = page.html(page.ReproductionReport(command=""))
     for selector in ("td.reason", 'th[scope="rowgroup"], td.text'):
         rule = style[style.index(f"{selector} {{") :].split("}")[0]
         assert "white-space: normal" in rule
 
 
 def test_text_is_escaped_and_names_of_columns_keep_their_indices() -> None:
-    cell = Cell.listed(
+    cell = PrintedValue.listed(
         table="6.1", row="<b>row</b>", column="K_1", printed="<i>1</i>", unit="N/m", reason="a < b & <script>"
     )
-    html = page.html(page.Report(command="<command>", made={"tables-6": Made(cells=[cell])}))
+    html = page.html(page.ReproductionReport(command="<command>", made={"tables-6": Made(cells=[cell])}))
     for text in ("<b>row</b>", "<i>1</i>", "<script>", "<command>"):
         assert text not in html
         assert text.replace("<", "&lt;").replace(">", "&gt;") in html

@@ -19,7 +19,7 @@ from hrsafety import reproduce
 from hrsafety.errors import InvalidParameterError, MissingExtraError
 from hrsafety.navigation import metrics
 from hrsafety.reproduce import cells, figures, page, ranking, reasons, study, tables
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.gain import tables as gain_tables
 
 SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[3].parent / "shared"))
@@ -31,7 +31,7 @@ REPEATED = 1e-12
 
 
 @pytest.fixture(scope="module")
-def all_cells() -> list[Cell]:
+def all_cells() -> list[PrintedValue]:
     return [*tables.chapter_6(), *tables.chapter_7(), *tables.unpredictable_human(), *gain_tables.appendix_c()]
 
 
@@ -51,7 +51,7 @@ def printed_numbers() -> Iterator[tuple[str, str, str, float]]:
                     yield number, label, column, float(value)
 
 
-def by_place(all_cells: list[Cell]) -> dict[tuple[str, str, str], Cell]:
+def by_place(all_cells: list[PrintedValue]) -> dict[tuple[str, str, str], PrintedValue]:
     return {(cell.table, cell.row, cell.column): cell for cell in all_cells}
 
 
@@ -95,7 +95,7 @@ def test_published_tables_cannot_be_changed_by_a_caller() -> None:
 # ---- cells ------------------------------------------------------------------------------------------
 
 
-def test_every_printed_number_has_exactly_one_cell(all_cells: list[Cell]) -> None:
+def test_every_printed_number_has_exactly_one_cell(all_cells: list[PrintedValue]) -> None:
     expected = Counter(printed_numbers())
     found = Counter(
         (cell.table, cell.row, cell.column, cell.printed)
@@ -105,12 +105,12 @@ def test_every_printed_number_has_exactly_one_cell(all_cells: list[Cell]) -> Non
     assert found == expected
 
 
-def test_every_printed_outcome_has_exactly_one_cell(all_cells: list[Cell]) -> None:
+def test_every_printed_outcome_has_exactly_one_cell(all_cells: list[PrintedValue]) -> None:
     words = [(cell.table, cell.column) for cell in all_cells if isinstance(cell.printed, str) and cell.table in NUMBERS]
     assert sorted(words) == [(f"C.{number}", f"outcome_{k}") for number in (3, 5, 7, 9) for k in (1, 2, 3)]
 
 
-def test_deviations_and_verdicts_follow_from_printed_and_measured(all_cells: list[Cell]) -> None:
+def test_deviations_and_verdicts_follow_from_printed_and_measured(all_cells: list[PrintedValue]) -> None:
     judged = [cell for cell in all_cells if isinstance(cell.measured, float) and cell.within is not None]
     assert len(judged) > 700
     for cell in judged:
@@ -124,24 +124,24 @@ def test_deviations_and_verdicts_follow_from_printed_and_measured(all_cells: lis
             assert cell.within is (abs(expected) < cell.tolerance), cell
 
 
-def test_cells_that_are_off_or_not_measured_say_why(all_cells: list[Cell]) -> None:
+def test_cells_that_are_off_or_not_measured_say_why(all_cells: list[PrintedValue]) -> None:
     silent = [(cell.table, cell.row, cell.column) for cell in all_cells if not cell.within and not cell.reason]
     assert silent == []
 
 
-def test_every_documented_cause_explains_some_cell_that_is_off(all_cells: list[Cell]) -> None:
+def test_every_documented_cause_explains_some_cell_that_is_off(all_cells: list[PrintedValue]) -> None:
     off = [cell for cell in all_cells if cell.within is False]
     for cause in reasons.CAUSES:
         assert any(cell.reason.startswith(cause.text) for cell in off), cause
 
 
-def test_cells_that_agree_carry_no_excuse(all_cells: list[Cell]) -> None:
+def test_cells_that_agree_carry_no_excuse(all_cells: list[PrintedValue]) -> None:
     for cell in all_cells:
         if cell.within and cell.reason:
             assert cell.reason == reasons.note_of(cell.table, cell.row, cell.column)
 
 
-def test_tables_of_a_single_disc_agree_where_the_specification_says_so(all_cells: list[Cell]) -> None:
+def test_tables_of_a_single_disc_agree_where_the_specification_says_so(all_cells: list[PrintedValue]) -> None:
     places = by_place(all_cells)
     for table, row in (("6.2", "new_vff"), ("6.4", "new_vff"), ("7.1", "holonomic"), ("7.2", "holonomic")):
         assert places[table, row, "T_arrive"].within, (table, row)
@@ -150,7 +150,9 @@ def test_tables_of_a_single_disc_agree_where_the_specification_says_so(all_cells
     assert not places["6.2", "new_vff", "d_circle_min"].within
 
 
-def test_exchanged_columns_of_configuration_3_are_compared_with_the_right_obstacle(all_cells: list[Cell]) -> None:
+def test_exchanged_columns_of_configuration_3_are_compared_with_the_right_obstacle(
+    all_cells: list[PrintedValue],
+) -> None:
     places = by_place(all_cells)
     for table in ("C.2", "C.4", "C.6", "C.8"):
         rectangle = places["6.4", "new_vff_optimised", "d_rectangle_min"].measured
@@ -160,7 +162,7 @@ def test_exchanged_columns_of_configuration_3_are_compared_with_the_right_obstac
         assert reasons.EXCHANGED_COLUMNS in places[table, "0 %", "d_circle_min_3"].reason
 
 
-def test_sensitivities_follow_from_the_measured_mean_scores(all_cells: list[Cell]) -> None:
+def test_sensitivities_follow_from_the_measured_mean_scores(all_cells: list[PrintedValue]) -> None:
     places = by_place(all_cells)
     checked = 0
     for (table, row, column), cell in places.items():
@@ -175,7 +177,7 @@ def test_sensitivities_follow_from_the_measured_mean_scores(all_cells: list[Cell
     assert checked == 44
 
 
-def test_mean_score_is_the_mean_of_three_configurations(all_cells: list[Cell]) -> None:
+def test_mean_score_is_the_mean_of_three_configurations(all_cells: list[PrintedValue]) -> None:
     places = by_place(all_cells)
     for table in ("C.3", "C.5", "C.7", "C.9"):
         scores = [places[table, "+50 %", f"H_{k}"].measured for k in (1, 2, 3)]
@@ -184,14 +186,14 @@ def test_mean_score_is_the_mean_of_three_configurations(all_cells: list[Cell]) -
 
 @pytest.mark.parametrize(("measured", "within"), [(1.05, True), (0.95, True), (1.0501, False), (0.9499, False)])
 def test_verdict_turns_at_the_tolerance(measured: float, within: bool) -> None:
-    cell = Cell.compared(
+    cell = PrintedValue.compared(
         table="t", row="r", column="T_arrive", printed=1.0, measured=measured, tolerance=cells.ARRIVAL_TIME, unit="s"
     )
     assert cell.within is within
 
 
 def test_run_without_arrival_is_never_within() -> None:
-    cell = Cell.compared(
+    cell = PrintedValue.compared(
         table="t", row="r", column="T", printed=1.0, measured=math.nan, tolerance=cells.ARRIVAL_TIME, unit="s"
     )
     assert cell.within is False
@@ -382,14 +384,14 @@ def test_mode_that_harms_in_one_experiment_is_out_even_if_it_is_best_over_all() 
 
 
 @pytest.fixture(scope="module")
-def small_study() -> study.Study:
+def small_study() -> study.LawComparisons:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(study, "NOISE_SEEDS", 3)
         patch.setattr(study, "CROWD_SEEDS", 4)
         return study.compare()
 
 
-def test_study_has_every_experiment_side_gain_set_and_mode_once(small_study: study.Study) -> None:
+def test_study_has_every_experiment_side_gain_set_and_mode_once(small_study: study.LawComparisons) -> None:
     keys = Counter(entry.key for entry in small_study.aggregates)
     assert set(keys.values()) == {1}
     assert set(keys) == set(small_study.runs)
@@ -399,25 +401,27 @@ def test_study_has_every_experiment_side_gain_set_and_mode_once(small_study: stu
     assert small_study.recommended in study.MODES
 
 
-def test_noise_and_crowds_have_the_runs_that_were_asked_for(small_study: study.Study) -> None:
+def test_noise_and_crowds_have_the_runs_that_were_asked_for(small_study: study.LawComparisons) -> None:
     for key, runs in small_study.runs.items():
         expected = 4 if key.experiment.startswith("crowds") else 3 if "noise" in key.experiment else 1
         assert len(runs.outcome) == expected
 
 
-def test_ranking_leaves_out_single_runs_and_the_mild_noise(small_study: study.Study) -> None:
+def test_ranking_leaves_out_single_runs_and_the_mild_noise(small_study: study.LawComparisons) -> None:
     ranked_runs = 6 * 3 + 2 * 4
     assert f"Runs with a contact, of {2 * ranked_runs}:" in small_study.rankings[0].steps[1]
     assert f"Runs with a contact, of {ranked_runs}:" in small_study.rankings[1].steps[1]
 
 
-def test_off_differs_from_itself_in_no_run(small_study: study.Study) -> None:
+def test_off_differs_from_itself_in_no_run(small_study: study.LawComparisons) -> None:
     own = [entry.against_off for entry in small_study.aggregates if entry.key.mode == "off"]
     assert own
     assert set(own) == {metrics.Paired(0, 0, 1.0)}
 
 
-def test_single_runs_of_the_study_are_those_of_the_tables(small_study: study.Study, all_cells: list[Cell]) -> None:
+def test_single_runs_of_the_study_are_those_of_the_tables(
+    small_study: study.LawComparisons, all_cells: list[PrintedValue]
+) -> None:
     places = by_place(all_cells)
     compared = 0
     for entry in small_study.aggregates:
@@ -431,7 +435,7 @@ def test_single_runs_of_the_study_are_those_of_the_tables(small_study: study.Stu
 
 
 def test_study_part_of_the_page_is_well_formed(
-    small_study: study.Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    small_study: study.LawComparisons, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(study, "compare", lambda _: small_study)
     text = reproduce.run(tmp_path, only="stabilizing").read_text(encoding="utf-8")

@@ -11,13 +11,13 @@ from hrsafety.reproduce import tables
 from hrsafety.reproduce.built import figures as built_figures
 from hrsafety.reproduce.built import runs as built_runs
 from hrsafety.reproduce.built import tables as built_tables
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 
 STATIONARY = 0.06  # relative: distances to single stationary obstacles
 
 
 @pytest.fixture(scope="module")
-def chapter_7() -> list[Cell]:
+def chapter_7() -> list[PrintedValue]:
     return tables.chapter_7()
 
 
@@ -29,7 +29,7 @@ def test_two_wheel_rows_arrive_without_a_contact(name: str) -> None:
     assert row.scenario.robot == nav.DifferentialDriveRobot()
 
 
-def test_two_wheel_rows_stand_beside_every_printed_number(chapter_7: list[Cell]) -> None:
+def test_two_wheel_rows_stand_beside_every_printed_number(chapter_7: list[PrintedValue]) -> None:
     rows = [cell for cell in chapter_7 if cell.row == "nonholonomic" and cell.table.startswith("7.")]
     assert len(rows) == 4 + 4 + 5 + 6
     assert all(isinstance(cell.measured, float) and math.isfinite(cell.measured) for cell in rows)

@@ -11,7 +11,7 @@ import pytest
 from api.read_pages import page_of
 from hrsafety import navigation as nav
 from hrsafety import reproduce, scenarios
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.gain import deviations as gain_deviations
 from hrsafety.reproduce.gain import tables as gain_tables
 from hrsafety.reproduce.gain.runs import CHANGES_PERCENT, GAIN_TABLES, gain_runs
@@ -20,7 +20,7 @@ REPEATED = 1e-12  # the same operations in another order
 
 
 @pytest.fixture(scope="module")
-def cells() -> list[Cell]:
+def cells() -> list[PrintedValue]:
     return gain_tables.appendix_c()
 
 
@@ -29,14 +29,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return reproduce.run(tmp_path_factory.mktemp("appendix"), only="tables-c").parent
 
 
-def of(cells: list[Cell], table: str) -> list[Cell]:
+def of(cells: list[PrintedValue], table: str) -> list[PrintedValue]:
     return [cell for cell in cells if cell.table == table]
 
 
 # ---- Table C.1 --------------------------------------------------------------------------------------
 
 
-def test_optimum_is_that_of_the_own_search(cells: list[Cell]) -> None:
+def test_optimum_is_that_of_the_own_search(cells: list[PrintedValue]) -> None:
     search = gain_runs().search
     row = {cell.column: cell for cell in of(cells, "C.1") if cell.row == "new_vff"}
     assert [row[name].measured for name in ("K_1", "K_3", "K_5", "b")] == list(search.best.gains)
@@ -47,7 +47,7 @@ def test_optimum_is_that_of_the_own_search(cells: list[Cell]) -> None:
     assert not search.interrupted
 
 
-def test_gains_of_the_own_search_say_how_flat_the_optimum_is(cells: list[Cell]) -> None:
+def test_gains_of_the_own_search_say_how_flat_the_optimum_is(cells: list[PrintedValue]) -> None:
     runs = gain_runs()
     for cell in of(cells, "C.1"):
         if cell.row == "new_vff" and cell.column != "H_mean":
@@ -61,7 +61,7 @@ def test_gains_of_the_own_search_say_how_flat_the_optimum_is(cells: list[Cell]) 
 
 
 @pytest.mark.parametrize(("law", "where"), [("masoud", ("c1", "c2", "c3")), ("ge_cui", ("c1", "c3", "c4"))])
-def test_compared_laws_keep_the_printed_gains(cells: list[Cell], law: str, where: tuple[str, ...]) -> None:
+def test_compared_laws_keep_the_printed_gains(cells: list[PrintedValue], law: str, where: tuple[str, ...]) -> None:
     row = {cell.column: cell for cell in of(cells, "C.1") if cell.row == law}
     assert len(row) >= 4
     for column, cell in row.items():
@@ -79,7 +79,7 @@ def test_compared_laws_keep_the_printed_gains(cells: list[Cell], law: str, where
 
 
 @pytest.mark.parametrize(("gain", "change"), [(0, -50.0), (1, 20.0), (2, 100.0), (3, -10.0)])
-def test_tables_show_what_single_runs_give(cells: list[Cell], gain: int, change: float) -> None:
+def test_tables_show_what_single_runs_give(cells: list[PrintedValue], gain: int, change: float) -> None:
     gains = list(gain_runs().changed.law.gains)
     gains[gain] *= 1.0 + change / 100.0
     law = nav.VirtualForceField(
@@ -114,7 +114,7 @@ def test_times_without_obstacles_belong_to_the_gains_of_the_row() -> None:
             assert run.nominal_energy == pytest.approx(score.nominal.energy, rel=REPEATED)
 
 
-def test_changes_are_those_of_the_printed_rows(cells: list[Cell]) -> None:
+def test_changes_are_those_of_the_printed_rows(cells: list[PrintedValue]) -> None:
     for distances, scores in GAIN_TABLES.values():
         for table in (distances, scores):
             rows = dict.fromkeys(cell.row for cell in of(cells, table) if cell.row != "-100 %")
@@ -124,7 +124,7 @@ def test_changes_are_those_of_the_printed_rows(cells: list[Cell]) -> None:
 # ---- claims -----------------------------------------------------------------------------------------
 
 
-def test_claims_that_do_not_hold_say_why(cells: list[Cell]) -> None:
+def test_claims_that_do_not_hold_say_why(cells: list[PrintedValue]) -> None:
     claims = [*of(cells, "Section C.2"), *of(cells, "Section C.3")]
     assert len(claims) > 25
     assert {cell.within for cell in claims} == {True, False, None}
@@ -132,7 +132,7 @@ def test_claims_that_do_not_hold_say_why(cells: list[Cell]) -> None:
     assert [cell for cell in claims if cell.within and cell.reason] == []
 
 
-def test_deviations_are_over_all_rows(cells: list[Cell]) -> None:
+def test_deviations_are_over_all_rows(cells: list[PrintedValue]) -> None:
     found = {(row.configuration, row.quantity): row for row in gain_deviations.deviations(cells)}
     assert len(found) == 9
     assert {key: row.values for key, row in found.items() if key != ("c3", "d")} == dict.fromkeys(
@@ -148,7 +148,7 @@ def test_deviations_are_over_all_rows(cells: list[Cell]) -> None:
 # ---- the page ---------------------------------------------------------------------------------------
 
 
-def test_page_has_tables_claims_deviations_and_pictures(folder: Path, cells: list[Cell]) -> None:
+def test_page_has_tables_claims_deviations_and_pictures(folder: Path, cells: list[PrintedValue]) -> None:
     page = page_of(folder / "summary.html")
     names = {"gains-flatness", "gains-history", "gains-sensitivity"}
     assert names | {"tables-c", "table-C.1", "table-Section-C.2", "table-Section-C.3"} <= set(page.ids)
@@ -163,6 +163,6 @@ def test_page_has_tables_claims_deviations_and_pictures(folder: Path, cells: lis
     assert "All rows of Tables C.2 to C.9" in text
 
 
-def test_values_of_the_page_are_those_of_the_cells(folder: Path, cells: list[Cell]) -> None:
+def test_values_of_the_page_are_those_of_the_cells(folder: Path, cells: list[PrintedValue]) -> None:
     values = json.loads((folder / "tables.json").read_text(encoding="utf-8"))
     assert [value["measured"] for value in values] == [cell.measured for cell in cells]

@@ -13,7 +13,7 @@ import pytest
 from api.read_pages import page_of
 from hrsafety import reproduce
 from hrsafety.reproduce import views
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.impact import appendix as impact_appendix
 from hrsafety.reproduce.impact import cases as impact_cases
 from hrsafety.reproduce.impact import experiments as impact_experiments
@@ -30,7 +30,7 @@ HUNDREDTH = 0.005
 
 
 @pytest.fixture(scope="module")
-def cells() -> list[Cell]:
+def cells() -> list[PrintedValue]:
     return impact_part.cells()
 
 
@@ -39,11 +39,11 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return reproduce.run(tmp_path_factory.mktemp("impact"), only="impact")
 
 
-def places(cells: list[Cell]) -> dict[tuple[str, str, str], Cell]:
+def places(cells: list[PrintedValue]) -> dict[tuple[str, str, str], PrintedValue]:
     return {(cell.table, cell.row, cell.column): cell for cell in cells}
 
 
-def found(cells: list[Cell], table: str, row: str, column: str) -> float:
+def found(cells: list[PrintedValue], table: str, row: str, column: str) -> float:
     """Return the measured number of the one cell whose row and column begin so."""
     (cell,) = (
         cell for cell in cells if cell.table == table and cell.row.startswith(row) and cell.column.startswith(column)
@@ -68,12 +68,12 @@ def test_figures_of_a_section_have_names_values_and_units(section: str) -> None:
 # ---- cells ------------------------------------------------------------------------------------------
 
 
-def test_every_cell_has_its_own_place(cells: list[Cell]) -> None:
+def test_every_cell_has_its_own_place(cells: list[PrintedValue]) -> None:
     twice = [place for place, count in Counter((c.table, c.row, c.column) for c in cells).items() if count > 1]
     assert not twice
 
 
-def test_every_printed_figure_of_the_text_has_a_cell(cells: list[Cell]) -> None:
+def test_every_printed_figure_of_the_text_has_a_cell(cells: list[PrintedValue]) -> None:
     for section in SECTIONS:
         tables = {f"Section {section}", "A.1"} if section == "A.2" else {f"Section {section}"}
         own = [cell.printed for cell in cells if cell.table in tables]
@@ -83,18 +83,18 @@ def test_every_printed_figure_of_the_text_has_a_cell(cells: list[Cell]) -> None:
             assert float(row["value"]) in own, (section, row["figure"])
 
 
-def test_every_experiment_and_simulation_of_both_tables_has_its_cells(cells: list[Cell]) -> None:
+def test_every_experiment_and_simulation_of_both_tables_has_its_cells(cells: list[PrintedValue]) -> None:
     for number, rows in (("4.1", 12), ("4.2", 3)):
         own = [cell for cell in cells if cell.table == number]
         assert len(own) == rows * (9 + 6)
         assert sum("run" in cell.column for cell in own) == rows * 9
 
 
-def test_cells_that_are_off_or_not_judged_say_why(cells: list[Cell]) -> None:
+def test_cells_that_are_off_or_not_judged_say_why(cells: list[PrintedValue]) -> None:
     assert not [(cell.table, cell.row, cell.column) for cell in cells if not cell.within and not cell.reason]
 
 
-def test_verdicts_follow_from_printed_and_measured(cells: list[Cell]) -> None:
+def test_verdicts_follow_from_printed_and_measured(cells: list[PrintedValue]) -> None:
     judged = [cell for cell in cells if cell.tolerance is not None]
     assert len(judged) > 100
     for cell in judged:
@@ -107,13 +107,13 @@ def test_verdicts_follow_from_printed_and_measured(cells: list[Cell]) -> None:
         assert cell.within is (abs(deviation) <= cell.tolerance + 1e-9)
 
 
-def test_both_verdicts_occur_so_that_nothing_was_tuned(cells: list[Cell]) -> None:
+def test_both_verdicts_occur_so_that_nothing_was_tuned(cells: list[PrintedValue]) -> None:
     verdicts = Counter(cell.within for cell in cells)
     assert verdicts[True] > 100
     assert verdicts[False] > 20
 
 
-def test_every_table_of_the_part_has_a_title(cells: list[Cell]) -> None:
+def test_every_table_of_the_part_has_a_title(cells: list[PrintedValue]) -> None:
     assert {cell.table for cell in cells} <= set(TABLE_TITLES)
 
 
@@ -132,7 +132,7 @@ def test_every_table_of_the_part_has_a_title(cells: list[Cell]) -> None:
     ],
 )
 def test_percentages_of_section_3_6_are_those_of_the_right_coefficient(
-    cells: list[Cell], row: str, column: str, percent: float
+    cells: list[PrintedValue], row: str, column: str, percent: float
 ) -> None:
     assert found(cells, "Section 3.6", row, column) == pytest.approx(percent, abs=HUNDREDTH)
 
@@ -147,7 +147,7 @@ def test_percentages_of_section_3_6_are_those_of_the_right_coefficient(
     ],
 )
 def test_percentages_of_section_3_8_need_the_feed_forward(
-    cells: list[Cell], row: str, column: str, percent: float
+    cells: list[PrintedValue], row: str, column: str, percent: float
 ) -> None:
     assert found(cells, "Section 3.8", row, column) == pytest.approx(percent, abs=HUNDREDTH)
 
@@ -174,7 +174,7 @@ def test_stop_after_detection_lowers_what_comes_after_the_peak() -> None:
     assert late["stop, position control alone"] < 0.85 * late["no stop"]
 
 
-def test_printed_coefficient_is_nearer_to_most_percentages_of_section_3_6(cells: list[Cell]) -> None:
+def test_printed_coefficient_is_nearer_to_most_percentages_of_section_3_6(cells: list[PrintedValue]) -> None:
     cases = impact_cases.simulations()
     nearer = 0
     for first, second in ((2, 1), (1, 3), (4, 2)):
@@ -198,7 +198,7 @@ def test_worst_point_of_the_light_arm_is_close_to_its_joint() -> None:
     assert arm[np.argmax(impact_studies.along_arm(1, arm))] == pytest.approx(0.010, abs=0.0005)
 
 
-def test_foams_are_classified_as_the_specification_says(cells: list[Cell]) -> None:
+def test_foams_are_classified_as_the_specification_says(cells: list[PrintedValue]) -> None:
     words = {(cell.row, cell.column.split()[0]): str(cell.measured) for cell in cells if cell.table == "Section 3.9"}
     assert words["Foam 1 on Manipulator 1", "lower"].startswith("above")
     assert words["Foam 1 on Manipulator 2", "upper"].startswith("below")
@@ -235,26 +235,26 @@ def test_rows_of_the_tables_have_the_digits_of_the_specification(
     assert values["compression_max"] == pytest.approx(compression, abs=0.000005)
 
 
-def test_errors_of_the_printed_simulations_are_those_of_the_specification(cells: list[Cell]) -> None:
+def test_errors_of_the_printed_simulations_are_those_of_the_specification(cells: list[PrintedValue]) -> None:
     for section, expected in (("4.3", (6.2, 2.3, 25.8, 7.2)), ("4.4", (9.8, 6.9, 11.9, 8.3))):
         own = [cell.measured for cell in cells if cell.table == f"Section {section}" and "error" in cell.column]
         assert own == [pytest.approx(value, abs=0.05) for value in expected]
 
 
-def test_puma_claims_are_ratios_of_simulations_not_of_experiments(cells: list[Cell]) -> None:
+def test_puma_claims_are_ratios_of_simulations_not_of_experiments(cells: list[PrintedValue]) -> None:
     own = [cell for cell in cells if cell.row.startswith("Puma 560 against")]
     assert [cell.measured for cell in own] == [pytest.approx(v, abs=0.05) for v in (17.6, 12.5, 20.5, 16.1)]
     for cell, experiment in zip(own, ("+11.0", "+10.8", "+22.4", "+14.2"), strict=True):
         assert f"experiments give {experiment} %" in cell.reason
 
 
-def test_seven_measured_accelerations_exceed_the_prediction(cells: list[Cell]) -> None:
+def test_seven_measured_accelerations_exceed_the_prediction(cells: list[PrintedValue]) -> None:
     cell = places(cells)["Section 4.5", "Both manipulators", "a_h,max of the runs"]
     assert "in 7 of 45 runs" in str(cell.measured)
     assert cell.within is False
 
 
-def test_gains_are_shown_with_the_printed_and_the_right_constants(cells: list[Cell]) -> None:
+def test_gains_are_shown_with_the_printed_and_the_right_constants(cells: list[PrintedValue]) -> None:
     gain = places(cells)["Section A.2", "Gains for 20 kN/m and 250 N s/m", "K_p"]
     assert gain.measured == pytest.approx(433.488, abs=0.0005)
     assert "448.7" in gain.reason
@@ -262,7 +262,7 @@ def test_gains_are_shown_with_the_printed_and_the_right_constants(cells: list[Ce
     assert found(cells, "A.1", "Regression", "K_t") == pytest.approx(0.27121, abs=5e-6)
 
 
-def test_direct_drive_saturates(cells: list[Cell]) -> None:
+def test_direct_drive_saturates(cells: list[PrintedValue]) -> None:
     cell = places(cells)["Section A.2", "5 V at the impact point, v_c 1.25 m/s", "force of the joint"]
     assert str(cell.measured).startswith("17.4 N available, 256.5 N asked for")
     assert set(impact_appendix.drives()) == {"printed", "right"}
@@ -291,7 +291,7 @@ def test_page_shows_every_figure_of_chapters_3_and_4(run: Path) -> None:
         assert f"figure-{figure}-" in names, figure
 
 
-def test_files_beside_the_page_hold_every_cell(run: Path, cells: list[Cell]) -> None:
+def test_files_beside_the_page_hold_every_cell(run: Path, cells: list[PrintedValue]) -> None:
     with (run.parent / "tables.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == len(cells) == len(json.loads((run.parent / "tables.json").read_text(encoding="utf-8")))

@@ -12,7 +12,7 @@ from api.read_pages import page_of
 from hrsafety import navigation as nav
 from hrsafety import reproduce
 from hrsafety.reproduce import tables
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.laws import claims as laws_claims
 from hrsafety.reproduce.laws import compared as laws_compared
 from hrsafety.reproduce.laws import demonstrations as laws_demonstrations
@@ -40,13 +40,13 @@ def study() -> laws_study.LawsStudy:
 
 
 @pytest.fixture(scope="module")
-def places() -> dict[tuple[str, str, str], Cell]:
+def places() -> dict[tuple[str, str, str], PrintedValue]:
     cells = [*tables.chapter_6(), *tables.unpredictable_human()]
     return {(cell.table, cell.row, cell.column): cell for cell in cells}
 
 
 @pytest.fixture(scope="module")
-def claims(study: laws_study.LawsStudy) -> list[Cell]:
+def claims(study: laws_study.LawsStudy) -> list[PrintedValue]:
     return laws_claims.cells(study)
 
 
@@ -54,7 +54,9 @@ def claims(study: laws_study.LawsStudy) -> list[Cell]:
 
 
 @pytest.mark.parametrize("table", MASOUD)
-def test_rows_of_masoud_are_those_of_the_specification(table: str, places: dict[tuple[str, str, str], Cell]) -> None:
+def test_rows_of_masoud_are_those_of_the_specification(
+    table: str, places: dict[tuple[str, str, str], PrintedValue]
+) -> None:
     time, distances = MASOUD[table]
     arrival = places[table, "masoud", "T_arrive"]
     assert arrival.measured == pytest.approx(time, rel=TIME)
@@ -64,7 +66,9 @@ def test_rows_of_masoud_are_those_of_the_specification(table: str, places: dict[
         assert places[table, "masoud", column].measured == pytest.approx(distance, abs=DISTANCE)
 
 
-def test_rows_of_masoud_agree_with_print_but_for_one_named_distance(places: dict[tuple[str, str, str], Cell]) -> None:
+def test_rows_of_masoud_agree_with_print_but_for_one_named_distance(
+    places: dict[tuple[str, str, str], PrintedValue],
+) -> None:
     off = [
         place for place, cell in places.items() if place[0] != "5.1" and place[1] == "masoud" and cell.within is False
     ]
@@ -74,7 +78,7 @@ def test_rows_of_masoud_agree_with_print_but_for_one_named_distance(places: dict
 
 @pytest.mark.parametrize("table", GE_CUI)
 def test_distances_of_ge_and_cui_agree_beside_stationary_obstacles(
-    table: str, places: dict[tuple[str, str, str], Cell]
+    table: str, places: dict[tuple[str, str, str], PrintedValue]
 ) -> None:
     for column, distance in GE_CUI[table].items():
         cell = places[table, "ge_cui", column]
@@ -82,7 +86,9 @@ def test_distances_of_ge_and_cui_agree_beside_stationary_obstacles(
         assert cell.within
 
 
-def test_no_verdict_on_times_energies_and_scores_of_ge_and_cui(places: dict[tuple[str, str, str], Cell]) -> None:
+def test_no_verdict_on_times_energies_and_scores_of_ge_and_cui(
+    places: dict[tuple[str, str, str], PrintedValue],
+) -> None:
     shown = [cell for (table, row, _), cell in places.items() if row == "ge_cui" and table != "6.1"]
     free = [cell for cell in shown if not cell.column.startswith("d_")]
     assert len(free) == 4 * 3
@@ -93,7 +99,7 @@ def test_no_verdict_on_times_energies_and_scores_of_ge_and_cui(places: dict[tupl
     assert all(cell.within is not None for cell in shown if cell.column.startswith("d_"))
 
 
-def test_every_row_of_a_simulated_law_has_a_measured_value(places: dict[tuple[str, str, str], Cell]) -> None:
+def test_every_row_of_a_simulated_law_has_a_measured_value(places: dict[tuple[str, str, str], PrintedValue]) -> None:
     for (table, row, _), cell in places.items():
         if table != "6.1" and not row.endswith("_experiment"):
             assert cell.measured is not None, cell
@@ -226,14 +232,14 @@ def test_crossings_and_way_back_are_counted_on_the_recorded_path(study: laws_stu
 # ---- claims, pictures, page -------------------------------------------------------------------------
 
 
-def test_claims_say_why_they_do_not_hold(claims: list[Cell]) -> None:
+def test_claims_say_why_they_do_not_hold(claims: list[PrintedValue]) -> None:
     assert {cell.table for cell in claims} == set(laws_claims.TABLES)
     assert all(cell.within is not None for cell in claims)
     assert [cell for cell in claims if not cell.within and not cell.reason] == []
     assert 0 < sum(bool(cell.within) for cell in claims) < len(claims)
 
 
-def test_verdicts_on_contacts_follow_from_the_runs(claims: list[Cell], study: laws_study.LawsStudy) -> None:
+def test_verdicts_on_contacts_follow_from_the_runs(claims: list[PrintedValue], study: laws_study.LawsStudy) -> None:
     walked = {cell.row: cell for cell in claims if (cell.table, cell.column) == ("Section 5.7", "printed walk")}
     for label, name in (("VO", "time_and_risk"), ("RRT", "random_tree"), ("Field D*", "field_d_star")):
         assert walked[label].within is bool(np.isfinite(study.printed[name].contact_time[0]))
@@ -251,7 +257,7 @@ def test_pictures_have_names_and_captions(study: laws_study.LawsStudy) -> None:
 
 
 def test_page_shows_every_law_and_claim_and_counts_them(
-    study: laws_study.LawsStudy, claims: list[Cell], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    study: laws_study.LawsStudy, claims: list[PrintedValue], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(laws_study, "compare", lambda _: study)
     text = reproduce.run(tmp_path, only="laws").read_text(encoding="utf-8")

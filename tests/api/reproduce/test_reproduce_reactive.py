@@ -12,7 +12,7 @@ import pytest
 
 from api.read_pages import page_of
 from hrsafety import reproduce
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.reactive import follower_study as reactive_follower_study
 
 SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[3].parent / "shared"))
@@ -29,8 +29,8 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def cells(run: Path) -> list[Cell]:
-    return [Cell(**row) for row in json.loads((run.parent / "tables.json").read_text(encoding="utf-8"))]
+def cells(run: Path) -> list[PrintedValue]:
+    return [PrintedValue(**row) for row in json.loads((run.parent / "tables.json").read_text(encoding="utf-8"))]
 
 
 def test_published_shares_equal_the_specification() -> None:
@@ -41,17 +41,17 @@ def test_published_shares_equal_the_specification() -> None:
     assert reproduce.published_tables()["gussu2017:4"] == original["gussu2017:4"]
 
 
-def test_every_cell_has_its_own_place_and_names_its_paper(cells: list[Cell]) -> None:
+def test_every_cell_has_its_own_place_and_names_its_paper(cells: list[PrintedValue]) -> None:
     twice = [place for place, count in Counter((c.table, c.row, c.column) for c in cells).items() if count > 1]
     assert not twice
     assert {cell.table.split()[0] for cell in cells} <= set(PAPERS)
 
 
-def test_cells_that_are_off_or_not_judged_say_why(cells: list[Cell]) -> None:
+def test_cells_that_are_off_or_not_judged_say_why(cells: list[PrintedValue]) -> None:
     assert not [(cell.table, cell.row, cell.column) for cell in cells if not cell.within and not cell.reason]
 
 
-def test_verdicts_follow_from_printed_and_measured(cells: list[Cell]) -> None:
+def test_verdicts_follow_from_printed_and_measured(cells: list[PrintedValue]) -> None:
     judged = [cell for cell in cells if cell.tolerance is not None]
     assert judged
     for cell in judged:
@@ -63,20 +63,20 @@ def test_verdicts_follow_from_printed_and_measured(cells: list[Cell]) -> None:
         assert cell.within is (abs(deviation) <= cell.tolerance + 1e-9)  # type: ignore[operator]  # not None here
 
 
-def test_tables_of_the_skirt_are_complete(cells: list[Cell]) -> None:
+def test_tables_of_the_skirt_are_complete(cells: list[PrintedValue]) -> None:
     own = Counter(cell.table for cell in cells if cell.table.startswith("gussu2017"))
     expected = {"sensors": 7, "Table 1": 10, "Table 2": 7, "Table 3": 16, "Table 4": 12}
     assert own == {f"gussu2017 {name}": count for name, count in expected.items()}
 
 
-def test_known_misprints_of_the_skirt_are_off_and_nothing_else(cells: list[Cell]) -> None:
+def test_known_misprints_of_the_skirt_are_off_and_nothing_else(cells: list[PrintedValue]) -> None:
     off = {(cell.table.removeprefix("gussu2017 "), cell.row) for cell in cells if cell.within is False}
     own = {place for place in off if place[0] in {"Table 1", "Table 2", "Table 3"}}
     tables = {"Table 1": ["State 6"], "Table 2": ["Algorithm 1"], "Table 3": ["V_S", "V_W", "V_E", "V_NW"]}
     assert own == {(table, row) for table, rows in tables.items() for row in rows}
 
 
-def test_page_is_whole_and_shows_every_table_and_picture(run: Path, cells: list[Cell]) -> None:
+def test_page_is_whole_and_shows_every_table_and_picture(run: Path, cells: list[PrintedValue]) -> None:
     text = run.read_text(encoding="utf-8")
     page_of(text)
     for table in {cell.table for cell in cells}:

@@ -17,7 +17,7 @@ pytest.importorskip("scipy")
 from hrsafety import reproduce
 from hrsafety.reproduce import page, tables
 from hrsafety.reproduce.built import wheels_tables
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.gain import tables as gain_tables
 from hrsafety.reproduce.impact import inputs as impact_inputs
 from hrsafety.reproduce.impact import part as impact_part
@@ -74,7 +74,7 @@ def numbers(value: object) -> Iterator[float]:
 def shown() -> dict[str, set[float]]:
     """Numbers that the page shows, by its tables."""
     impacts = impact_part.cells()
-    cells: list[Cell] = [
+    cells: list[PrintedValue] = [
         *tables.chapter_6(),
         *tables.chapter_7(),
         *tables.unpredictable_human(),
@@ -85,7 +85,9 @@ def shown() -> dict[str, set[float]]:
         *reactive_skirt_tables.cells_of_tests(reactive_skirt_study.run_study(layouts=20)),
     ]
     html = by_anchor(
-        page.html(page.Report(command="", made={"impact": Made(cells=impacts), "wheels": Made(cells=cells)}))
+        page.html(
+            page.ReproductionReport(command="", made={"impact": Made(cells=impacts), "wheels": Made(cells=cells)})
+        )
     )
     anchors = {table: f"table-{table.replace(' ', '-')}" for table in by_table([*impacts, *cells])}
     words = {table: unescape(re.sub(r"<[^>]*>", " ", html[anchor])) for table, anchor in anchors.items()}

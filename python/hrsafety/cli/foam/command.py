@@ -15,7 +15,7 @@ from hrsafety.cli import output, terminal
 from hrsafety.cli.foam import report as foam_report
 from hrsafety.cli.foam.curves import Remembered
 from hrsafety.cli.foam.file import Array, FoamDesignFile, load
-from hrsafety.cli.foam.found import LOADS, Check, FoundFoams, Judged, Range
+from hrsafety.cli.foam.found import LOADS, Check, CheckedFoam, FoundFoams, StiffnessRange
 from hrsafety.plausibility import ResultWarning
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ def _warnings(file: FoamDesignFile, design: impact.FoamDesign) -> tuple[ResultWa
     return (*design.warnings, *file.limits.warnings, *file.sought.warnings, *of_foams)
 
 
-def _widest(damping: Array, least: Array, largest: Array) -> Range | None:
+def _widest(damping: Array, least: Array, largest: Array) -> StiffnessRange | None:
     """Return the widest range of stiffness, if there is one at any damping."""
     width = largest - least
     if np.isnan(width).all():
@@ -105,10 +105,10 @@ def _widest(damping: Array, least: Array, largest: Array) -> Range | None:
     if np.isinf(width[index]):
         # Nothing limits the stiffness: the range that begins first is the widest.
         index = int(np.nanargmin(np.where(np.isinf(width), least, np.nan)))
-    return Range(float(damping[index]), float(least[index]), float(largest[index]))
+    return StiffnessRange(float(damping[index]), float(least[index]), float(largest[index]))
 
 
-def _judged(design: impact.FoamDesign, name: str, foam: impact.Foam) -> Judged:
+def _judged(design: impact.FoamDesign, name: str, foam: impact.Foam) -> CheckedFoam:
     left = design.margin(foam)
     checks, speeds = [], []
     for key, limit in design.limits.given().items():
@@ -119,7 +119,7 @@ def _judged(design: impact.FoamDesign, name: str, foam: impact.Foam) -> Judged:
         )
         # Loads are proportional to this power of the closing speed.
         speeds.append(design.closing_speed * (1.0 - margin) ** (-1.0 / power) if margin < 1.0 else math.inf)
-    return Judged(
+    return CheckedFoam(
         name=name,
         foam=foam,
         accepted=design.accepts(foam),

@@ -9,7 +9,7 @@ from hrsafety._records import dataclass
 from hrsafety.cli.foam.file import FoamDesignFile
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["KILO", "LOADS", "Check", "FoundFoams", "Judged", "Range"]
+__all__ = ["KILO", "LOADS", "Check", "CheckedFoam", "FoundFoams", "StiffnessRange"]
 
 
 KILO = 1000.0
@@ -49,7 +49,7 @@ class Check:
         return self.margin >= 0.0
 
 
-class Range(NamedTuple):
+class StiffnessRange(NamedTuple):
     """Range of stiffness at one damping.
 
     Attributes
@@ -66,7 +66,7 @@ class Range(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Judged:
+class CheckedFoam:
     """A foam with its checks.
 
     Attributes
@@ -126,7 +126,7 @@ class FoundFoams:
     file: FoamDesignFile
     upper: impact.FoamBoundary | None
     lower: impact.FoamBoundary | None
-    foams: tuple[Judged, ...]
-    widest: Range | None
+    foams: tuple[CheckedFoam, ...]
+    widest: StiffnessRange | None
     feasibility: impact.FoamFeasibility
     warnings: tuple[ResultWarning, ...] = ()

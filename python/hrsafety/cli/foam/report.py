@@ -13,7 +13,7 @@ from hrsafety.pages.report import Report, ReportCell, ReportTable, Section
 
 if TYPE_CHECKING:
     from hrsafety import impact
-    from hrsafety.cli.foam.found import FoundFoams, Range
+    from hrsafety.cli.foam.found import FoundFoams, StiffnessRange
 
 __all__ = ["CAPTION", "report_of"]
 
@@ -41,7 +41,7 @@ def limits_words(limits: impact.FoamLimits) -> str:
     return ", ".join(f"{words} {scale * value:g} {unit}".rstrip() for value, words, unit, scale, _ in parts)
 
 
-def range_words(found: Range) -> str:
+def range_words(found: StiffnessRange) -> str:
     """Return a range of stiffness in words; it may have no upper end."""
     if np.isinf(found.high):
         return f"{found.low / KILO:.2f} kN/m and more"

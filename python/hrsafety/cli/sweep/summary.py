@@ -10,11 +10,11 @@ import numpy as np
 from hrsafety._records import dataclass
 from hrsafety.sweep import Column, SweepResult
 
-__all__ = ["Numbers", "Summary", "Words", "summarized"]
+__all__ = ["ColumnSummary", "Summary", "Words", "summarized"]
 
 
 @dataclass(slots=True, kw_only=True)
-class Numbers:
+class ColumnSummary:
     """Range and mean of a column of numbers.
 
     Attributes
@@ -92,7 +92,7 @@ class Summary:
     """
 
     result: SweepResult
-    numbers: tuple[Numbers, ...]
+    numbers: tuple[ColumnSummary, ...]
     words: tuple[Words, ...]
 
 
@@ -109,7 +109,7 @@ def summarized(result: SweepResult) -> Summary:
     Summary
         Of the chunks that are there.
     """
-    numbers = [Numbers(column=column) for column in result.found if column.kind in {"number", "integer"}]
+    numbers = [ColumnSummary(column=column) for column in result.found if column.kind in {"number", "integer"}]
     words = [Words(column=column) for column in result.found if column.kind in {"flag", "word"}]
     kinds = {each.column.name: each.column.words or ("no", "yes") for each in words}
     counts = {name: np.zeros(len(known), dtype=np.int64) for name, known in kinds.items()}
@@ -125,7 +125,7 @@ def summarized(result: SweepResult) -> Summary:
     return Summary(result=result, numbers=tuple(numbers), words=tuple(words))
 
 
-def _count(each: Numbers, stored: dict[str, np.ndarray], leading: tuple[Column, ...]) -> None:
+def _count(each: ColumnSummary, stored: dict[str, np.ndarray], leading: tuple[Column, ...]) -> None:
     """Take a chunk into account."""
     values = stored[each.column.name].astype(np.float64)
     finite = np.isfinite(values)

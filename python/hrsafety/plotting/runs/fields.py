@@ -39,7 +39,7 @@ DECADES = 3.0  # most decades of a color scale
 GRID_TOLERANCE = 1e-9  # m, below which coordinates of a grid are equal
 
 
-class Grid(NamedTuple):
+class PointGrid(NamedTuple):
     """Axes of a rectangular grid, and the place of each point in it."""
 
     x: Array
@@ -54,7 +54,7 @@ class Grid(NamedTuple):
         return arranged
 
 
-def checked_grid(field: ForceField) -> Grid:
+def checked_grid(field: ForceField) -> PointGrid:
     """Return the rectangular grid that the points of a field form."""
     position = checked_field(field).position
     rounded = np.round(position / GRID_TOLERANCE) * GRID_TOLERANCE
@@ -64,7 +64,7 @@ def checked_grid(field: ForceField) -> Grid:
     if not complete or min(len(x), len(y)) < 2:
         shown = f"{len(position)} points with {len(x)} different x and {len(y)} different y"
         raise InvalidParameterError("field.position", "form a complete grid of at least 2 x 2 points", shown)
-    return Grid(x, y, row, column)
+    return PointGrid(x, y, row, column)
 
 
 def checked_field(field: object) -> ForceField:
@@ -197,7 +197,7 @@ def _checked_places(scenario: Scenario, obstacle_position: npt.ArrayLike | None)
     return places
 
 
-def _limits(grid: Grid, margin: float) -> style.Limits:
+def _limits(grid: PointGrid, margin: float) -> style.Limits:
     """Return the extent of a grid with a margin, in m."""
     x = (float(grid.x[0]) - margin, float(grid.x[-1]) + margin)
     return x, (float(grid.y[0]) - margin, float(grid.y[-1]) + margin)
@@ -316,7 +316,7 @@ def potential_valley(
     return figure
 
 
-def _draw_contours(axes: Axes, grid: Grid, values: Array, levels: Array) -> None:
+def _draw_contours(axes: Axes, grid: PointGrid, values: Array, levels: Array) -> None:
     """Draw filled contours."""
     from matplotlib.colors import LogNorm
 
@@ -332,7 +332,7 @@ def _draw_contours(axes: Axes, grid: Grid, values: Array, levels: Array) -> None
     axes.grid(visible=False)
 
 
-def _draw_surface(axes: Axes3D, grid: Grid, values: Array, levels: Array) -> None:
+def _draw_surface(axes: Axes3D, grid: PointGrid, values: Array, levels: Array) -> None:
     """Draw a surface whose height is linear near zero and logarithmic beyond, with ticks of the values.
 
     A height that is logarithmic throughout would fall from the border of an active region without end, and show

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from hrsafety import navigation as nav
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.published import printed_figure
 from hrsafety.reproduce.sheets import Sheet
 
@@ -27,7 +27,7 @@ def study(noise: float) -> nav.sensing.CalibrationStudy:
     return nav.sensing.calibration_study(pixel_deviation_px=noise, seeds=SEEDS)
 
 
-def cells() -> list[Cell]:
+def cells() -> list[PrintedValue]:
     """Return the cells of section D.4."""
     return [*_camera(), *_errors()]
 
@@ -36,7 +36,7 @@ def _figure(name: str) -> float:
     return printed_figure("D.4", name)
 
 
-def _camera() -> Iterator[Cell]:
+def _camera() -> Iterator[PrintedValue]:
     points = nav.sensing.calibration_points()
     found = nav.sensing.calibrate_camera(points, nav.sensing.Camera().project(points)).camera
     t_x, t_y, t_z = found.translation
@@ -59,7 +59,7 @@ def _camera() -> Iterator[Cell]:
     yield SHEET.claim("rotation", holds=off < 1e-6 and moved < 1e-6, off=off, moved=moved)
 
 
-def _errors() -> Iterator[Cell]:
+def _errors() -> Iterator[PrintedValue]:
     for noise in NOISES:
         own = study(noise)
         words = {"seeds": SEEDS, "noise": noise, "mean": own.point_error.max(axis=1).mean() / MILLI}

@@ -13,9 +13,9 @@ from hrsafety import scenarios
 from hrsafety._records import dataclass
 from hrsafety.navigation.metrics import Share
 from hrsafety.navigation.tables.runs import RunTable
-from hrsafety.reproduce.measured import LAWS, Measured, kind_of, score_of_parts
+from hrsafety.reproduce.measured import LAWS, MeasuredRun, kind_of, score_of_parts
 
-__all__ = ["EXPERIMENTS", "SEEDS", "Experiment", "as_built", "experiment", "repeated", "scene", "score", "two_wheels"]
+__all__ = ["EXPERIMENTS", "SEEDS", "NoisyRuns", "as_built", "experiment", "repeated", "scene", "score", "two_wheels"]
 
 SEEDS = 200
 """Noisy runs of each experiment."""
@@ -43,12 +43,12 @@ def score(name: str) -> nav.Performance:
     return nav.evaluate(scene(name), LAW)
 
 
-def two_wheels(name: str) -> Measured:
+def two_wheels(name: str) -> MeasuredRun:
     """Return the numbers of `score` under the names of the tables."""
     result = score(name)
     run, free = result.trajectory, result.nominal
     distances = _by_kind(run.scenario, run.min_distance)
-    return Measured(
+    return MeasuredRun(
         values={"T_arrive": run.arrival_time, "L_energy": run.energy, "H": result.total} | distances,
         arrived=math.isfinite(run.arrival_time),
         contact=run.outcome == "collided",
@@ -77,7 +77,7 @@ def repeated(name: str, seeds: int = SEEDS) -> RunTable:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Experiment:
+class NoisyRuns:
     """Noisy runs in the place of one experiment.
 
     Attributes
@@ -95,7 +95,7 @@ class Experiment:
 
 
 @functools.cache
-def experiment(table: str) -> Experiment:
+def experiment(table: str) -> NoisyRuns:
     """Return the noisy runs in the place of the experiment of a table."""
     runs = repeated(EXPERIMENTS[table])
     (scenario,) = runs.scenarios
@@ -103,7 +103,7 @@ def experiment(table: str) -> Experiment:
     arrived = runs.outcome == "arrived"
     time, energy = float(np.median(runs.arrival_time[arrived])), float(np.median(runs.energy[arrived]))
     distances = _by_kind(scenario, np.median(runs.min_distance[arrived], axis=0))
-    parts = Measured(
+    parts = MeasuredRun(
         values={},
         arrived=True,
         contact=False,
@@ -112,7 +112,7 @@ def experiment(table: str) -> Experiment:
         scenario=scenario,
     )
     total = score_of_parts(parts, time=time, energy=energy, distances=distances)
-    return Experiment(
+    return NoisyRuns(
         values={"T_arrive": time, "L_energy": energy, "H": total} | distances,
         success=runs.success,
         contact=runs.contact,

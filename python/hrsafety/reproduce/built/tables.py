@@ -8,7 +8,7 @@ import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety.reproduce.built.runs import SEEDS, experiment, score
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.sheets import Sheet
 
 __all__ = ["experiment_cell", "multiple_obstacles"]
@@ -18,7 +18,7 @@ SHEET = Sheet("built")
 _ENCOUNTERS = {"person": (0, 0.9, 5.7), "disc": (1, 3.0, 5.3), "robot": (2, 3.1, 9.0)}
 
 
-def experiment_cell(table: str, row: str, column: str, *, printed: float, unit: str) -> Cell:
+def experiment_cell(table: str, row: str, column: str, *, printed: float, unit: str) -> PrintedValue:
     """Return a cell of an experiment beside the noisy runs, without verdict."""
     found = experiment(table)
     words = {"number": table, "row": row, "column": column, "unit": unit}
@@ -27,7 +27,7 @@ def experiment_cell(table: str, row: str, column: str, *, printed: float, unit: 
     return SHEET.listed("experiment", found.values[column], printed=printed, more=more, **counts, **words)
 
 
-def multiple_obstacles() -> Iterator[Cell]:
+def multiple_obstacles() -> Iterator[PrintedValue]:
     """Yield what section 7.5.5 says about a person, a disc and a robot at once."""
     run = score("multiple_obstacles").trajectory
     least = ", ".join(f"{word} {run.min_distance[index]:.2f} m" for word, (index, _, _) in _ENCOUNTERS.items())

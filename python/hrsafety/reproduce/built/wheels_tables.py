@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 
 from hrsafety import navigation as nav
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.published import Row, printed_rows
 from hrsafety.reproduce.sheets import Sheet
 
@@ -33,9 +33,9 @@ FACTORS = {"J_over_K": "V s^2", "B_over_K": "V s", "tau_over_K": "V"}
 MILLI = 1000.0
 
 
-def cells() -> list[Cell]:
+def cells() -> list[PrintedValue]:
     """Return the cells of both appendices."""
-    made: list[Cell] = []
+    made: list[PrintedValue] = []
     for letter in ROBOTS:
         made += [*_recovered(letter), *_means(letter), *_feed_forward(letter), *_loops(letter)]
     return [*made, *_stuck(), *_observer(), *_period()]
@@ -49,7 +49,7 @@ def in_direction(wheel: nav.robots.WheelDrive, row: Row) -> nav.robots.WheelDriv
     )
 
 
-def _recovered(letter: str) -> Iterator[Cell]:
+def _recovered(letter: str) -> Iterator[PrintedValue]:
     """Yield what open-loop tests with the printed parameters of each direction give back."""
     for row in printed_rows(f"{letter}.1"):
         wheel = in_direction(ROBOTS[letter][row["wheel"] - 1], row)
@@ -75,14 +75,14 @@ def _mean_model(letter: str) -> list[dict[str, float]]:
     return [{name: float(np.mean([row[name] for row in pair])) for name in MODEL} for pair in pairs]
 
 
-def _means(letter: str) -> Iterator[Cell]:
+def _means(letter: str) -> Iterator[PrintedValue]:
     for row, mean in zip(printed_rows(f"{letter}.2.6"), _mean_model(letter), strict=True):
         for name, unit in MODEL.items():
             words = {"letter": letter, "wheel": row["wheel"], "name": SYMBOLS[name], "unit": unit, "limit": name}
             yield SHEET.number("mean", mean[name], printed=row[name], **words)
 
 
-def _feed_forward(letter: str) -> Iterator[Cell]:
+def _feed_forward(letter: str) -> Iterator[PrintedValue]:
     for row, mean in zip(printed_rows(f"{letter}.2"), _mean_model(letter), strict=True):
         gain = mean["K_over_J"]
         found = {"J_over_K": 1.0 / gain, "B_over_K": mean["B_over_J"] / gain, "tau_over_K": mean["tau_over_J"] / gain}
@@ -104,7 +104,7 @@ def sine_runs(letter: str, feedback: nav.robots.wheels.Feedback, quantized: bool
     return tuple(nav.robots.follow_wheel(wheel, reference) for wheel in wheels)
 
 
-def _loops(letter: str) -> Iterator[Cell]:
+def _loops(letter: str) -> Iterator[PrintedValue]:
     """Yield what the gains, which are tuned by hand, amount to."""
     runs = sine_runs(letter, "observer", True)
     for row, wheel, run in zip(printed_rows(f"{letter}.2"), ROBOTS[letter], runs, strict=True):
@@ -124,7 +124,7 @@ def _loops(letter: str) -> Iterator[Cell]:
         )
 
 
-def _stuck() -> Iterator[Cell]:
+def _stuck() -> Iterator[PrintedValue]:
     run = nav.robots.open_loop_tests(nav.robots.DIFFERENTIAL_WHEELS[1], [0.25], repeats=1)[0]
     friction = nav.robots.DIFFERENTIAL_WHEELS[1].static_friction
     turned = np.abs(run.angle).max()
@@ -136,7 +136,7 @@ def _jump(runs: Sequence[nav.robots.WheelRun]) -> float:
     return MILLI * max(float(np.sqrt(np.mean(np.diff(run.current) ** 2))) for run in runs)
 
 
-def _observer() -> Iterator[Cell]:
+def _observer() -> Iterator[PrintedValue]:
     for letter in ROBOTS:
         rough, smooth = sine_runs(letter, "differences", True), sine_runs(letter, "observer", True)
         exact = sine_runs(letter, "differences", False)
@@ -149,7 +149,7 @@ def _observer() -> Iterator[Cell]:
         yield SHEET.claim("observer", holds=smoother, letter=letter, words="; ".join(words))
 
 
-def _period() -> Iterator[Cell]:
+def _period() -> Iterator[PrintedValue]:
     for letter, wheels in ROBOTS.items():
         words = []
         for period in (0.001, 0.005, 0.01, 0.02):

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety.reproduce import data
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.gain.runs import CHANGES_PERCENT, GAIN_TABLES, GainRuns
 from hrsafety.reproduce.published import printed_rows
 from hrsafety.reproduce.sheets import Sheet
@@ -29,7 +29,7 @@ _SAME_TIME = 0.1  # s
 # ---- the search -------------------------------------------------------------------------------------
 
 
-def search(runs: GainRuns) -> Iterator[Cell]:
+def search(runs: GainRuns) -> Iterator[PrintedValue]:
     """Yield what section C.2 says about the search beside the own one: grids and local searches."""
     rounds = runs.search.history
     sizes = [entry.evaluations for entry in rounds]
@@ -47,7 +47,7 @@ def search(runs: GainRuns) -> Iterator[Cell]:
 # ---- sensitivities ----------------------------------------------------------------------------------
 
 
-def sensitivities(runs: GainRuns) -> Iterator[Cell]:
+def sensitivities(runs: GainRuns) -> Iterator[PrintedValue]:
     """Yield the largest and average sensitivities of the text of section C.3, two for each gain."""
     found = (100.0 * runs.changed.largest_sensitivity(), 100.0 * runs.changed.average_sensitivity())
     for index, (name, printed) in enumerate(_PRINTED.items()):
@@ -61,7 +61,7 @@ def sensitivities(runs: GainRuns) -> Iterator[Cell]:
 # ---- trends -----------------------------------------------------------------------------------------
 
 
-def trends(runs: GainRuns) -> Iterator[Cell]:
+def trends(runs: GainRuns) -> Iterator[PrintedValue]:
     """Yield what the source says about trends: first what is reproduced, then what is not."""
     yield from _monotone(runs)
     yield _flat(runs)
@@ -91,7 +91,7 @@ _MONOTONE = (
 _UNIT_OF = {"T_arrive": "s", "d_circle_min": "m", "L_energy": "J"}
 
 
-def _monotone(runs: GainRuns) -> Iterator[Cell]:
+def _monotone(runs: GainRuns) -> Iterator[PrintedValue]:
     for trend in _MONOTONE:
         values, unit = column(runs, trend.gain, trend.column, 0), _UNIT_OF[trend.column]
         holds = bool((trend.sign * np.diff(values) > 0.0).all())
@@ -113,7 +113,7 @@ def _span(values: Array, unit: str) -> str:
     return f"{values[0]:.{digits}f} to {values[-1]:.{digits}f} {unit} from -50 to +100 %"
 
 
-def _flat(runs: GainRuns) -> Cell:
+def _flat(runs: GainRuns) -> PrintedValue:
     """Return the flatness of the mean score around the printed optimum."""
     near = np.abs(CHANGES_PERCENT) <= _NEAR
     own = runs.changed.mean_performance[:, near]
@@ -126,7 +126,7 @@ def _at_zero(near: npt.NDArray[np.bool_]) -> int:
     return int(np.flatnonzero(np.array(CHANGES_PERCENT)[near] == 0.0)[0])
 
 
-def _insensitive(runs: GainRuns) -> Iterator[Cell]:
+def _insensitive(runs: GainRuns) -> Iterator[PrintedValue]:
     """Yield that T and d hardly depend on K_3 and b, which is not reproduced."""
     for name in ("K_3", "b"):
         for quantity, key in (("arrival time", "T_arrive"), ("distance", "d_circle_min")):
@@ -138,7 +138,7 @@ def _insensitive(runs: GainRuns) -> Iterator[Cell]:
             yield SHEET.claim("insensitive", holds=spread <= 2.0 * limit, **words)
 
 
-def _later(runs: GainRuns) -> Iterator[Cell]:
+def _later(runs: GainRuns) -> Iterator[PrintedValue]:
     """Yield that the printed optimum arrives later than here."""
     at_optimum = CHANGES_PERCENT.index(0.0)
     for place in range(3):
@@ -148,7 +148,7 @@ def _later(runs: GainRuns) -> Iterator[Cell]:
         yield SHEET.claim("later", holds=holds, place=place + 1, time=printed, own=own, sooner=printed - own)
 
 
-def _energy(runs: GainRuns) -> Iterator[Cell]:
+def _energy(runs: GainRuns) -> Iterator[PrintedValue]:
     """Yield that energy rises with K_1, K_3, K_5 and falls with b."""
     for name in GAIN_TABLES:
         sign = -1 if name == "b" else 1

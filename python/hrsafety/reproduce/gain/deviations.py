@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.gain.runs import GAIN_TABLES
 
 __all__ = ["Deviation", "deviations"]
@@ -37,7 +37,7 @@ class Deviation(NamedTuple):
 _QUANTITIES = (("T", ("T_arrive",)), ("d", ("d_circle_min", "d_human_min", "d_rectangle_min")), ("H", ("H",)))
 
 
-def deviations(cells: Sequence[Cell]) -> Iterator[Deviation]:
+def deviations(cells: Sequence[PrintedValue]) -> Iterator[Deviation]:
     """Yield the deviations of T, d and H in each configuration over all rows of Tables C.2 to C.9."""
     tables = {table for pair in GAIN_TABLES.values() for table in pair}
     own = [cell for cell in cells if cell.table in tables and isinstance(cell.measured, float)]

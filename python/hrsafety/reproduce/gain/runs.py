@@ -13,7 +13,7 @@ import numpy.typing as npt
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety._records import dataclass
-from hrsafety.reproduce.measured import GAIN_SETS, Measured, kind_of
+from hrsafety.reproduce.measured import GAIN_SETS, MeasuredRun, kind_of
 
 __all__ = ["CHANGES_PERCENT", "CONFIGURATIONS", "GAIN_TABLES", "GainRuns", "gain_runs"]
 
@@ -58,17 +58,19 @@ class GainRuns:
     search: nav.GainSearch
     flatness: nav.gains.Flatness
 
-    def measured(self, gain: int, change: int) -> list[Measured]:
+    def measured(self, gain: int, change: int) -> list[MeasuredRun]:
         """Return the runs of one gain set under the names of the tables, one for each configuration."""
         nominal = (float(self.nominal_time[gain, change]), float(self.nominal_energy[gain, change]))
         return _measured(self.changed, gain, change, nominal)
 
-    def at_zero(self, gain: int) -> list[Measured]:
+    def at_zero(self, gain: int) -> list[MeasuredRun]:
         """Return the runs with one gain at zero, one for each configuration, without T* and L*."""
         return _measured(self.zero, gain, 0, (math.nan, math.nan))
 
 
-def _measured(table: nav.gains.GainSensitivity, gain: int, change: int, nominal: tuple[float, float]) -> list[Measured]:
+def _measured(
+    table: nav.gains.GainSensitivity, gain: int, change: int, nominal: tuple[float, float]
+) -> list[MeasuredRun]:
     """Return one row of a sensitivity under the names of the tables."""
     rows = []
     for place, scenario in enumerate(table.scenarios):
@@ -78,7 +80,7 @@ def _measured(table: nav.gains.GainSensitivity, gain: int, change: int, nominal:
         for obstacle, distance in zip(scenario.obstacles, table.min_distance[cell].tolist(), strict=False):
             values[f"d_{kind_of(obstacle)}_min"] = distance
         rows.append(
-            Measured(
+            MeasuredRun(
                 values=values,
                 arrived=math.isfinite(time),
                 contact=str(table.outcome[cell]) == "collided",

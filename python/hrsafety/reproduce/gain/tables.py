@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
-from hrsafety.reproduce.cells import SCORE, Cell, Tolerance, tolerance_of
+from hrsafety.reproduce.cells import SCORE, PrintedValue, Tolerance, tolerance_of
 from hrsafety.reproduce.gain import claims as gain_claims
 from hrsafety.reproduce.gain.runs import CHANGES_PERCENT, GAIN_TABLES, GainRuns, gain_runs
 from hrsafety.reproduce.measured import measure_laws
@@ -21,7 +21,7 @@ _SCORE_ROUNDING = 0.5e-4
 _SENSITIVITY_ROUNDING_PERCENT = 0.5e-2
 
 
-def appendix_c() -> list[Cell]:
+def appendix_c() -> list[PrintedValue]:
     """Return the cells of Tables C.1 to C.9 and the claims of sections C.2 and C.3."""
     runs = gain_runs()
     cells = [*_optimum(runs), *gain_claims.search(runs)]
@@ -49,7 +49,7 @@ def _straight(column: str) -> str:
 # ---- Table C.1 --------------------------------------------------------------------------------------
 
 
-def _optimum(runs: GainRuns) -> Iterator[Cell]:
+def _optimum(runs: GainRuns) -> Iterator[PrintedValue]:
     """Yield the cells of Table C.1: printed optimum beside the own one."""
     found = dict(zip(GAIN_UNITS, runs.search.best.gains, strict=True))
     for row in printed_rows("C.1"):
@@ -60,13 +60,13 @@ def _optimum(runs: GainRuns) -> Iterator[Cell]:
                 yield _of_compared_law(**place)
             elif column == "H_mean":
                 best = float(runs.search.best_value)
-                yield explained(Cell.compared(**place, measured=best, tolerance=SCORE, unit="1"))
+                yield explained(PrintedValue.compared(**place, measured=best, tolerance=SCORE, unit="1"))
             else:
                 reason = _why_another_gain(runs, list(GAIN_UNITS).index(column))
-                yield Cell.beside(**place, measured=found[column], unit=GAIN_UNITS[column], reason=reason)
+                yield PrintedValue.beside(**place, measured=found[column], unit=GAIN_UNITS[column], reason=reason)
 
 
-def _of_compared_law(*, table: str, row: str, column: str, printed: float) -> Cell:
+def _of_compared_law(*, table: str, row: str, column: str, printed: float) -> PrintedValue:
     """Return a cell of a compared law: its printed gains are used, not searched anew."""
     if column != "H_mean":
         return input_cell(table, row, column, printed)
@@ -75,8 +75,10 @@ def _of_compared_law(*, table: str, row: str, column: str, printed: float) -> Ce
     measured = sum(scores) / len(scores)
     unjudged = why_not_judged(row, column)
     if unjudged:
-        return Cell.beside(**place, measured=measured, unit="1", reason=f"{note_of(table, row, column)} {unjudged}")
-    return explained(Cell.compared(**place, measured=measured, tolerance=SCORE, unit="1"))
+        return PrintedValue.beside(
+            **place, measured=measured, unit="1", reason=f"{note_of(table, row, column)} {unjudged}"
+        )
+    return explained(PrintedValue.compared(**place, measured=measured, tolerance=SCORE, unit="1"))
 
 
 # Section 6.2.4; section C.2 names configurations 1, 2 and 4 for both.
@@ -99,13 +101,13 @@ def _why_another_gain(runs: GainRuns, index: int) -> str:
 # ---- Tables C.2 to C.9 ------------------------------------------------------------------------------
 
 
-def _distance_cells(table: str, runs: GainRuns, gain: int) -> Iterator[Cell]:
+def _distance_cells(table: str, runs: GainRuns, gain: int) -> Iterator[PrintedValue]:
     """Yield the cells of a table of T, L and d in three configurations."""
     for change, row in _by_change(printed_rows(table)).items():
         found = runs.measured(gain, CHANGES_PERCENT.index(change))
         for column, printed in numbers(row):
             quantity, configuration = _straight(column).rsplit("_", 1)
-            cell = Cell.compared(
+            cell = PrintedValue.compared(
                 table=table,
                 row=_label(change),
                 column=column,
@@ -117,17 +119,19 @@ def _distance_cells(table: str, runs: GainRuns, gain: int) -> Iterator[Cell]:
             yield explained(cell)
 
 
-def _outcome_cells(table: str, runs: GainRuns, gain: int) -> Iterator[Cell]:
+def _outcome_cells(table: str, runs: GainRuns, gain: int) -> Iterator[PrintedValue]:
     """Yield the cells of the row that a table has in words: the gain at zero."""
     (row,) = (row for row in printed_rows("C.zero") if row["table"] == table)
     for index, run in enumerate(runs.at_zero(gain), start=1):
         printed = row[f"outcome_{index}"]
-        cell = Cell.listed(table=table, row="-100 %", column=f"outcome_{index}", printed=printed, unit="", reason="")
+        cell = PrintedValue.listed(
+            table=table, row="-100 %", column=f"outcome_{index}", printed=printed, unit="", reason=""
+        )
         within = run.outcome == printed or (printed == "no arrival" and not run.arrived)
         yield explained(replace(cell, measured=run.outcome, within=within))
 
 
-def _score_cells(table: str, runs: GainRuns, gain: int, parts: dict[float, Row]) -> Iterator[Cell]:
+def _score_cells(table: str, runs: GainRuns, gain: int, parts: dict[float, Row]) -> Iterator[PrintedValue]:
     """Yield the cells of a table of scores and sensitivities."""
     for change, row in _by_change(printed_rows(table)).items():
         index = CHANGES_PERCENT.index(change)
@@ -138,22 +142,24 @@ def _score_cells(table: str, runs: GainRuns, gain: int, parts: dict[float, Row])
             if column == "sensitivity_percent":
                 yield _sensitivity_cell(place, change, runs, (gain, index))
             elif column == "H_mean":
-                yield explained(Cell.compared(**place, measured=mean, tolerance=SCORE, unit="1"))
+                yield explained(PrintedValue.compared(**place, measured=mean, tolerance=SCORE, unit="1"))
             else:
                 run = found[int(column[-1]) - 1]
                 straight = {_straight(name): value for name, value in parts[change].items()}
-                cell = Cell.compared(**place, measured=run.values["H"], tolerance=SCORE, unit="1")
+                cell = PrintedValue.compared(**place, measured=run.values["H"], tolerance=SCORE, unit="1")
                 yield explained(cell, printed_score(run, straight, column[1:]))
 
 
-def _sensitivity_cell(place: dict[str, Any], change_percent: float, runs: GainRuns, at: tuple[int, int]) -> Cell:
+def _sensitivity_cell(
+    place: dict[str, Any], change_percent: float, runs: GainRuns, at: tuple[int, int]
+) -> PrintedValue:
     """Return the magnitude of (C.3.1) to (C.3.4) beside the printed one."""
     if change_percent == 0.0:
         reason = "0/0 at the optimum; the source prints 0 here and a dash in its other tables."
-        return Cell.listed(**place, unit="%", reason=reason)
+        return PrintedValue.listed(**place, unit="%", reason=reason)
     optimum = float(runs.changed.reference_performance.mean())
     rounding = abs(2.0 * _SCORE_ROUNDING / optimum / (change_percent / 100.0)) * 100.0
-    cell = Cell.compared(
+    cell = PrintedValue.compared(
         **place,
         measured=100.0 * abs(float(runs.changed.relative_sensitivity[at])),
         tolerance=Tolerance(rounding + _SENSITIVITY_ROUNDING_PERCENT, relative=False),

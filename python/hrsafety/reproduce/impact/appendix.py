@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from hrsafety import impact
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.impact import rig as impact_rig
 from hrsafety.reproduce.impact.cases import CLOSING_SPEED, FOAM_OF_FIGURES, KILO, manipulator, published_lever_arm
 from hrsafety.reproduce.published import printed_figure, printed_rows
@@ -21,7 +21,7 @@ __all__ = ["cells", "drives"]
 SHEET = Sheet("appendix_a")
 
 
-def cells() -> list[Cell]:
+def cells() -> list[PrintedValue]:
     """Return the cells of appendix A."""
     return [*_foam(), *impact_rig.arm(), *_table(), *_constants(), *_gains(), *_saturation(), *impact_rig.cylinder()]
 
@@ -30,7 +30,7 @@ def _figure(name: str) -> float:
     return printed_figure("A.2", name)
 
 
-def _foam() -> Iterator[Cell]:
+def _foam() -> Iterator[PrintedValue]:
     head = impact.Head.apparatus().mass
     for key, ratio, kept in ((1, 0.11, 0.112), (2, 0.086, 0.09)):
         damping = 2.0 * math.sqrt(head * (KILO * printed_figure("A.1", f"stiffness_{key}")))
@@ -39,7 +39,7 @@ def _foam() -> Iterator[Cell]:
         yield from _recovered(key, seed=key)
 
 
-def _recovered(foam: int, seed: int) -> Iterator[Cell]:
+def _recovered(foam: int, seed: int) -> Iterator[PrintedValue]:
     """Yield what the fits give back from tests made with the printed values of a foam."""
     mass, friction = printed_figure("A.1", "moving_mass"), printed_figure("A.1", "friction")
     stiffness, ratio = KILO * printed_figure("A.1", f"stiffness_{foam}"), printed_figure("A.1", f"damping_ratio_{foam}")
@@ -63,7 +63,7 @@ def _recovered(foam: int, seed: int) -> Iterator[Cell]:
         yield SHEET.number("fitted", measured, printed=printed, foam=foam, name=name, unit=unit)
 
 
-def _table() -> Iterator[Cell]:
+def _table() -> Iterator[PrintedValue]:
     for row in printed_rows("A.1"):
         yield SHEET.number("mean", float(np.mean(row["A"])), printed=row["A_mean"], voltage=row["u"])
 
@@ -77,7 +77,7 @@ def _fit() -> impact.identification.DirectDriveFit:
     )
 
 
-def _constants() -> Iterator[Cell]:
+def _constants() -> Iterator[PrintedValue]:
     fit = _fit()
     names = ("decay", "command_gain", "friction_offset", "torque_constant", "viscous_friction", "static_friction")
     for name in names:
@@ -114,13 +114,13 @@ def drives() -> dict[str, impact.joints.DirectDrive]:
     return made
 
 
-def _gains() -> Iterator[Cell]:
+def _gains() -> Iterator[PrintedValue]:
     found = drives()
     for name in ("proportional", "derivative"):
         yield SHEET.number(name, getattr(found["printed"], name), right=getattr(found["right"], name))
 
 
-def _saturation() -> Iterator[Cell]:
+def _saturation() -> Iterator[PrintedValue]:
     """Yield how far the real joint is from the linear one that the tables assume."""
     head = impact.Head.apparatus()
     wanted = manipulator(1)

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from hrsafety import impact
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.impact.cases import (
     CLOSING_SPEED,
     FOAM_OF_FIGURES,
@@ -29,7 +29,7 @@ Cases = Mapping[int, tuple[impact.Manipulator, impact.Head]]
 Found = Mapping[int, impact.ImpactMetrics]
 
 
-def cells() -> list[Cell]:
+def cells() -> list[PrintedValue]:
     """Return the cells of sections 3.6 and 3.9, in the order of the text."""
     return [*_section_6(), *_section_9()]
 
@@ -41,7 +41,7 @@ def _ratio_percent(first: float, second: float) -> float:
 # ---- section 3.6 ------------------------------------------------------------------------------------
 
 
-def _section_6() -> Iterator[Cell]:
+def _section_6() -> Iterator[PrintedValue]:
     cases = simulations()
     found = {
         key: impact.metrics(arm, FOAM_OF_FIGURES, head, closing_speed=CLOSING_SPEED)
@@ -56,7 +56,7 @@ def _section_6() -> Iterator[Cell]:
     yield SHEET.claim("direction", holds=False, least=found[3], stiffer=found[1])
 
 
-def _peaks(cases: Cases) -> Iterator[Cell]:
+def _peaks(cases: Cases) -> Iterator[PrintedValue]:
     """Yield the instant of the largest force, and the step at first contact."""
     steps = []
     for key, (arm, head) in cases.items():
@@ -70,7 +70,7 @@ def _peaks(cases: Cases) -> Iterator[Cell]:
     yield SHEET.claim("step", holds=same, step=steps[0], expected=expected)
 
 
-def _compared(cases: Cases, found: Found, first: int, second: int) -> Iterator[Cell]:
+def _compared(cases: Cases, found: Found, first: int, second: int) -> Iterator[PrintedValue]:
     """Yield two percentages of one simulation against another."""
     as_printed = [printed_metrics(*cases[key]) for key in (first, second)]
     for name, quantity, figure in (
@@ -88,7 +88,7 @@ def _compared(cases: Cases, found: Found, first: int, second: int) -> Iterator[C
         )
 
 
-def _parameters(cases: Cases) -> Iterator[Cell]:
+def _parameters(cases: Cases) -> Iterator[PrintedValue]:
     """Yield the ratios of parameters that the text names, and the range of the neck damping."""
     ratios = (
         ("mass_2_1", "M_r, 2 against 1", cases[2][0].mass, cases[1][0].mass),
@@ -106,7 +106,7 @@ def _parameters(cases: Cases) -> Iterator[Cell]:
         yield SHEET.number("neck", damping, figure=figure, ratio=ratio)
 
 
-def _first_peak(cases: Cases, found: Found) -> Cell:
+def _first_peak(cases: Cases, found: Found) -> PrintedValue:
     later = []
     for key, (arm, head) in cases.items():
         run = impact.simulate(arm, FOAM_OF_FIGURES, head, closing_speed=CLOSING_SPEED, duration=0.5, step=1e-4)
@@ -115,7 +115,7 @@ def _first_peak(cases: Cases, found: Found) -> Cell:
     return SHEET.claim("first_peak", holds=max(later) < 1.0, later=100.0 * max(later))
 
 
-def _constrained() -> Cell:
+def _constrained() -> PrintedValue:
     still, free = (
         impact.metrics(manipulator(1), FOAM_OF_FIGURES, head, closing_speed=MANIPULATOR_SPEED).peak_contact_force
         for head in (impact.ConstrainedHead(), impact.Head.minimum())
@@ -129,7 +129,7 @@ def _constrained() -> Cell:
 _VERDICTS = {1: ("below", "above"), 2: ("below", "below"), 3: ("", "")}
 
 
-def _section_9() -> Iterator[Cell]:
+def _section_9() -> Iterator[PrintedValue]:
     for arm in (1, 2):
         for key, said in _VERDICTS.items():
             yield from _classified(arm, key, *said)
@@ -144,7 +144,7 @@ def _section_9() -> Iterator[Cell]:
     yield SHEET.claim("width", holds=narrower, first=widths[1], second=widths[2])
 
 
-def _classified(arm: int, key: int, upper: str, lower: str) -> Iterator[Cell]:
+def _classified(arm: int, key: int, upper: str, lower: str) -> Iterator[PrintedValue]:
     """Yield two cells: below the upper curve, above the lower one."""
     hard = impact.metrics(manipulator(arm), foam(key), impact.Head.minimum(), closing_speed=CLOSING_SPEED)
     deep = impact.metrics(manipulator(arm), foam(key), impact.Head.maximum(), closing_speed=CLOSING_SPEED)

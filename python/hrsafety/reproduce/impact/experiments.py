@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from hrsafety import impact
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.impact.cases import manipulator, published_lever_arm
-from hrsafety.reproduce.impact.tables import Experiment, experiments
+from hrsafety.reproduce.impact.tables import ImpactRow, experiments
 from hrsafety.reproduce.published import printed_figure
 from hrsafety.reproduce.sheets import Sheet
 
@@ -21,16 +21,16 @@ _NAMES = {"a_h_max": "a_h,max", "compression_max": "eps_max"}
 _KEYS = {"a_h_max": "acceleration", "compression_max": "compression"}
 
 
-def cells() -> list[Cell]:
+def cells() -> list[PrintedValue]:
     """Return the cells of sections 4.3 to 4.5."""
     return [*_direct_drive(), *_puma(), *_conclusions()]
 
 
-def _of(table: str) -> list[Experiment]:
+def _of(table: str) -> list[ImpactRow]:
     return [row for row in experiments() if row.table == table]
 
 
-def _errors(rows: Sequence[Experiment], column: str, *, own: bool = False) -> np.ndarray:
+def _errors(rows: Sequence[ImpactRow], column: str, *, own: bool = False) -> np.ndarray:
     """Return |prediction / run - 1| of every single run, in percent."""
     found = [
         abs((row.simulated["A"][column] if own else row.printed[column]) / run - 1.0)
@@ -40,7 +40,7 @@ def _errors(rows: Sequence[Experiment], column: str, *, own: bool = False) -> np
     return 100.0 * np.array(found)
 
 
-def _error_cells(section: str, rows: Sequence[Experiment], name: str) -> Iterator[Cell]:
+def _error_cells(section: str, rows: Sequence[ImpactRow], name: str) -> Iterator[PrintedValue]:
     for column, key in _KEYS.items():
         printed, own = _errors(rows, column), _errors(rows, column, own=True)
         for kind, take in (("max", np.max), ("mean", np.mean)):
@@ -51,7 +51,7 @@ def _error_cells(section: str, rows: Sequence[Experiment], name: str) -> Iterato
 # ---- section 4.3 ------------------------------------------------------------------------------------
 
 
-def _direct_drive() -> Iterator[Cell]:
+def _direct_drive() -> Iterator[PrintedValue]:
     rows = _of("4.1")
     yield from _settings()
     yield from _error_cells("4.3", rows, "Direct drive, all runs")
@@ -61,7 +61,7 @@ def _direct_drive() -> Iterator[Cell]:
     yield _longer(experiments())
 
 
-def _settings() -> Iterator[Cell]:
+def _settings() -> Iterator[PrintedValue]:
     lever_arm, wanted = published_lever_arm(1), manipulator(1)
     yield SHEET.number("effective_mass", printed_figure("A.2", "inertia") / lever_arm**2)
     gains = impact.identification.pd_gains(
@@ -74,21 +74,21 @@ def _settings() -> Iterator[Cell]:
     yield SHEET.number("derivative", gains.derivative)
 
 
-def _mean(rows: Sequence[Experiment], column: str) -> float:
+def _mean(rows: Sequence[ImpactRow], column: str) -> float:
     return float(np.mean([run for row in rows for run in row.measured[column]]))
 
 
-def _chosen(rows: Sequence[Experiment], **wanted: float) -> list[Experiment]:
+def _chosen(rows: Sequence[ImpactRow], **wanted: float) -> list[ImpactRow]:
     return [row for row in rows if all(getattr(row, name) == value for name, value in wanted.items())]
 
 
-def _settings_of(rows: Sequence[Experiment]) -> Iterator[list[Experiment]]:
+def _settings_of(rows: Sequence[ImpactRow]) -> Iterator[list[ImpactRow]]:
     """Yield the rows of each setting of joint and foam, at all speeds."""
     for stiffness, damping, foam in {(row.stiffness, row.damping, row.foam_number) for row in rows}:
         yield _chosen(rows, stiffness=stiffness, damping=damping, foam_number=foam)
 
 
-def _proportional(rows: Sequence[Experiment]) -> Cell:
+def _proportional(rows: Sequence[ImpactRow]) -> PrintedValue:
     ratios = []
     for own in _settings_of(rows):
         slow = [row for row in own if row.closing_speed < 1.0]
@@ -99,7 +99,7 @@ def _proportional(rows: Sequence[Experiment]) -> Cell:
     return SHEET.claim("linear", holds=holds, least=min(ratios), most=max(ratios), speeds=speeds)
 
 
-def _same_closing_speed(rows: Sequence[Experiment]) -> Cell:
+def _same_closing_speed(rows: Sequence[ImpactRow]) -> PrintedValue:
     changes = []
     for own in _settings_of(rows):
         (moving,) = _chosen(own, manipulator_speed=0.4)
@@ -109,7 +109,7 @@ def _same_closing_speed(rows: Sequence[Experiment]) -> Cell:
     return SHEET.claim("same_speed", holds=holds, least=min(changes), most=max(changes))
 
 
-def _influences(rows: Sequence[Experiment]) -> Iterator[Cell]:
+def _influences(rows: Sequence[ImpactRow]) -> Iterator[PrintedValue]:
     """Yield the influence of K_r, C_r and of the foam, by printed simulations, experiments and exactly."""
     base = _chosen(rows, foam_number=1, stiffness=20000.0)
     half = _chosen(rows, foam_number=1, stiffness=10000.0)
@@ -123,7 +123,7 @@ def _influences(rows: Sequence[Experiment]) -> Iterator[Cell]:
     yield _influence("compression_soft_foam", "Foam 2 against Foam 1", soft, base, "compression_max", "percent")
 
 
-def _three(one: Sequence[Experiment], other: Sequence[Experiment], column: str) -> tuple[float, float, float]:
+def _three(one: Sequence[ImpactRow], other: Sequence[ImpactRow], column: str) -> tuple[float, float, float]:
     """Return the change in percent by printed simulations, experiments and exact responses."""
     pairs = list(zip(one, other, strict=True))
     printed = np.mean([first.printed[column] / second.printed[column] for first, second in pairs])
@@ -134,22 +134,22 @@ def _three(one: Sequence[Experiment], other: Sequence[Experiment], column: str) 
 
 
 def _influence(
-    figure: str, name: str, one: Sequence[Experiment], other: Sequence[Experiment], column: str, limit: str
-) -> Cell:
+    figure: str, name: str, one: Sequence[ImpactRow], other: Sequence[ImpactRow], column: str, limit: str
+) -> PrintedValue:
     printed, measured, exact = _three(one, other, column)
     slow, _, _ = _three(one[:1], other[:1], column)
     words = {"figure": figure, "row": name, "name": _NAMES[column], "limit": limit}
     return SHEET.number("influence", printed, measured=measured, exact=exact, slow=slow, **words)
 
 
-def _none(name: str, one: Sequence[Experiment], other: Sequence[Experiment], column: str) -> Cell:
+def _none(name: str, one: Sequence[ImpactRow], other: Sequence[ImpactRow], column: str) -> PrintedValue:
     changes = _three(one, other, column)
     holds = max(map(abs, changes)) <= LITTLE_PERCENT
     numbers = dict(zip(("simulated", "measured", "exact"), changes, strict=True))
     return SHEET.claim("no_influence", holds=holds, row=name, name=_NAMES[column], **numbers)
 
 
-def _longer(rows: Sequence[Experiment]) -> Cell:
+def _longer(rows: Sequence[ImpactRow]) -> PrintedValue:
     runs = [(run, row.simulated["A"]["impact_period"]) for row in rows for run in row.measured["impact_period"]]
     longer = sum(run > own for run, own in runs)
     share = 100.0 * float(np.mean([run / own for run, own in runs]) - 1.0)
@@ -159,7 +159,7 @@ def _longer(rows: Sequence[Experiment]) -> Cell:
 # ---- sections 4.4 and 4.5 ---------------------------------------------------------------------------
 
 
-def _puma() -> Iterator[Cell]:
+def _puma() -> Iterator[PrintedValue]:
     rows = _of("4.2")
     yield from _error_cells("4.4", rows, "Puma 560, all runs")
     yield SHEET.claim("heads", holds=False)
@@ -169,7 +169,7 @@ def _puma() -> Iterator[Cell]:
             yield _against(rows[chosen], base[chosen], column, f"{key}_against_direct_drive_{speed}")
 
 
-def _against(puma: Sequence[Experiment], other: Sequence[Experiment], column: str, figure: str) -> Cell:
+def _against(puma: Sequence[ImpactRow], other: Sequence[ImpactRow], column: str, figure: str) -> PrintedValue:
     printed, _, exact = _three(puma, other, column)
     # Experiments with the same foam and closing speed, both stiffnesses of the direct drive.
     speed = puma[0].closing_speed
@@ -182,7 +182,7 @@ def _against(puma: Sequence[Experiment], other: Sequence[Experiment], column: st
     return SHEET.number("against", printed, speed=speed, measured=measured, exact=exact, **words)
 
 
-def _conclusions() -> Iterator[Cell]:
+def _conclusions() -> Iterator[PrintedValue]:
     rows = list(experiments())
     yield from _error_cells("4.5", rows, "Both manipulators")
     for column, name in _NAMES.items():

@@ -30,7 +30,7 @@ from hrsafety.reproduce.impact.cases import (
 )
 from hrsafety.reproduce.impact.maneuvers import maneuvers, stops
 from hrsafety.reproduce.impact.studies import along_arm, over_foam, over_mass, over_stiffness
-from hrsafety.reproduce.impact.tables import Experiment, experiments
+from hrsafety.reproduce.impact.tables import ImpactRow, experiments
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -245,7 +245,7 @@ def _experiments() -> Iterator[Drawing]:
         )
 
 
-def _with_runs(rows: list[Experiment]) -> Figure:
+def _with_runs(rows: list[ImpactRow]) -> Figure:
     choice, _ = parameter_sets()
     run = impact.simulate(
         rows[0].arm(),

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.impact.cases import KILO, foam, manipulator
 from hrsafety.reproduce.impact.studies import along_arm, over_foam, over_mass, over_stiffness
 from hrsafety.reproduce.sheets import Sheet
@@ -22,12 +22,12 @@ def _percent(first: float, second: float) -> float:
     return 100.0 * (first / second - 1.0)
 
 
-def cells() -> list[Cell]:
+def cells() -> list[PrintedValue]:
     """Return the cells of section 3.7, in the order of the text."""
     return [*_mass_and_stiffness(), *_foam_parameters(), *_impact_point()]
 
 
-def _mass_and_stiffness() -> Iterator[Cell]:
+def _mass_and_stiffness() -> Iterator[PrintedValue]:
     light, middle, heavy, endless = over_mass(foam(1), np.array([5.0, 20.0, 40.0, 400.0]))
     below, above = _percent(light, middle), _percent(endless, heavy)
     yield SHEET.claim("mass", holds=abs(below) > 2.0 * abs(above), below=below, above=above)
@@ -49,7 +49,7 @@ def _mass_and_stiffness() -> Iterator[Cell]:
     yield SHEET.claim("damping", holds=abs(damped / whole - 1.0) < LITTLE, change=_percent(damped, whole))
 
 
-def _foam_parameters() -> Iterator[Cell]:
+def _foam_parameters() -> Iterator[PrintedValue]:
     stiffness = np.geomspace(2e3, 100e3, 60)
     curves = {(arm, ratio): over_foam(manipulator(arm), stiffness, ratio) for arm in (1, 2) for ratio in (0.05, 0.2)}
     softest = max(float(curve[0]) for curve in curves.values())
@@ -66,7 +66,7 @@ def _foam_parameters() -> Iterator[Cell]:
     yield SHEET.claim("hardest", holds=hardest > LIMIT_G, value=hardest)
 
 
-def _impact_point() -> Iterator[Cell]:
+def _impact_point() -> Iterator[PrintedValue]:
     arm = np.concatenate([[1e-4], np.arange(0.0005, 0.4 + 1e-9, 0.0005)])
     found = along_arm(1, arm)
     best = int(np.argmax(found))

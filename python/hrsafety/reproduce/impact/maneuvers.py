@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from hrsafety import impact
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.impact.cases import (
     CLOSING_SPEED,
     FOAM_OF_FIGURES,
@@ -72,7 +72,7 @@ def stops() -> dict[str, impact.ImpactResponse]:
     }
 
 
-def cells() -> list[Cell]:
+def cells() -> list[PrintedValue]:
     """Return the cells of section 3.8."""
     return [*_percentages(), *_stopped()]
 
@@ -81,7 +81,7 @@ def _change(run: impact.ImpactResponse, base: impact.ImpactResponse, quantity: s
     return 100.0 * (float(getattr(run.metrics, quantity)) / float(getattr(base.metrics, quantity)) - 1.0)
 
 
-def _percentages() -> Iterator[Cell]:
+def _percentages() -> Iterator[PrintedValue]:
     fed, alone = maneuvers(feed_forward=True), maneuvers(feed_forward=False)
     for kind, name in _NAMES.items():
         for column, quantity, key in (
@@ -98,7 +98,7 @@ def _percentages() -> Iterator[Cell]:
             )
 
 
-def _stopped() -> Iterator[Cell]:
+def _stopped() -> Iterator[PrintedValue]:
     runs = stops()
     base = runs["no stop"]
     late = {name: float(np.max(run.contact_force[run.time >= 0.04])) for name, run in runs.items()}

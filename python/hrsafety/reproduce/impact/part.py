@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hrsafety.pages import Picture
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.impact import appendix as impact_appendix
 from hrsafety.reproduce.impact import claims as impact_claims
 from hrsafety.reproduce.impact import experiments as impact_experiments
@@ -16,7 +16,7 @@ from hrsafety.reproduce.impact import tables as impact_tables
 __all__ = ["cells", "pictures"]
 
 
-def cells() -> list[Cell]:
+def cells() -> list[PrintedValue]:
     """Return every cell of chapters 3 and 4 and appendix A."""
     chapter_3 = sorted(
         [*impact_claims.cells(), *impact_influences.cells(), *impact_maneuvers.cells()], key=lambda cell: cell.table

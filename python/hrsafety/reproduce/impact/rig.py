@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from hrsafety import impact
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.impact.cases import published_lever_arm
 from hrsafety.reproduce.published import printed_figure, printed_rows
 from hrsafety.reproduce.sheets import Sheet
@@ -19,7 +19,7 @@ def _printed(name: str) -> float:
     return printed_figure("A.2", name)
 
 
-def arm() -> Iterator[Cell]:
+def arm() -> Iterator[PrintedValue]:
     """Yield density, mass and inertia of the arm of the direct-drive manipulator."""
     sheet = Sheet("appendix_a")
     length, width, wall = 0.664, 0.0508, 0.003
@@ -41,7 +41,7 @@ def arm() -> Iterator[Cell]:
     yield sheet.number("arm_mass", _printed("inertia") / published_lever_arm(1) ** 2)
 
 
-def cylinder() -> Iterator[Cell]:
+def cylinder() -> Iterator[PrintedValue]:
     """Yield the constants of the controller of the cylinder."""
     sheet, controller = Sheet("appendix_a"), impact.joints.CylinderController()
     for row in printed_rows("section A.3"):

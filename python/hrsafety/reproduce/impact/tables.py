@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from hrsafety import impact
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.impact.cases import KILO, ParameterSet, foam, manipulator, parameter_sets
 from hrsafety.reproduce.published import printed_rows
 from hrsafety.reproduce.sheets import Sheet
 
-__all__ = ["COLUMNS", "Experiment", "cells", "experiments"]
+__all__ = ["COLUMNS", "ImpactRow", "cells", "experiments"]
 
 COLUMNS = {
     "a_h_max": ("a_h,max", "g"),
@@ -28,7 +28,7 @@ SHEET = Sheet("chapter_4")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Experiment:
+class ImpactRow:
     """One row of Table 4.1 or 4.2 and the exact responses for it.
 
     Attributes
@@ -81,17 +81,17 @@ class Experiment:
 
 
 @cache
-def experiments() -> tuple[Experiment, ...]:
+def experiments() -> tuple[ImpactRow, ...]:
     """Return every row of both tables with its exact responses."""
     return tuple([*_direct_drive(), *_puma()])
 
 
-def cells() -> list[Cell]:
+def cells() -> list[PrintedValue]:
     """Return a cell for every printed simulation (twice, sets A and B) and every experiment."""
     return [cell for row in experiments() for cell in _cells_of(row)]
 
 
-def _direct_drive() -> Iterator[Experiment]:
+def _direct_drive() -> Iterator[ImpactRow]:
     numbers = {24.3: 1, 13.8: 2}
     for row in printed_rows("4.1"):
         number_ = numbers[row["K_c"]]
@@ -99,7 +99,7 @@ def _direct_drive() -> Iterator[Experiment]:
         yield _experiment("4.1", name, number_, KILO * row["K_r"], float(row["C_r"]), row)
 
 
-def _puma() -> Iterator[Experiment]:
+def _puma() -> Iterator[ImpactRow]:
     arm = manipulator(2)
     for row in printed_rows("4.2"):
         yield _experiment("4.2", "Puma 560, Foam 1", 1, arm.stiffness, arm.damping, row)
@@ -112,8 +112,8 @@ def _experiment(
     stiffness: float,
     damping: float,
     row: dict[str, Any],
-) -> Experiment:
-    bare = Experiment(
+) -> ImpactRow:
+    bare = ImpactRow(
         table=table,
         name=f"{name}, v_r {row['v_r']:g}, v_h {row['v_h']:g} m/s",
         foam_number=foam_number,
@@ -129,7 +129,7 @@ def _experiment(
     return bare
 
 
-def _simulated(row: Experiment, choice: ParameterSet) -> dict[str, float]:
+def _simulated(row: ImpactRow, choice: ParameterSet) -> dict[str, float]:
     found = impact.metrics(row.arm(), row.covering(choice), impact.Head.apparatus(), closing_speed=row.closing_speed)
     return {
         "a_h_max": found.peak_head_acceleration / choice.gravity,
@@ -138,7 +138,7 @@ def _simulated(row: Experiment, choice: ParameterSet) -> dict[str, float]:
     }
 
 
-def _cells_of(row: Experiment) -> Iterator[Cell]:
+def _cells_of(row: ImpactRow) -> Iterator[PrintedValue]:
     for choice in parameter_sets():
         for column, (name, unit) in COLUMNS.items():
             yield SHEET.number(
@@ -157,11 +157,11 @@ def _cells_of(row: Experiment) -> Iterator[Cell]:
             yield SHEET.listed("run", own, printed=value, **_words(row, name, unit), run=run, why=why)
 
 
-def _words(row: Experiment, name: str, unit: str) -> dict[str, Any]:
+def _words(row: ImpactRow, name: str, unit: str) -> dict[str, Any]:
     return {"number": row.table, "row": row.name, "name": name, "unit": unit}
 
 
-def _reason(row: Experiment, column: str) -> str:
+def _reason(row: ImpactRow, column: str) -> str:
     """Return the name of the text that says why a printed simulation differs."""
     if row.table == "4.2":
         return "slow_puma" if row.closing_speed < 1.0 else "rounded"

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from hrsafety import navigation as nav
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.laws.compared import COMPARED
 from hrsafety.reproduce.laws.study import LawsStudy, compared_contacts
 from hrsafety.reproduce.measured import measure_laws
@@ -24,12 +24,12 @@ _PLANNERS = {"time_and_risk": "VO", "random_tree": "RRT", "field_d_star": "Field
 _SECOND_CATEGORY = ("masoud", "ge_cui", "new_vff")
 
 
-def cells(study: LawsStudy) -> list[Cell]:
+def cells(study: LawsStudy) -> list[PrintedValue]:
     """Return every claim of the part, in the order of `TABLES`."""
     return [*_collinear(study), *_unpredictable(study), *_oscillation(study), *_head_on(), *_parallel(study)]
 
 
-def _collinear(study: LawsStudy) -> Iterator[Cell]:
+def _collinear(study: LawsStudy) -> Iterator[PrintedValue]:
     for name in ("khatib", "borenstein_koren", "ge_cui", "new_vff"):
         own = name == "new_vff"
         runs = (study.demonstrations[name].standing, study.demonstrations[name].walking)
@@ -57,7 +57,7 @@ def _passing(run: nav.Trajectory) -> str:
     return f"{_ending(run)}, d {run.min_distance[0]:.2f} m"
 
 
-def _unpredictable(study: LawsStudy) -> Iterator[Cell]:
+def _unpredictable(study: LawsStudy) -> Iterator[PrintedValue]:
     own = study.varied["new_vff"].touched.count
     for name, label in _PLANNERS.items():
         run, share = study.printed[name], study.varied[name].touched
@@ -83,7 +83,7 @@ def _unpredictable(study: LawsStudy) -> Iterator[Cell]:
     yield SHEET.claim("highest", holds=best, label=COMPARED["new_vff"].label, scores=listed)
 
 
-def _oscillation(study: LawsStudy) -> Iterator[Cell]:
+def _oscillation(study: LawsStudy) -> Iterator[PrintedValue]:
     for name, said, swings in (
         ("ge_cui", "severe oscillation: the force jumps at the edge", True),
         ("masoud", "no oscillation, though the force jumps at the edge", False),
@@ -94,7 +94,7 @@ def _oscillation(study: LawsStudy) -> Iterator[Cell]:
         yield SHEET.claim("beside", holds=holds, label=COMPARED[name].label, said=said, shown=shown)
 
 
-def _head_on() -> Iterator[Cell]:
+def _head_on() -> Iterator[PrintedValue]:
     """Yield what happens to Ge & Cui with the person of configuration 2, who has no row in Table 6.3."""
     (run,) = measure_laws(["c2"], ["ge_cui"])["ge_cui"]
     trajectory, label = nav.simulate(run.scenario, nav.GeCui()), COMPARED["ge_cui"].label
@@ -102,7 +102,7 @@ def _head_on() -> Iterator[Cell]:
     yield SHEET.number("head_on_time", float(trajectory.contact_time[0]), label=label)
 
 
-def _parallel(study: LawsStudy) -> Iterator[Cell]:
+def _parallel(study: LawsStudy) -> Iterator[PrintedValue]:
     new, masoud, twice = (study.parallel[name] for name in ("new_vff", "masoud", "masoud_twice"))
     label = COMPARED["new_vff"].label
     yield SHEET.claim("passed", holds=new.outcome == "arrived", label=label, passing=_passing(new))

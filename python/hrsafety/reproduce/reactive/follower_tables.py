@@ -8,7 +8,7 @@ from hrsafety import reactive
 from hrsafety._statistics import Share, wilson
 from hrsafety.reactive import FollowerExperiment
 from hrsafety.reproduce import data
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.published import published_tables
 from hrsafety.reproduce.reactive.follower_study import KINDS, LAWS, SETTINGS, FollowerStudy
 from hrsafety.reproduce.sheets import Sheet
@@ -24,12 +24,12 @@ SECOND_CHANGED: Mapping[str, Mapping[str, float]] = _DATA["changed"]
 """The same with one change, from about 1,000 layouts each."""
 
 
-def cells(study: FollowerStudy) -> list[Cell]:
+def cells(study: FollowerStudy) -> list[PrintedValue]:
     """Return the cells of experiments 1 to 3, and what their rates depend on, in the order of the source."""
     return [*_robots(), *_tracking(), *_rates(study), *_directions(study), *_influences(study)]
 
 
-def _robots() -> Iterator[Cell]:
+def _robots() -> Iterator[PrintedValue]:
     robot, table = reactive.Follower(), published_tables()["avi2019:5-6"]
     leader, row = table["rows"]
     sizes = {name: row[name] for name in ("wheel_radius", "width", "length", "height")}
@@ -44,7 +44,7 @@ def _robots() -> Iterator[Cell]:
         yield SHEET.claim("robot", holds=said == own, column=column, said=said, own=own)
 
 
-def _tracking() -> Iterator[Cell]:
+def _tracking() -> Iterator[PrintedValue]:
     found = reactive.experiment("tracking", "off", layouts=1000)
     ends, rate = sorted(found.source_distance), found.following_rate
     numbers = {"median": ends[500], "low": ends[25], "high": ends[975]}
@@ -55,7 +55,7 @@ def _shown(share: Share) -> str:
     return f"{share.value:.3f} ({share.low:.3f} to {share.high:.3f})"
 
 
-def _rates(study: FollowerStudy) -> Iterator[Cell]:
+def _rates(study: FollowerStudy) -> Iterator[PrintedValue]:
     for kind in KINDS:
         for law in LAWS:
             yield _rate(study.base[kind, law], kind, law)
@@ -65,7 +65,7 @@ def _rates(study: FollowerStudy) -> Iterator[Cell]:
         yield SHEET.claim("difference", holds=better, **words)
 
 
-def _rate(found: FollowerExperiment, kind: str, law: str) -> Cell:
+def _rate(found: FollowerExperiment, kind: str, law: str) -> PrintedValue:
     rate, said = found.collision_rate, _DATA["words"][f"{kind}_{law}"]
     value, runs = SECOND[f"{kind}_{law}"]
     other = wilson(round(runs * value), runs)
@@ -85,7 +85,7 @@ def _rate(found: FollowerExperiment, kind: str, law: str) -> Cell:
     )
 
 
-def _directions(study: FollowerStudy) -> Iterator[Cell]:
+def _directions(study: FollowerStudy) -> Iterator[PrintedValue]:
     for kind in KINDS:
         for law in LAWS:
             found = study.base[kind, law]
@@ -96,14 +96,14 @@ def _directions(study: FollowerStudy) -> Iterator[Cell]:
             yield SHEET.claim("direction", holds=count - front >= front, **words)
 
 
-def _influences(study: FollowerStudy) -> Iterator[Cell]:
+def _influences(study: FollowerStudy) -> Iterator[PrintedValue]:
     for name, runs in study.found.items():
         if name != "as specified":
             for (kind, law), found in runs.items():
                 yield _influence(study, name, kind, law, found)
 
 
-def _influence(study: FollowerStudy, name: str, kind: str, law: str, found: FollowerExperiment) -> Cell:
+def _influence(study: FollowerStudy, name: str, kind: str, law: str, found: FollowerExperiment) -> PrintedValue:
     value = SECOND_CHANGED.get(name, {}).get(f"{kind}_{law}")
     rate, base = found.collision_rate, study.base[kind, law].collision_rate
     # The other one has two digits of about 1,000 runs.

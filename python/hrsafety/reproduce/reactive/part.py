@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from hrsafety.pages import Picture
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.reactive import follower_figures as reactive_follower_figures
 from hrsafety.reproduce.reactive import follower_study as reactive_follower_study
 from hrsafety.reproduce.reactive import follower_tables as reactive_follower_tables
@@ -19,7 +19,7 @@ from hrsafety.reproduce.reactive import sound_tables as reactive_sound_tables
 __all__ = ["make"]
 
 
-def make(say: Callable[[str], object]) -> tuple[list[Cell], list[Picture]]:
+def make(say: Callable[[str], object]) -> tuple[list[PrintedValue], list[Picture]]:
     """Measure and draw what three papers print; call ``say`` with a line when a long step begins."""
     say("sound: 100 bursts from each place of Tables 1 and 2, at four levels of noise")
     cells = reactive_sound_tables.cells(reactive_sound_study.measure())

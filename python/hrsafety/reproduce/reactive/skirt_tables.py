@@ -10,7 +10,7 @@ import numpy as np
 from hrsafety import reactive
 from hrsafety._statistics import Share, wilson
 from hrsafety.pages import share_words
-from hrsafety.reproduce.cells import Cell
+from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.published import published_tables
 from hrsafety.reproduce.reactive.skirt_study import CLOSELY, CLOSELY_FITTED, CONDITIONS, SkirtStudy, limit_for
 from hrsafety.reproduce.sheets import Sheet
@@ -23,12 +23,12 @@ _WORDS = {"spin": "spin", "keep": "arbitrary"}
 _SIGNALS_OFF = ("W", "S", "E")
 
 
-def cells() -> list[Cell]:
+def cells() -> list[PrintedValue]:
     """Return the cells of the sensors and of Tables 1 to 3, in the order of the source."""
     return [*_sensors(), *_states(), *_vectors(), *_motions()]
 
 
-def cells_of_tests(study: SkirtStudy) -> list[Cell]:
+def cells_of_tests(study: SkirtStudy) -> list[PrintedValue]:
     """Return the cells of Table 4: the two shares of the text, and what they depend on."""
     return [*_published_shares(study), *_conditions(study)]
 
@@ -37,7 +37,7 @@ def _rows(number: str) -> list[dict[str, object]]:
     return list(published_tables()[f"gussu2017:{number}"]["rows"])
 
 
-def _sensors() -> Iterator[Cell]:
+def _sensors() -> Iterator[PrintedValue]:
     printed = {str(row["figure"]): float(str(row["value"])) for row in _rows("text")}
     spacing = reactive.skirt.skirt_spacing()
     for column, angle, reason in (
@@ -62,7 +62,7 @@ def _sensors() -> Iterator[Cell]:
     )
 
 
-def _states() -> Iterator[Cell]:
+def _states() -> Iterator[PrintedValue]:
     for row, own in zip(_rows("1"), reactive.skirt.skirt_states(), strict=True):
         said, found = f"{row['sensors']}: {row['action']}", f"{own.pattern}: {_WORDS.get(own.action, own.action)}"
         state = row["state"]
@@ -70,7 +70,7 @@ def _states() -> Iterator[Cell]:
         yield SHEET.claim("state", holds=said == found, state=state, said=said, own=found, why=why)
 
 
-def _vectors() -> Iterator[Cell]:
+def _vectors() -> Iterator[PrintedValue]:
     platform = reactive.skirt.TriOmniKinematics()
     # Column j of the wheel speeds of unit velocities is -t_j / r_w.
     tangents = -platform.wheel_radius * platform.wheel_speeds(np.eye(2)).T
@@ -84,7 +84,7 @@ def _vectors() -> Iterator[Cell]:
     yield SHEET.claim("magnitudes", holds=still, least=rates.min(), most=rates.max())
 
 
-def _motions() -> Iterator[Cell]:
+def _motions() -> Iterator[PrintedValue]:
     for row in _rows("3"):
         name, printed = str(row["motion"]), float(str(row["orientation_pi"]))
         # Angles are given between -pi/2 and 3 pi/2, as printed.
@@ -112,7 +112,7 @@ def _shown(share: Share) -> str:
     return share_words(share.value, share.low, share.high)
 
 
-def _published_shares(study: SkirtStudy) -> Iterator[Cell]:
+def _published_shares(study: SkirtStudy) -> Iterator[PrintedValue]:
     (row,) = _rows("4")
     printed, kept = float(str(row["completely_avoids"])), float(str(row["no_collision_at_least"]))
     of_40 = wilson(round(printed * _PUBLISHED_TESTS), _PUBLISHED_TESTS)
@@ -135,7 +135,7 @@ def _published_shares(study: SkirtStudy) -> Iterator[Cell]:
     yield SHEET.listed("limit", limits=[limit_for(test, printed) for test in (ideal, low)], names=names)
 
 
-def _conditions(study: SkirtStudy) -> Iterator[Cell]:
+def _conditions(study: SkirtStudy) -> Iterator[PrintedValue]:
     for name, words in list(CONDITIONS.items())[2:]:
         listed = " / ".join(_shown(share) for share in study.tests[name].shares(CLOSELY))
         tests = study.tests[name].min_clearance.size

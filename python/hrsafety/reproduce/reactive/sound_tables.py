@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from hrsafety import reactive
-from hrsafety.reproduce.cells import Cell, Tolerance
+from hrsafety.reproduce.cells import PrintedValue, Tolerance
 from hrsafety.reproduce.reactive.sound_study import LEVELS, NOISE, ROW, RUNS, Array, Place, SoundStudy, places
 from hrsafety.reproduce.sheets import Sheet
 
@@ -21,12 +21,12 @@ SAMPLING = Tolerance(INTERVAL / math.sqrt(2.0 * (RUNS - 1)), relative=True)
 DIGITS = {"distance": 0.005, "angle": 0.05}  # half of the last printed digit of Table 1
 
 
-def cells(study: SoundStudy) -> list[Cell]:
+def cells(study: SoundStudy) -> list[PrintedValue]:
     """Return every cell of the part: formulas, Table 1, Table 2."""
     return [*_formulas(), *_trends(study), *_means(study), *_scatter(study)]
 
 
-def _formulas() -> Iterator[Cell]:
+def _formulas() -> Iterator[PrintedValue]:
     distance = np.array([place.distance for place in places()])
     bearing = np.radians([place.angle for place in places()])
     delay_12, delay_13 = ROW.delays(range=distance, bearing=bearing)
@@ -46,7 +46,7 @@ def _formulas() -> Iterator[Cell]:
         yield SHEET.claim("angle", holds=abs(found - angle) < 0.5, pair=pair, angle=angle, found=found)
 
 
-def _trends(study: SoundStudy) -> Iterator[Cell]:
+def _trends(study: SoundStudy) -> Iterator[PrintedValue]:
     scatter = _deviations(study.jitter)[0].reshape(4, 3)
     grow = bool((np.diff(scatter, axis=0) > 0.0).all() and (np.diff(scatter, axis=1) > 0.0).all())
     yield SHEET.claim("grow", holds=grow, near=scatter[0, 0], distant=scatter[3, 2])
@@ -75,7 +75,7 @@ def _noise_for(curve: Array, printed: float) -> float:
     return float(LEVELS[place - 1] * (LEVELS[place] / LEVELS[place - 1]) ** share)
 
 
-def _means(study: SoundStudy) -> Iterator[Cell]:
+def _means(study: SoundStudy) -> Iterator[PrintedValue]:
     variants = (("jitter", study.jitter), ("waveforms", study.waveforms[NOISE]), ("whole samples", study.whole_samples))
     means = {name: _averages(fixes) for name, fixes in variants}
     heard = {"runs": RUNS, "noise": NOISE}
@@ -103,7 +103,7 @@ def _printed_means(place: Place) -> dict[str, tuple[str, float, float]]:
     }
 
 
-def _scatter(study: SoundStudy) -> Iterator[Cell]:
+def _scatter(study: SoundStudy) -> Iterator[PrintedValue]:
     jitter, heard = _deviations(study.jitter), _deviations(study.waveforms[NOISE])
     for index, place in enumerate(places()):
         for column, (kind, unit, printed) in enumerate(
