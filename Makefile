@@ -49,6 +49,7 @@ lint: build
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy --strict python/hrsafety
+	PATH=$(abspath $(BIN)):$$PATH $(BIN)/python crates/hrsafety_py/make_stub.py --check
 	$(BIN)/python -m mypy.stubtest hrsafety._hrsafety
 
 docs: build

@@ -1,6 +1,6 @@
 //! Conversions between vectors and arrays; results are moved, not copied.
 
-use numpy::{IntoPyArray, PyArrayMethods, PyFixedUnicode};
+use numpy::{IntoPyArray, PyArrayMethods, PyFixedUnicode, ndarray::IntoDimension};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -29,20 +29,8 @@ impl<'py> Fields<'py> {
         self.put(name, values.into_pyarray(self.0.py()).into_any())
     }
 
-    /// Adds a matrix stored by rows.
-    pub fn matrix(
-        &self,
-        name: &str,
-        values: Vec<f64>,
-        rows: usize,
-        columns: usize,
-    ) -> PyResult<()> {
-        let values = values.into_pyarray(self.0.py());
-        self.put(name, values.reshape([rows, columns])?.into_any())
-    }
-
-    /// Adds an array of three axes stored by rows.
-    pub fn cube(&self, name: &str, values: Vec<f64>, shape: [usize; 3]) -> PyResult<()> {
+    /// Adds an array stored by rows.
+    pub fn array(&self, name: &str, values: Vec<f64>, shape: impl IntoDimension) -> PyResult<()> {
         let values = values.into_pyarray(self.0.py());
         self.put(name, values.reshape(shape)?.into_any())
     }
@@ -65,3 +53,41 @@ fn fixed(word: &str) -> PyFixedUnicode<9> {
     }
     letters.into()
 }
+
+/// A dictionary of results. `kind from: a, b;` holds fields of a struct under their own names, `kind a = value;` a
+/// value; the kind is `vector`, `array [rows, columns]`, `words`, `value`, `cloned` for vectors that stay where they
+/// are, or `each` for a field of every row.
+macro_rules! fields {
+    ($py:ident; $($entries:tt)*) => {{
+        let fields = $crate::arrays::Fields::new($py);
+        $crate::arrays::fields!(@ fields; $($entries)*);
+        fields.finish()
+    }};
+    (@ $all:ident;) => {};
+    (@ $all:ident; cloned $from:ident: $($name:ident),+; $($rest:tt)*) => {
+        $($all.vector(stringify!($name), $from.$name.clone())?;)+
+        $crate::arrays::fields!(@ $all; $($rest)*);
+    };
+    (@ $all:ident; each $from:ident: $($name:ident),+; $($rest:tt)*) => {
+        $($all.vector(stringify!($name), $from.iter().map(|row| row.$name).collect())?;)+
+        $crate::arrays::fields!(@ $all; $($rest)*);
+    };
+    (@ $all:ident; array $shape:tt $from:ident: $($name:ident),+; $($rest:tt)*) => {
+        $($all.array(stringify!($name), $from.$name, $shape)?;)+
+        $crate::arrays::fields!(@ $all; $($rest)*);
+    };
+    (@ $all:ident; array $shape:tt $name:ident = $value:expr; $($rest:tt)*) => {
+        $all.array(stringify!($name), $value, $shape)?;
+        $crate::arrays::fields!(@ $all; $($rest)*);
+    };
+    (@ $all:ident; $kind:ident $from:ident: $($name:ident),+; $($rest:tt)*) => {
+        $($all.$kind(stringify!($name), $from.$name)?;)+
+        $crate::arrays::fields!(@ $all; $($rest)*);
+    };
+    (@ $all:ident; $kind:ident $name:ident = $value:expr; $($rest:tt)*) => {
+        $all.$kind(stringify!($name), $value)?;
+        $crate::arrays::fields!(@ $all; $($rest)*);
+    };
+}
+
+pub(crate) use fields;

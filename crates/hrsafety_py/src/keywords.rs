@@ -38,6 +38,16 @@ impl<'py> Keywords<'py> {
         extracted.map_err(|error: T::Error| named(name, error.into(), value.py()))
     }
 
+    /// Takes a word among a few.
+    pub fn word<T: Copy>(
+        &self,
+        name: &str,
+        requirement: &'static str,
+        meanings: &[(&str, T)],
+    ) -> PyResult<T> {
+        word(name, &self.given(name)?, requirement, meanings)
+    }
+
     /// Takes an argument as it is: compiled once, not for each type.
     fn given(&self, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let missing = || PyTypeError::new_err(format!("missing argument '{name}'"));
@@ -104,19 +114,49 @@ fn refused(name: &str, rule: &'static str, error: &PyErr) -> Failure {
     Failure::invalid(name, rule, Given::Found(error.to_string().into()))
 }
 
-/// A struct of the core whose fields are called as the arguments are; the others come from another one.
-macro_rules! taken {
-    ($given:expr, $core:ty { $($field:ident),+ $(,)? } $(, ..$rest:expr)?) => {{
-        type Core = $core;
-        Core { $($field: $given.take(stringify!($field))?,)+ $(..$rest)? }
-    }};
+/// The meaning of a word among a few, or an error that shows what was given.
+pub fn word<T: Copy>(
+    name: &str,
+    given: &Bound<'_, PyAny>,
+    requirement: &'static str,
+    meanings: &[(&str, T)],
+) -> PyResult<T> {
+    let shown = match given.extract::<String>() {
+        Ok(text) => match meanings.iter().find(|(key, _)| *key == text) {
+            Some((_, meaning)) => return Ok(*meaning),
+            None => Given::Word(text),
+        },
+        Err(error) if error.is_instance_of::<PyUnicodeEncodeError>(given.py()) => {
+            return Err(named(name, error, given.py()));
+        }
+        Err(_) => Given::Found(given.repr()?.to_string().into()),
+    };
+    let error = Failure::invalid(name, requirement, shown);
+    Err(CoreError::from(error).into())
 }
 
-/// A class of checked parameters: made from keywords, and read back by the same names.
-macro_rules! parameter_class {
+/// A struct of the core from arguments: a field alone is taken by its name, `field as name` by another one,
+/// `field = value` is not taken.
+macro_rules! taken {
+    ($given:ident: $core:ty {
+        $($field:ident $(as $name:ident)? $(= $value:expr)?),+ $(, ..$rest:expr)? $(,)?
+    }) => {{
+        type Core = $core;
+        Core {
+            $($field: $crate::keywords::taken!(@ $given, $field $(as $name)? $(= $value)?),)+
+            $(..$rest)?
+        }
+    }};
+    (@ $given:ident, $field:ident) => { $given.take(stringify!($field))? };
+    (@ $given:ident, $field:ident as $name:ident) => { $given.take(stringify!($name))? };
+    (@ $given:ident, $field:ident = $value:expr) => { $value };
+}
+
+/// A class of a checked value of the core that is made of the arguments of a call.
+macro_rules! value_class {
     (
         $(#[$about:meta])*
-        $name:ident($core:ty) { $($field:ident),+ $(,)? }
+        $name:ident($core:ty) of $given:ident $value:block
         $($methods:tt)*
     ) => {
         $(#[$about])*
@@ -128,11 +168,27 @@ macro_rules! parameter_class {
             #[new]
             #[pyo3(signature = (**given))]
             fn new(given: Option<$crate::keywords::Keywords<'_>>) -> PyResult<Self> {
-                let given = given.unwrap_or_default();
-                let core = $crate::keywords::taken!(given, $core { $($field),+ });
-                given.done()?;
+                let $given = given.unwrap_or_default();
+                let core: $core = $value;
+                $given.done()?;
                 Ok(Self(core.checked().map_err($crate::errors::CoreError::from)?))
             }
+
+            $($methods)*
+        }
+    };
+}
+
+/// A class of checked parameters: made from keywords, and read back by the same names.
+macro_rules! parameter_class {
+    (
+        $(#[$about:meta])*
+        $name:ident($core:ty) { $($field:ident),+ $(,)? }
+        $($methods:tt)*
+    ) => {
+        $crate::keywords::value_class! {
+            $(#[$about])*
+            $name($core) of given { $crate::keywords::taken!(given: $core { $($field),+ }) }
 
             $(
                 #[getter]
@@ -146,4 +202,4 @@ macro_rules! parameter_class {
     };
 }
 
-pub(crate) use {parameter_class, taken};
+pub(crate) use {parameter_class, taken, value_class};

@@ -28,19 +28,25 @@ use pyo3::prelude::*;
 /// Native core of hrsafety.
 #[pymodule]
 mod _hrsafety {
-    use super::{Bound, PyModule, PyResult};
+    use super::{PyResult, Python};
     use numpy::{PyArray1, PyArrayMethods};
-    use pyo3::types::PyModuleMethods;
 
     /// Imports what arrays need now: an exception in an import later on, such as that of Ctrl-C,
     /// would be a panic.
     #[pymodule_init]
-    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        PyArray1::<f64>::zeros(module.py(), 0, false).try_readonly()?;
-        module.add("DECIDED_OVERLAP", vff_core::run::DECIDED_OVERLAP)?;
-        module.add("CONTACT_SPEED", vff_core::run::CONTACT_SPEED)
+    fn init() -> PyResult<()> {
+        Python::attach(|py| {
+            PyArray1::<f64>::zeros(py, 0, false)
+                .try_readonly()
+                .map(|_| ())
+        })?;
+        Ok(())
     }
 
+    #[pymodule_export]
+    const DECIDED_OVERLAP: f64 = vff_core::run::DECIDED_OVERLAP;
+    #[pymodule_export]
+    const CONTACT_SPEED: f64 = vff_core::run::CONTACT_SPEED;
     #[pymodule_export]
     use crate::contact::arm::{Arm, bare_forces, nearest_inertia, urdf_joint_names};
     #[pymodule_export]

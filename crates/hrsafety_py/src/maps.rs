@@ -13,7 +13,7 @@ use vff_core::world::map::{self, GridPlace, MapShapes};
 use vff_core::world::obstacle::PlacedShape;
 
 use crate::errors::{CoreError, CoreResult};
-use crate::keywords::{Keywords, parameter_class};
+use crate::keywords::{parameter_class, taken, value_class};
 use crate::parameters::Scenario;
 use crate::watch::{Report, watched};
 
@@ -47,7 +47,6 @@ impl StaticMap {
     /// and whether nothing is known outside, all in the order given.
     #[new]
     #[pyo3(signature = (*, polylines, polygons, discs, grids))]
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn new(
         py: Python<'_>,
         polylines: Vec<(Rows<'_>, f64)>,
@@ -94,7 +93,6 @@ impl StaticMap {
     }
 
     /// Distances of points, zero inside.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn clearance<'py>(&self, py: Python<'py>, points: Rows<'py>) -> PyResult<Column<'py>> {
         let points = pairs(&points)?.iter();
         let distances: Vec<f64> = points
@@ -109,7 +107,6 @@ impl StaticMap {
     }
 
     /// Nearest boundary points; NaN without shapes.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn nearest<'py>(&self, py: Python<'py>, points: Rows<'py>) -> PyResult<Matrix<'py>> {
         let nearest = |point: &[f64; 2]| {
             let found = self.0.nearest((*point).into());
@@ -143,7 +140,6 @@ impl StaticMap {
     }
 
     /// Whether something is known of points.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn knows(&self, points: Rows<'_>) -> PyResult<Vec<bool>> {
         let points = pairs(&points)?.iter();
         Ok(points.map(|point| self.0.knows((*point).into())).collect())
@@ -168,7 +164,6 @@ impl StaticMap {
 
 /// Distances of cells of a side in m from the nearest occupied one.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
 pub fn cell_distances<'py>(
     py: Python<'py>,
     occupied: Cells<'py>,
@@ -218,7 +213,6 @@ pub struct Plan(pub guide::Plan);
 #[pymethods]
 impl Plan {
     /// Costs at points, NaN without a plan there.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn cost<'py>(&self, py: Python<'py>, points: Rows<'py>) -> PyResult<Column<'py>> {
         let cost = |point: &[f64; 2]| self.0.cost((*point).into()).unwrap_or(f64::NAN);
         let costs: Vec<f64> = pairs(&points)?.iter().map(cost).collect();
@@ -244,32 +238,14 @@ impl Plan {
     }
 }
 
-/// Lidar on a robot.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct Lidar(pub lidar::Lidar);
-
-#[pymethods]
-impl Lidar {
-    #[new]
-    #[pyo3(signature = (**given))]
-    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
-        let given = given.unwrap_or_default();
+value_class! {
+    /// Lidar on a robot.
+    Lidar(lidar::Lidar) of given {
         let map: Option<PyRef<'_, StaticMap>> = given.take("map")?;
-        let lidar = lidar::Lidar {
-            map: map.map(|map| map.0.clone()).unwrap_or_default(),
-            beams: given.take("beams")?,
-            field_of_view: given.take("field_of_view")?,
-            range_min: given.take("range_min")?,
-            range_max: given.take("range_max")?,
-            range_noise: given.take("range_noise")?,
-            sees_obstacles: given.take("sees_obstacles")?,
-            kappa: given.take("kappa")?,
-            influence: given.take("influence")?,
-            reach: given.take("reach")?,
-            max_speed: given.take("max_speed")?,
-        };
-        given.done()?;
-        Ok(Self(lidar.checked().map_err(CoreError::from)?))
+        taken!(given: lidar::Lidar {
+            map = map.map(|map| map.0.clone()).unwrap_or_default(), beams, field_of_view, range_min,
+            range_max, range_noise, sees_obstacles, kappa, influence, reach, max_speed,
+        })
     }
 
     /// Bearings of the beams from straight ahead.
@@ -278,7 +254,6 @@ impl Lidar {
     }
 
     /// Ranges from a pose (x, y, heading) among discs as rows (x, y, radius).
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn scan(&self, pose: [f64; 3], discs: Rows<'_>, seed: u64) -> PyResult<Vec<f64>> {
         let (rows, _) = discs.as_slice()?.as_chunks::<3>();
         let shapes: Vec<PlacedShape> = rows
@@ -292,7 +267,6 @@ impl Lidar {
     }
 
     /// Points that a scan hit.
-    #[allow(clippy::needless_pass_by_value)] // a list of Python
     fn points<'py>(
         &self,
         py: Python<'py>,

@@ -1,6 +1,6 @@
 //! Checked parameter objects behind the Python dataclasses.
 
-use numeric::error::{Failure, Given};
+use numeric::error::Failure;
 use pyo3::prelude::*;
 use vff_core::robots::{self, DifferentialWheels, Wheels};
 use vff_core::sensing::measurement;
@@ -11,70 +11,33 @@ use vff_core::world::region::{self, Sensing};
 use vff_core::world::scenario::{self, Mover, Rules};
 
 use crate::errors::CoreError;
-use crate::keywords::{Keywords, taken};
+use crate::keywords::{Keywords, taken, value_class, word};
 
-/// Holonomic robot.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct HolonomicRobot(pub robots::HolonomicRobot);
-
-#[pymethods]
-impl HolonomicRobot {
-    #[new]
-    #[pyo3(signature = (**given))]
-    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
-        let given = given.unwrap_or_default();
-        let wheels = Wheels {
-            radius: given.take("wheel_radius")?,
-            resistance: given.take("winding_resistance")?,
-            inertia: given.take("wheel_inertia")?,
-            viscous_friction: given.take("wheel_viscous_friction")?,
-            static_friction: given.take("wheel_static_friction")?,
-        };
-        let robot = robots::HolonomicRobot {
-            mass: given.take("mass")?,
-            radius: given.take("radius")?,
-            max_speed: given.take("max_speed")?,
-            max_acceleration: given.take("max_acceleration")?,
-            max_deceleration: given.take("max_deceleration")?,
-            wheels,
-        };
-        given.done()?;
-        Ok(Self(robot.checked().map_err(CoreError::from)?))
+value_class! {
+    /// Holonomic robot.
+    HolonomicRobot(robots::HolonomicRobot) of given {
+        let wheels = taken!(given: Wheels {
+            radius as wheel_radius, resistance as winding_resistance, inertia as wheel_inertia,
+            viscous_friction as wheel_viscous_friction, static_friction as wheel_static_friction,
+        });
+        taken!(given: robots::HolonomicRobot {
+            mass, radius, max_speed, max_acceleration, max_deceleration, wheels = wheels,
+        })
     }
 }
 
-/// Differential-drive robot.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct DifferentialDriveRobot(pub robots::DifferentialDriveRobot);
-
-#[pymethods]
-impl DifferentialDriveRobot {
-    #[new]
-    #[pyo3(signature = (**given))]
-    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
-        let given = given.unwrap_or_default();
-        let wheels = DifferentialWheels {
-            radius: given.take("wheel_radius")?,
-            span: given.take("wheel_span")?,
-            resistance: given.take("winding_resistance")?,
-            inertia: given.take("wheel_inertia")?,
-            viscous_friction: given.take("wheel_viscous_friction")?,
-            static_friction: given.take("wheel_static_friction")?,
-        };
-        let robot = robots::DifferentialDriveRobot {
-            mass: given.take("mass")?,
-            radius: given.take("radius")?,
-            max_speed: given.take("max_speed")?,
-            max_acceleration: given.take("max_acceleration")?,
-            max_deceleration: given.take("max_deceleration")?,
-            max_angular_acceleration: given.take("max_angular_acceleration")?,
-            max_turn_rate: given.take("max_turn_rate")?,
-            max_turn_acceleration: given.take("max_turn_acceleration")?,
-            reference_speed_share: given.take("reference_speed_share")?,
-            wheels,
-        };
-        given.done()?;
-        Ok(Self(robot.checked().map_err(CoreError::from)?))
+value_class! {
+    /// Differential-drive robot.
+    DifferentialDriveRobot(robots::DifferentialDriveRobot) of given {
+        let wheels = taken!(given: DifferentialWheels {
+            radius as wheel_radius, span as wheel_span, resistance as winding_resistance,
+            inertia as wheel_inertia, viscous_friction as wheel_viscous_friction,
+            static_friction as wheel_static_friction,
+        });
+        taken!(given: robots::DifferentialDriveRobot {
+            mass, radius, max_speed, max_acceleration, max_deceleration, max_angular_acceleration,
+            max_turn_rate, max_turn_acceleration, reference_speed_share, wheels = wheels,
+        })
     }
 }
 
@@ -94,14 +57,7 @@ impl Obstacle {
 
 /// Radii and speed that every obstacle may have.
 fn limits_of(given: &Keywords<'_>) -> PyResult<Limits> {
-    Ok(taken!(
-        given,
-        Limits {
-            active_radius,
-            critical_radius,
-            max_speed
-        }
-    ))
+    Ok(taken!(given: Limits { active_radius, critical_radius, max_speed }))
 }
 
 impl Obstacle {
@@ -267,24 +223,6 @@ impl Measurement {
     }
 }
 
-/// The meaning of a word among a few, or an error that shows what was given.
-pub fn word<T: Copy>(
-    name: &str,
-    given: &Bound<'_, PyAny>,
-    requirement: &'static str,
-    meanings: &[(&str, T)],
-) -> PyResult<T> {
-    let shown = match given.extract::<String>() {
-        Ok(text) => match meanings.iter().find(|(key, _)| *key == text) {
-            Some((_, meaning)) => return Ok(*meaning),
-            None => Given::Word(text),
-        },
-        Err(_) => Given::Found(given.repr()?.to_string().into()),
-    };
-    let error = Failure::invalid(name, requirement, shown);
-    Err(CoreError::from(error).into())
-}
-
 /// Scenario.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
 pub struct Scenario(pub scenario::Scenario);
@@ -294,7 +232,6 @@ impl Scenario {
     /// Robot, start and goal, obstacles, rules of the run, measurement and seed; positional, since a
     /// study makes millions.
     #[new]
-    #[allow(clippy::needless_pass_by_value)] // references to Python objects
     fn new(
         robot: &Bound<'_, PyAny>,
         ends: (Place, Place),

@@ -12,7 +12,7 @@ use vff_core::world::geometry::RobotState;
 use vff_core::world::shape::PlacedShape;
 
 use crate::errors::CoreError;
-use crate::keywords::{Keywords, parameter_class};
+use crate::keywords::{Keywords, parameter_class, taken, value_class};
 use crate::laws::Law;
 use crate::maps::{Guide, StaticMap};
 
@@ -22,10 +22,6 @@ parameter_class! {
         clearance, horizon, time_weight, distance_weight, comfort, goal_weight, reach,
     }
 }
-
-/// What the shield assumes.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct Shield(pub shield::Shield);
 
 /// Radius, largest speed, largest acceleration and control period of a robot.
 type RobotLimits = (f64, f64, f64, f64);
@@ -40,12 +36,9 @@ type OutlineState = ([f64; 2], [f64; 3], [f64; 2], [f64; 2]);
 /// Center, radius and velocity of a person; the velocity is NaN where it is not known.
 type PersonState = ([f64; 2], f64, [f64; 2]);
 
-#[pymethods]
-impl Shield {
-    #[new]
-    #[pyo3(signature = (**given))]
-    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
-        let given = given.unwrap_or_default();
+value_class! {
+    /// What the shield assumes.
+    Shield(shield::Shield) of given {
         let bounds: (Option<f64>, Option<f64>) = (
             given.take("velocity_error")?,
             given.take("person_acceleration")?,
@@ -56,22 +49,15 @@ impl Shield {
         );
         let friendly = friendly.0.zip(friendly.1);
         let (absolute, relative) = given.take("velocity_tracking")?;
-        let core = shield::Shield {
-            person_speed: given.take("person_speed")?,
-            latency: given.take("latency")?,
-            position_error: given.take("position_error")?,
-            velocity_bounds: bounds.0.zip(bounds.1).map(|(error, most)| [error, most]),
-            margin: given.take("margin")?,
-            position_tracking: given.take("position_tracking")?,
-            velocity_tracking: Tracking { absolute, relative },
-            wall_margin: given.take("wall_margin")?,
-            friendly: friendly.map(|(reaction_time, deceleration)| Friendly {
+        taken!(given: shield::Shield {
+            person_speed, latency, position_error,
+            velocity_bounds = bounds.0.zip(bounds.1).map(|(error, most)| [error, most]), margin,
+            position_tracking, velocity_tracking = Tracking { absolute, relative }, wall_margin,
+            friendly = friendly.map(|(reaction_time, deceleration)| Friendly {
                 reaction_time,
                 deceleration,
             }),
-        };
-        given.done()?;
-        Ok(Self(core.checked().map_err(CoreError::from)?))
+        })
     }
 
     /// Velocity that is commanded, the status, and the gap of the wanted and of the commanded one.
@@ -198,17 +184,12 @@ pub fn guarded_law(law: &Law, given: Option<Keywords<'_>>) -> PyResult<Law> {
     let map: Option<PyRef<'_, StaticMap>> = given.take("map")?;
     let guide: Option<PyRef<'_, Guide>> = given.take("guide")?;
     let (progress, window) = given.take("takeover_rule")?;
-    let family = SafeNavigation {
-        map: map.map(|map| map.0.clone()),
-        guide: guide.map(|guide| guide.0),
-        rule: TakeoverOptions { progress, window },
-        shield: shield.map(|shield| shield.0),
-        yielding: yielding.map(|yielding| yielding.0),
-        takeover: given.take("takeover")?,
-        preferred_speed: given.take("preferred_speed")?,
-        critical_distance: given.take("critical_distance")?,
-        ..SafeNavigation::bare(law.any.clone())
-    };
+    let family = taken!(given: SafeNavigation {
+        map = map.map(|map| map.0.clone()), guide = guide.map(|guide| guide.0),
+        rule = TakeoverOptions { progress, window }, shield = shield.map(|shield| shield.0),
+        yielding = yielding.map(|yielding| yielding.0), takeover, preferred_speed,
+        critical_distance, ..SafeNavigation::bare(law.any.clone()),
+    });
     given.done()?;
     let family = family.checked().map_err(CoreError::from)?;
     Ok(law.within(family.into()))

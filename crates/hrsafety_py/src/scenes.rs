@@ -25,7 +25,6 @@ impl Scenarios {
     /// Rows of discs that move straight on: start, goal; position, velocity and radius; whether they
     /// are people; robot; rules; seeds.
     #[new]
-    #[allow(clippy::needless_pass_by_value)] // references to Python objects
     fn new(
         ends: (PyReadonlyArray2<'_, f64>, PyReadonlyArray2<'_, f64>),
         obstacles: (
@@ -62,7 +61,6 @@ impl Scenarios {
 
     /// Random traffic of a number of obstacles for each seed.
     #[staticmethod]
-    #[allow(clippy::needless_pass_by_value)] // converted from Python, so owned
     fn random_traffic(
         py: Python<'_>,
         obstacles: usize,
@@ -75,7 +73,6 @@ impl Scenarios {
 
     /// Random crowd of a number of people for each seed.
     #[staticmethod]
-    #[allow(clippy::needless_pass_by_value)] // converted from Python, so owned
     fn random_crowd(people: usize, robot: &Bound<'_, PyAny>, seeds: Vec<u64>) -> PyResult<Self> {
         let mover: Mover = mover_of(robot)?;
         drawn(robot.py(), &seeds, |seed| random_crowd(people, mover, seed))
@@ -104,7 +101,6 @@ impl Scenarios {
     }
 
     /// Every scenario with each of the seeds, those of a scenario together.
-    #[allow(clippy::needless_pass_by_value)] // converted from Python, so owned
     fn reseeded(&self, seeds: Vec<u64>) -> Self {
         let with_all = |scenario: &scenario::Scenario| {
             let scenario = scenario.clone();

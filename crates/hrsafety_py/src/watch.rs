@@ -206,18 +206,32 @@ where
     Ok(found)
 }
 
+/// Works as `watched` on so many threads.
+pub fn spread<T: Send, E: Send>(
+    py: Python<'_>,
+    report: Report<'_>,
+    threads: Option<usize>,
+    work: impl FnOnce(Work<'_>) -> Result<T, E> + Send,
+) -> PyResult<T>
+where
+    CoreError: From<E>,
+{
+    watched(py, report, |control| {
+        work(Work {
+            threads,
+            interrupted: &|| control.interrupted(),
+            progress: &|more| control.count(more),
+        })
+    })
+}
+
 /// Work of one item on all cores, as `watched`; results stand in the order of the items.
 pub fn watched_each<T: Send>(
     py: Python<'_>,
     items: &[f64],
     work: impl Fn(f64) -> Result<T, Failure> + Sync,
 ) -> PyResult<Vec<T>> {
-    watched(py, Report::none(), |control| {
-        let batch = Work {
-            threads: None,
-            interrupted: &|| control.interrupted(),
-            progress: &|_| (),
-        };
+    spread(py, Report::none(), None, |batch| {
         each_run(items.len(), batch, |index| work(items[index]))
     })
 }

@@ -116,7 +116,7 @@ def simulate_batch(
         lanes=lanes,
         progress=callback("progress", progress),
     )
-    return table_of_batch(scenes, law, columns, motion_step=number("step", step))  # type: ignore[arg-type]  # a mapping of arrays
+    return table_of_batch(scenes, law, columns, motion_step=number("step", step))
 
 
 def natives_of(scenes: Sequence[Scenario]) -> list[_hrsafety.Scenario] | _hrsafety.Scenarios:

@@ -360,7 +360,7 @@ def _columns(
 ) -> Columns:
     """Return the columns of one law, the scenarios fastest."""
     if "built" not in options:
-        return dict(_hrsafety.simulate_batch(natives, law._native, sets, weights, **options))  # type: ignore[arg-type]  # by name
+        return _hrsafety.simulate_batch(natives, law._native, sets, weights, **options)
     built = options.pop("built")
     own = [_with_gains(law, row) for row in sets] if law.GAIN_NAMES else [law]
     natively = [each._native for each in own]

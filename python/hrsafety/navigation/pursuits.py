@@ -328,7 +328,7 @@ def _own(
     return {name: np.array(values) for name, values in rows.items()}, worst
 
 
-def _pursuit(fields: _hrsafety._PursuitFields) -> Pursuit:
+def _pursuit(fields: Mapping[str, Any]) -> Pursuit:
     return Pursuit(
         time=fields["time"],
         position=fields["position"],

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NoReturn
+from typing import NoReturn, cast
 
 import numpy.typing as npt
 
@@ -124,7 +124,7 @@ class Run:
     @property
     def outcome(self) -> Outcome | None:
         """How the run ended; ``None`` while it is under way."""
-        return self._native.outcome
+        return cast("Outcome | None", self._native.outcome)
 
     @property
     def trajectory(self) -> Trajectory:

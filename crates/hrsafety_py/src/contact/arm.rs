@@ -90,7 +90,7 @@ impl Arm {
             arm.links.iter().map(|link| link.mass).collect(),
         )?;
         let moments = arm.links.iter().flat_map(|link| link.moments);
-        fields.matrix("link_moments", moments.collect(), arm.links.len(), 3)?;
+        fields.array("link_moments", moments.collect(), [arm.links.len(), 3])?;
         let sizes = || {
             let all = arm.links.iter();
             all.map(|link| {
@@ -135,7 +135,6 @@ impl Arm {
     }
 
     /// Effective masses along directions.
-    #[allow(clippy::needless_pass_by_value)] // extracted from Python objects
     fn effective_mass<'py>(
         &self,
         py: Python<'py>,
@@ -150,7 +149,6 @@ impl Arm {
     }
 
     /// Positions, mobilities, heaviest and lightest directions of points.
-    #[allow(clippy::needless_pass_by_value)] // extracted from a Python object
     fn point_states<'py>(
         &self,
         py: Python<'py>,
@@ -169,22 +167,21 @@ impl Arm {
         let masses = |of: fn(&Extremes) -> f64| -> Vec<f64> {
             found.iter().map(|state| of(&state.extremes)).collect()
         };
-        fields.matrix("position", vectors(|state| state.position), count, 3)?;
+        fields.array("position", vectors(|state| state.position), [count, 3])?;
         let mobility = found
             .iter()
             .flat_map(|state| state.mobility.0.iter().copied());
-        fields.cube("mobility", mobility.collect(), [count, 3, 3])?;
+        fields.array("mobility", mobility.collect(), [count, 3, 3])?;
         fields.vector("worst_mass", masses(|extremes| extremes.worst_mass))?;
         fields.vector("least_mass", masses(|extremes| extremes.least_mass))?;
         let worst = vectors(|state| state.extremes.worst_direction);
-        fields.matrix("worst_direction", worst, count, 3)?;
+        fields.array("worst_direction", worst, [count, 3])?;
         let least = vectors(|state| state.extremes.least_direction);
-        fields.matrix("least_direction", least, count, 3)?;
+        fields.array("least_direction", least, [count, 3])?;
         Ok(fields.finish())
     }
 
     /// Velocities of points for rates of all joints.
-    #[allow(clippy::needless_pass_by_value)] // extracted from Python objects
     fn velocities<'py>(
         &self,
         py: Python<'py>,
@@ -286,7 +283,6 @@ pub fn nearest_inertia(inertia: [[f64; 3]; 3]) -> PyResult<([[f64; 3]; 3], f64)>
 
 /// Contact forces of closing speeds on a linear region without a covering.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // extracted from Python objects
 pub fn bare_forces<'py>(
     py: Python<'py>,
     closing_speed: PyReadonlyArray1<'py, f64>,

@@ -19,10 +19,10 @@ use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::Fields;
+use crate::arrays::{Fields, fields};
 use crate::errors::{CoreError, CoreResult};
 use crate::impact::many::Numbers;
-use crate::watch::{Control, Report, watched};
+use crate::watch::{Control, Report, spread, watched};
 
 /// What all rows share, by the names of Python's dictionary.
 #[derive(FromPyObject)]
@@ -122,7 +122,7 @@ enum RowsOf {
 /// Results of many rows: `kind` is ``"collide"``, ``"speed"`` or ``"thickness"``.
 #[pyfunction]
 #[pyo3(signature = (kind, shared, numbers, rows, *, gravity, threads, progress))]
-#[allow(clippy::needless_pass_by_value, clippy::too_many_arguments)] // extracted from Python objects
+#[allow(clippy::too_many_arguments)] // extracted from Python objects
 pub fn contact_rows<'py>(
     py: Python<'py>,
     kind: &str,
@@ -259,16 +259,13 @@ pub fn contact_speed(
     let (found, bare) = watched(py, Report::none(), |control: &Control<'_>| {
         setup.allowed(&row, None, &mut None, &|| control.interrupted())
     })?;
-    let fields = Fields::new(py);
-    fields.value("speed", found.speed)?;
-    fields.value("governs", found.governs.word())?;
-    fields.value("status", found.status.word())?;
-    fields.value("speeds", found.speeds)?;
-    fields.value("bare_speed_force", bare)?;
-    fields.value("further", found.further)?;
-    fields.value("covering_compression", found.compression)?;
-    fields.value("rising", found.rising)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        value found: speed, speeds, further, rising;
+        value governs = found.governs.word();
+        value status = found.status.word();
+        value bare_speed_force = bare;
+        value covering_compression = found.compression;
+    })
 }
 
 /// One least thickness; a number that is out of range is an error.
@@ -338,21 +335,13 @@ pub fn contact_exceedance(
         uncertain.push((place, distribution(name, kind, values)?));
     }
     let report = Report::new(progress.as_ref(), draws);
-    let found = watched(py, report, |control: &Control<'_>| {
-        let work = Work {
-            threads,
-            interrupted: &|| control.interrupted(),
-            progress: &|more| control.count(more),
-        };
+    let found = spread(py, report, threads, |work| {
         exceedance(&setup, &row, &uncertain, speed, (draws, seed), work)
     })?;
-    let fields = Fields::new(py);
-    fields.value("probability", found.probability)?;
-    fields.value("interval", (found.interval.low, found.interval.high))?;
-    fields.value("quantiles", found.quantiles)?;
-    fields.value("exceeded", found.exceeded)?;
-    fields.value("draws", found.draws)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        value found: probability, quantiles, exceeded, draws;
+        value interval = (found.interval.low, found.interval.high);
+    })
 }
 
 fn distribution(name: &str, kind: &str, values: &[f64]) -> CoreResult<Distribution> {

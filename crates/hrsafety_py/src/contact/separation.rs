@@ -56,7 +56,6 @@ fn of_row(mut failure: Failure, row: usize, count: usize) -> Failure {
 
 /// Distances with a constant deceleration.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // extracted from Python objects
 pub fn separation_distances<'py>(
     py: Python<'py>,
     robot_speed: PyReadonlyArray1<'py, f64>,
@@ -72,7 +71,6 @@ pub fn separation_distances<'py>(
 
 /// Speeds that distances allow with a constant deceleration.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // extracted from Python objects
 pub fn separation_speeds<'py>(
     py: Python<'py>,
     distance: PyReadonlyArray1<'py, f64>,
@@ -93,7 +91,6 @@ pub struct StoppingCurve(separation::StoppingCurve);
 #[pymethods]
 impl StoppingCurve {
     #[new]
-    #[allow(clippy::needless_pass_by_value)] // extracted from Python objects
     fn new(
         axes: [Vec<f64>; 3],
         time: PyReadonlyArray1<'_, f64>,
@@ -111,7 +108,6 @@ impl StoppingCurve {
     }
 
     /// Distances for robots that stop as measured.
-    #[allow(clippy::needless_pass_by_value)] // extracted from Python objects
     fn distances<'py>(
         &self,
         py: Python<'py>,
@@ -126,7 +122,6 @@ impl StoppingCurve {
     }
 
     /// Speeds that distances allow, and whether more might be allowed beyond the table.
-    #[allow(clippy::needless_pass_by_value)] // extracted from Python objects
     #[allow(clippy::type_complexity)] // a pair
     fn speeds<'py>(
         &self,

@@ -13,8 +13,7 @@ use vff_core::crowd::metrics::ROBOT_METRICS;
 
 use crate::crowd::CrowdWorld;
 use crate::errors::CoreError;
-use crate::keywords::Keywords;
-use crate::parameters::word;
+use crate::keywords::{Keywords, taken};
 use crate::run::stepped::Stepped;
 use crate::watch::{Report, here, watched};
 
@@ -90,32 +89,15 @@ fn settings_of(world: &CrowdWorld, given: &Keywords<'_>) -> PyResult<Settings> {
     };
     let of_actions = "be \"velocity\", \"acceleration\" or \"unicycle\"";
     let of_modes = "be \"NextStep\", \"SameStep\" or \"Disabled\"";
-    Ok(Settings {
-        world: world.core().clone(),
-        layout,
-        action: word("action", &given.take("action")?, of_actions, &actions)?,
-        max_acceleration: given.take("max_acceleration")?,
-        max_turn_rate: given.take("max_turn_rate")?,
-        people: given.take("people")?,
-        rays: given.take("lidar")?,
-        axes: word(
-            "frame",
-            &given.take("frame")?,
-            "be \"world\" or \"goal\"",
-            &axes,
-        )?,
-        rewards: Rewards {
-            progress: given.take("progress")?,
-            step: given.take("step_reward")?,
-        },
-        autoreset: word(
-            "autoreset_mode",
-            &given.take("autoreset_mode")?,
-            of_modes,
-            &modes,
-        )?,
-        metrics: given.take("metrics")?,
-    })
+    Ok(taken!(given: Settings {
+        world = world.core().clone(), layout = layout,
+        action = given.word("action", of_actions, &actions)?, max_acceleration,
+        max_turn_rate, people, rays as lidar,
+        axes = given.word("frame", "be \"world\" or \"goal\"", &axes)?,
+        rewards = taken!(given: Rewards { progress, step as step_reward }),
+        autoreset = given.word("autoreset_mode", of_modes, &modes)?,
+        metrics,
+    }))
 }
 
 const BUSY: &str = "a step of these environments is under way; step them from one place at a time";

@@ -1,7 +1,7 @@
 //! Metrics of robots among people: episodes are converted once, and scored side by side.
 
 use nalgebra::Vector2;
-use numeric::parallel::{Work, each_run};
+use numeric::parallel::each_run;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -15,8 +15,8 @@ use vff_core::world::shape::PlacedShape;
 
 use crate::arrays::Fields;
 use crate::errors::CoreError;
-use crate::keywords::Keywords;
-use crate::watch::{Report, watched};
+use crate::keywords::{Keywords, taken};
+use crate::watch::{Report, spread};
 
 type Rows<'py> = PyReadonlyArray2<'py, f64>;
 
@@ -49,16 +49,10 @@ pub fn crowd_metric_names() -> [Vec<[&'static str; 4]>; 2] {
 /// What is measured by.
 fn rules(given: &Keywords<'_>) -> PyResult<Rules> {
     let goal: [f64; 2] = given.take("goal")?;
-    Ok(Rules {
-        step: given.take("step")?,
-        goal: goal.into(),
-        robot_radius: given.take("robot_radius")?,
-        arrival_tolerance: given.take("arrival_tolerance")?,
-        person_tolerance: given.take("person_tolerance")?,
-        max_speed: given.take("max_speed")?,
-        shortest_length: given.take("shortest_length")?,
-        period: Period(given.take("period")?),
-    })
+    Ok(taken!(given: Rules {
+        step, goal = goal.into(), robot_radius, arrival_tolerance, person_tolerance, max_speed,
+        shortest_length, period = Period(given.take("period")?),
+    }))
 }
 
 /// Segments as rows (x, y, x, y), discs as (x, y, radius), rectangles as (x, y, length, width, heading).
@@ -190,15 +184,10 @@ pub fn crowd_metrics<'py>(
     episodes: Vec<PyRef<'py, CrowdEpisode>>,
     threads: Option<usize>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<[Bound<'py, PyDict>; 2]> {
+) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
     let episodes: Vec<&CrowdEpisode> = episodes.iter().map(|episode| &**episode).collect();
     let report = Report::new(progress.as_ref(), episodes.len());
-    let rows = watched(py, report, |control| {
-        let work = Work {
-            threads,
-            interrupted: &|| control.interrupted(),
-            progress: &|more| control.count(more),
-        };
+    let rows = spread(py, report, threads, |work| {
         each_run(episodes.len(), work, |index| {
             let (found, extremes) = metrics::evaluate_with_extremes(&episodes[index].view());
             Ok((found.into_array(), extremes.into_array()))
@@ -211,7 +200,7 @@ pub fn crowd_metrics<'py>(
     for (index, name) in EXTREMES.into_iter().enumerate() {
         extremes.vector(name, rows.iter().map(|row| row.1[index]).collect())?;
     }
-    Ok([columns, extremes.finish()])
+    Ok((columns, extremes.finish()))
 }
 
 /// Metrics of a world, from the positions of all people and robots.
@@ -231,12 +220,9 @@ pub fn crowd_world_metrics<'py>(
         Some(times) => Some(times.as_slice()?),
         None => None,
     };
-    let rules = Rules {
-        step: given.take("step")?,
-        person_tolerance: given.take("person_tolerance")?,
-        period: Period(given.take("period")?),
-        ..Rules::of_people()
-    };
+    let rules = taken!(given: Rules {
+        step, person_tolerance, period = Period(given.take("period")?), ..Rules::of_people(),
+    });
     let time_limit = given.take("time_limit")?;
     given.done()?;
     let world = Whole {

@@ -23,11 +23,11 @@ use vff_core::lanes::Vector2;
 use vff_core::world::motion::Motion;
 use vff_core::world::shape::PlacedShape;
 
-use crate::arrays::Fields;
+use crate::arrays::fields;
 use crate::errors::{CoreError, CoreResult};
-use crate::keywords::Keywords;
+use crate::keywords::{Keywords, taken};
 use crate::laws::Law;
-use crate::parameters::{Measurement, Obstacle, mover_of, word};
+use crate::parameters::{Measurement, Obstacle, mover_of};
 use crate::watch::{Report, watched};
 
 /// A model of people.
@@ -82,20 +82,15 @@ fn traits_of(given: &Keywords<'_>) -> PyResult<Traits> {
         ("leave", RouteEnd::Leave),
         ("repeat", RouteEnd::Repeat),
     ];
-    let end: Bound<'_, PyAny> = given.take("at_end")?;
     let rule = "be \"stay\", \"leave\" or \"repeat\"";
-    Ok(Traits {
-        radius: given.take("radius")?,
-        desired_speed: given.take("desired_speed")?,
-        awareness: given.take("awareness")?,
-        distracted_share: given.take("distracted_share")?,
-        model: 0,
-        route: Route {
+    Ok(taken!(given: Traits {
+        radius, desired_speed, awareness, distracted_share, model = 0,
+        route = Route {
             points: route_of(given.take("route")?)?,
-            end: word("at_end", &end, rule, &ends)?,
+            end: given.word("at_end", rule, &ends)?,
             arrival_radius: given.take("arrival_radius")?,
         },
-    })
+    }))
 }
 
 /// The way of a person who follows a recording: instants and positions, if they are given.
@@ -116,14 +111,10 @@ impl CrowdPerson {
     #[pyo3(signature = (model, **given))]
     fn new(model: &CrowdModel, given: Option<Keywords<'_>>) -> PyResult<Self> {
         let given = given.unwrap_or_default();
-        let person = PersonSetup {
-            start: given.take("start")?,
-            velocity: given.take("velocity")?,
-            enters: given.take("enters")?,
-            recorded: recording_of(&given)?,
-            group: given.take("group")?,
-            traits: traits_of(&given)?,
-        };
+        let person = taken!(given: PersonSetup {
+            start, velocity, enters, recorded = recording_of(&given)?, group,
+            traits = traits_of(&given)?,
+        });
         given.done()?;
         person.check().map_err(CoreError::from)?;
         Ok(Self(person, model.0))
@@ -140,13 +131,8 @@ impl CrowdSource {
     #[pyo3(signature = (model, **given))]
     fn new(model: &CrowdModel, given: Option<Keywords<'_>>) -> PyResult<Self> {
         let given = given.unwrap_or_default();
-        let source = SourceSetup {
-            low: given.take("low")?,
-            high: given.take("high")?,
-            rate: given.take("rate")?,
-            regular: given.take("regular")?,
-            traits: traits_of(&given)?,
-        };
+        let source =
+            taken!(given: SourceSetup { low, high, rate, regular, traits = traits_of(&given)? });
         given.done()?;
         source.check().map_err(CoreError::from)?;
         Ok(Self(source, model.0))
@@ -172,17 +158,11 @@ impl CrowdRobot {
         given: Option<Keywords<'_>>,
     ) -> PyResult<Self> {
         let given = given.unwrap_or_default();
-        let setup = RobotSetup {
-            mover: mover_of(robot)?,
-            start: given.take("start")?,
-            goal: given.take("goal")?,
-            heading: given.take("heading")?,
-            control_period: given.take("control_period")?,
-            arrival_tolerance: given.take("arrival_tolerance")?,
-            sensing_range: given.take("sensing_range")?,
-            measurement: measurement.map(Measurement::core),
-            law: law.map(|law| law.any.clone()),
-        };
+        let setup = taken!(given: RobotSetup {
+            mover = mover_of(robot)?, start, goal, heading, control_period, arrival_tolerance,
+            sensing_range, measurement = measurement.map(Measurement::core),
+            law = law.map(|law| law.any.clone()),
+        });
         given.done()?;
         setup.check().map_err(CoreError::from)?;
         let python = law.is_some_and(Law::is_python);
@@ -251,17 +231,12 @@ impl CrowdWorld {
             setup.traits.model = number_of(&mut models, source.1);
             setup
         });
-        let core = vff_core::crowd::CrowdWorld {
-            people,
-            sources: sources.collect(),
-            robots: robots.iter().map(|robot| robot.setup.clone()).collect(),
-            walls: walls.iter().map(|wall| wall.0.clone()).collect(),
-            models,
-            period: Period(given.take("period")?),
-            step: given.take("step")?,
-            time_limit: given.take("time_limit")?,
-            seed: given.take("seed")?,
-        };
+        let core = taken!(given: vff_core::crowd::CrowdWorld {
+            people = people, sources = sources.collect(),
+            robots = robots.iter().map(|robot| robot.setup.clone()).collect(),
+            walls = walls.iter().map(|wall| wall.0.clone()).collect(), models = models,
+            period = Period(given.take("period")?), step, time_limit, seed,
+        });
         given.done()?;
         Ok(Self {
             core: Arc::new(core.checked().map_err(CoreError::from)?),
@@ -291,54 +266,25 @@ impl CrowdWorld {
 
 /// Fields of what was recorded.
 fn fields_of(py: Python<'_>, mut ended: Simulation) -> PyResult<Bound<'_, PyDict>> {
-    let fields = Fields::new(py);
     let mut found = ended.take_recorded().unwrap_or_default();
     let (instants, people, robots) = (found.time.len(), found.people(), ended.robots().len());
-    let flat =
-        |vectors: &[Vector2<f64>]| vectors.iter().flat_map(|each| [each.x, each.y]).collect();
-    fields.vector("time", std::mem::take(&mut found.time))?;
-    fields.cube(
-        "robot_position",
-        flat(&found.robot_position),
-        [instants, robots, 2],
-    )?;
-    fields.cube(
-        "robot_velocity",
-        flat(&found.robot_velocity),
-        [instants, robots, 2],
-    )?;
-    fields.matrix(
-        "robot_heading",
-        std::mem::take(&mut found.robot_heading),
-        instants,
-        robots,
-    )?;
-    let [position, velocity] = found.into_people();
-    fields.cube("position", position, [instants, people, 2])?;
-    fields.cube("velocity", velocity, [instants, people, 2])?;
+    let flat = |vectors: &[Vector2<f64>]| -> Vec<f64> {
+        vectors.iter().flat_map(|each| [each.x, each.y]).collect()
+    };
+    let places = [&found.robot_position, &found.robot_velocity].map(|vectors| flat(vectors));
+    let time = std::mem::take(&mut found.time);
+    let robot_heading = std::mem::take(&mut found.robot_heading);
+    let ([robot_position, robot_velocity], [position, velocity]) = (places, found.into_people());
     let column = |of: &dyn Fn(usize) -> f64| (0..people).map(of).collect::<Vec<f64>>();
     let all = ended.people();
-    fields.vector("radius", column(&|index| all[index].radius))?;
-    fields.vector("desired_speed", column(&|index| all[index].desired_speed))?;
-    fields.vector("awareness", column(&|index| all[index].awareness))?;
-    fields.vector(
-        "person_arrival_time",
-        column(&|index| all[index].arrival_time),
-    )?;
     let ends: Vec<_> = all[..people]
         .iter()
         .map(|each| each.arrival_position)
         .collect();
-    fields.matrix("person_arrival_position", flat(&ends), people, 2)?;
-    let robots = ended.robots().iter();
-    fields.vector(
-        "robot_arrival_time",
-        robots
-            .map(vff_core::crowd::robots::CrowdRobot::arrival_time)
-            .collect(),
-    )?;
-    fields.value("wall_rescues", ended.wall_rescues())?;
-    fields.value("max_person_speed", ended.max_person_speed())?;
+    let arrivals = ended.robots().iter();
+    let robot_arrival_time = arrivals
+        .map(vff_core::crowd::robots::CrowdRobot::arrival_time)
+        .collect();
     let diverged = ended.divergence().map(|found| {
         let (kind, number) = match found.agent {
             Diverged::Person(number) => ("person", number),
@@ -346,8 +292,23 @@ fn fields_of(py: Python<'_>, mut ended: Simulation) -> PyResult<Bound<'_, PyDict
         };
         (found.time, kind, number)
     });
-    fields.value("diverged", diverged)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        vector time = time;
+        array [instants, robots, 2] robot_position = robot_position;
+        array [instants, robots, 2] robot_velocity = robot_velocity;
+        array [instants, robots] robot_heading = robot_heading;
+        array [instants, people, 2] position = position;
+        array [instants, people, 2] velocity = velocity;
+        vector radius = column(&|index| all[index].radius);
+        vector desired_speed = column(&|index| all[index].desired_speed);
+        vector awareness = column(&|index| all[index].awareness);
+        vector person_arrival_time = column(&|index| all[index].arrival_time);
+        array [people, 2] person_arrival_position = flat(&ends);
+        vector robot_arrival_time = robot_arrival_time;
+        value wall_rescues = ended.wall_rescues();
+        value max_person_speed = ended.max_person_speed();
+        value diverged = diverged;
+    })
 }
 
 /// Everything that happens in each of some worlds.
@@ -462,7 +423,7 @@ pub fn crowd_decisions<'py>(
         None => [f64::NAN; 2],
     };
     let flat = decisions.iter().zip(&people).flat_map(shown).collect();
-    let fields = Fields::new(py);
-    fields.matrix("decision", flat, decisions.len(), 2)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        array [decisions.len(), 2] decision = flat;
+    })
 }

@@ -16,7 +16,7 @@ use vff_core::search::{
 };
 use vff_core::world::scenario;
 
-use crate::arrays::Fields;
+use crate::arrays::fields;
 use crate::errors::{CoreError, CoreResult};
 use crate::gains::scorer::Scorer;
 use crate::keywords::Keywords;
@@ -139,11 +139,11 @@ impl GainProblem {
             return Err(error);
         }
         let found = result.map_err(CoreError::from)?;
-        let fields = Fields::new(py);
-        fields.vector("violation", violations(&found, self.constraints()))?;
-        fields.matrix("values", found.values, rows, self.objectives())?;
-        fields.vector("failed", found.failed)?;
-        Ok(fields.finish())
+        Ok(fields! { py;
+            vector violation = violations(&found, self.constraints());
+            array [rows, self.objectives()] found: values;
+            vector found: failed;
+        })
     }
 }
 

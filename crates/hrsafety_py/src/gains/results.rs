@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use vff_core::search::{Candidate, Front, GlobalSearch, LocalSearch, Round, Search};
 
-use crate::arrays::Fields;
+use crate::arrays::{Fields, fields};
 
 /// A grid search with its local searches.
 pub fn search_fields(py: Python<'_>, found: Search) -> PyResult<Bound<'_, PyDict>> {
@@ -27,18 +27,16 @@ pub fn search_fields(py: Python<'_>, found: Search) -> PyResult<Bound<'_, PyDict
 
 /// A global search.
 pub fn global_fields<'py>(py: Python<'py>, found: &GlobalSearch) -> PyResult<Bound<'py, PyDict>> {
-    let fields = Fields::new(py);
-    fields.value("best", best_fields(py, found.best.as_ref())?)?;
     let history = found
         .history
         .iter()
         .flat_map(|(evaluations, best)| [*evaluations as f64, *best])
         .collect();
-    fields.matrix("history", history, found.history.len(), 2)?;
-    fields.value("evaluations", found.evaluations)?;
-    fields.value("failures", found.failures)?;
-    fields.value("interrupted", found.interrupted)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        value best = best_fields(py, found.best.as_ref())?;
+        array [found.history.len(), 2] history = history;
+        value found: evaluations, failures, interrupted;
+    })
 }
 
 /// A front.
@@ -48,14 +46,12 @@ pub fn front_fields(
     dimension: usize,
     objectives: usize,
 ) -> PyResult<Bound<'_, PyDict>> {
-    let fields = Fields::new(py);
     let rows = found.points.len() / dimension;
-    fields.matrix("points", found.points, rows, dimension)?;
-    fields.matrix("values", found.values, rows, objectives)?;
-    fields.value("evaluations", found.evaluations)?;
-    fields.value("failures", found.failures)?;
-    fields.value("interrupted", found.interrupted)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        array [rows, dimension] found: points;
+        array [rows, objectives] found: values;
+        value found: evaluations, failures, interrupted;
+    })
 }
 
 fn list<'py>(
@@ -68,18 +64,18 @@ fn list<'py>(
 /// The best point; without one the search was interrupted before anything was evaluated.
 fn best_fields<'py>(py: Python<'py>, best: Option<&Candidate>) -> PyResult<Bound<'py, PyDict>> {
     let found = best.ok_or_else(|| PyKeyboardInterrupt::new_err(()))?;
-    let fields = Fields::new(py);
-    fields.vector("gains", found.point.clone())?;
-    fields.value("value", found.score.value)?;
-    fields.value("violation", found.score.violation)?;
-    fields.value("failed", found.score.failed)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        vector gains = found.point.clone();
+        value value = found.score.value;
+        value violation = found.score.violation;
+        value failed = found.score.failed;
+    })
 }
 
 fn candidates(fields: &Fields<'_>, found: &[Candidate]) -> PyResult<()> {
     let points = found.iter().flat_map(|entry| entry.point.iter().copied());
     let dimension = found.first().map_or(0, |entry| entry.point.len());
-    fields.matrix("top", points.collect(), found.len(), dimension)?;
+    fields.array("top", points.collect(), [found.len(), dimension])?;
     let values = found.iter().map(|entry| entry.score.value);
     fields.vector("top_values", values.collect())?;
     let missed = found.iter().map(|entry| entry.score.violation);
@@ -106,13 +102,13 @@ fn round_fields(py: Python<'_>, round: Round) -> PyResult<Bound<'_, PyDict>> {
 }
 
 fn local_fields<'py>(py: Python<'py>, local: &LocalSearch) -> PyResult<Bound<'py, PyDict>> {
-    let fields = Fields::new(py);
-    fields.vector("start", local.start.point.clone())?;
-    fields.value("start_value", local.start.score.value)?;
-    fields.vector("gains", local.best.point.clone())?;
-    fields.value("value", local.best.score.value)?;
-    fields.value("violation", local.best.score.violation)?;
-    fields.value("evaluations", local.evaluations)?;
-    fields.value("status", local.status.word())?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        vector start = local.start.point.clone();
+        value start_value = local.start.score.value;
+        vector gains = local.best.point.clone();
+        value value = local.best.score.value;
+        value violation = local.best.score.violation;
+        value local: evaluations;
+        value status = local.status.word();
+    })
 }

@@ -12,7 +12,6 @@ use crate::gains::problem::GainProblem;
 use crate::gains::results::{front_fields, global_fields, search_fields};
 use crate::gains::watch::{Followers, follow};
 use crate::keywords::{Keywords, taken};
-use crate::parameters::word;
 
 /// The state that a search is resumed from.
 fn state_of(given: &Keywords<'_>) -> PyResult<Option<SearchState>> {
@@ -39,20 +38,12 @@ pub fn search_gains<'py>(
         ..LocalOptions::default()
     };
     let options = SearchOptions {
-        grid: taken!(
-            given,
-            GridOptions {
-                shape,
-                refinements,
-                survivors,
-                keep
-            }
-        ),
+        grid: taken!(given: GridOptions { shape, refinements, survivors, keep }),
         local: (local_starts > 0).then_some(local),
         threads: given.take("threads")?,
     };
     let resume = state_of(&given)?;
-    let followers = taken!(given, Followers { progress, save });
+    let followers = taken!(given: Followers { progress, save });
     given.done()?;
     let problem: &GainProblem = &problem;
     let found = py.detach(|| {
@@ -83,16 +74,11 @@ pub fn search_gains_globally<'py>(
         ("cma_es", GlobalMethod::CmaEs),
     ];
     let rule = "be \"differential_evolution\" or \"cma_es\"";
-    let method: Bound<'py, PyAny> = given.take("method")?;
-    let options = GlobalOptions {
-        method: word("method", &method, rule, &methods)?,
-        evaluations: given.take("evaluations")?,
-        islands: given.take("islands")?,
-        seed: given.take("seed")?,
-        threads: given.take("threads")?,
-    };
+    let options = taken!(given: GlobalOptions {
+        method = given.word("method", rule, &methods)?, evaluations, islands, seed, threads,
+    });
     let resume = state_of(&given)?;
-    let followers = taken!(given, Followers { progress, save });
+    let followers = taken!(given: Followers { progress, save });
     given.done()?;
     let problem: &GainProblem = &problem;
     let found = py.detach(|| {
@@ -115,16 +101,9 @@ pub fn gain_front<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let given = given.unwrap_or_default();
     let bounds = Bounds::new(lower, upper).map_err(CoreError::from)?;
-    let options = taken!(
-        given,
-        FrontOptions {
-            shape,
-            refinements,
-            threads
-        }
-    );
+    let options = taken!(given: FrontOptions { shape, refinements, threads });
     let resume = state_of(&given)?;
-    let followers = taken!(given, Followers { progress, save });
+    let followers = taken!(given: Followers { progress, save });
     given.done()?;
     let problem: &GainProblem = &problem;
     let found = py.detach(|| {

@@ -8,7 +8,7 @@ use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-use crate::arrays::Fields;
+use crate::arrays::fields;
 use crate::errors::CoreError;
 use crate::impact::parameters::{Foam, Manipulator, Target};
 use crate::watch::watched_each;
@@ -74,11 +74,8 @@ pub fn foam_boundary<'py>(
         }
     };
     let found = watched_each(py, damping.as_slice()?, find)?;
-    let fields = Fields::new(py);
     let stiffness = found.iter().map(|boundary| boundary.stiffness).collect();
-    fields.vector("stiffness", stiffness)?;
     let words: Vec<&str> = found.iter().map(|each| each.status.word()).collect();
-    fields.value("status", words)?;
     let binding: Vec<&str> = found
         .iter()
         .map(|each| {
@@ -87,12 +84,10 @@ pub fn foam_boundary<'py>(
             chosen.map_or("", |crossing| crossing.quantity.word())
         })
         .collect();
-    fields.value("limited_by", binding)?;
     let places = found.iter().map(|each| {
         let places: Vec<f64> = each.crossings.iter().map(|each| each.stiffness).collect();
         places.into_pyarray(py)
     });
-    fields.value("crossings", PyList::new(py, places)?.to_tuple())?;
     let kinds: Vec<Vec<&str>> = found
         .iter()
         .map(|each| {
@@ -102,16 +97,14 @@ pub fn foam_boundary<'py>(
                 .collect()
         })
         .collect();
-    fields.value("crossing_status", kinds)?;
-    fields.vector(
-        "holds_below",
-        found.iter().map(|each| each.holds_below).collect(),
-    )?;
-    fields.vector(
-        "holds_above",
-        found.iter().map(|each| each.holds_above).collect(),
-    )?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        vector stiffness = stiffness;
+        value status = words;
+        value limited_by = binding;
+        value crossings = PyList::new(py, places)?.to_tuple();
+        value crossing_status = kinds;
+        each found: holds_below, holds_above;
+    })
 }
 
 /// Ratio of each quantity to its limit for a foam.
@@ -144,10 +137,5 @@ pub fn foam_fastest<'py>(
     let problem = design_problem(manipulator, closing_speed, horizon);
     let find = |damping: f64| problem.fastest(&limits, damping);
     let found = watched_each(py, damping.as_slice()?, find)?;
-    let fields = Fields::new(py);
-    let speeds = found.iter().map(|each| each.closing_speed).collect();
-    fields.vector("closing_speed", speeds)?;
-    let stiffness = found.iter().map(|each| each.stiffness).collect();
-    fields.vector("stiffness", stiffness)?;
-    Ok(fields.finish())
+    Ok(fields! { py; each found: closing_speed, stiffness; })
 }

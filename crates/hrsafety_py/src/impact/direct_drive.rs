@@ -4,7 +4,7 @@ use impact_core::joint::direct_drive::{self, DriveImpact};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::Fields;
+use crate::arrays::fields;
 use crate::impact::parameters::{Foam, Head};
 use crate::keywords::{Keywords, parameter_class, taken};
 use crate::watch::{Report, watched};
@@ -34,37 +34,18 @@ pub fn simulate_direct_drive<'py>(
     given: Option<Keywords<'py>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let given = given.unwrap_or_default();
-    let impact = taken!(
-        given,
-        DriveImpact {
-            closing_speed,
-            manipulator_speed,
-            duration,
-            step
-        }
-    );
+    let impact = taken!(given: DriveImpact { closing_speed, manipulator_speed, duration, step });
     given.done()?;
     let (drive, foam, head) = (&drive.0, &foam.0, &head.0);
     let run = watched(py, Report::none(), |control| {
         let interrupted = || control.interrupted();
         direct_drive::simulate_direct_drive(drive, foam, head, &impact, &interrupted)
     })?;
-    let fields = Fields::new(py);
-    fields.vector("time", run.time)?;
-    fields.vector("manipulator_position", run.manipulator_position)?;
-    fields.vector("manipulator_velocity", run.manipulator_velocity)?;
-    fields.vector("head_position", run.head_position)?;
-    fields.vector("head_velocity", run.head_velocity)?;
-    fields.vector("head_acceleration", run.head_acceleration)?;
-    fields.vector("contact_force", run.contact_force)?;
-    fields.vector("compression", run.compression)?;
-    fields.vector("command", run.command)?;
-    fields.vector("requested_command", run.requested_command)?;
-    fields.value("peak_head_acceleration", run.peak_head_acceleration)?;
-    fields.value("peak_contact_force", run.peak_contact_force)?;
-    fields.value("max_compression", run.max_compression)?;
-    fields.value("impact_duration", run.impact_duration)?;
-    fields.value("saturated_from", run.saturated_from.unwrap_or(f64::NAN))?;
-    fields.value("saturated_time", run.saturated_time)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        vector run: time, manipulator_position, manipulator_velocity, head_position, head_velocity,
+            head_acceleration, contact_force, compression, command, requested_command;
+        value run: peak_head_acceleration, peak_contact_force, max_compression, impact_duration,
+            saturated_time;
+        value saturated_from = run.saturated_from.unwrap_or(f64::NAN);
+    })
 }

@@ -11,7 +11,7 @@ use impact_core::response::{
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::Fields;
+use crate::arrays::fields;
 use crate::errors::{CoreError, CoreResult};
 use crate::impact::parameters::{self, Foam, Manipulator, system};
 use crate::impact::single::row_tuple;
@@ -81,13 +81,7 @@ pub fn impact_simulate<'py>(
 ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyTuple>)> {
     let given = given.unwrap_or_default();
     let system = system(manipulator, foam, &head);
-    let approach = taken!(
-        given,
-        Approach {
-            closing_speed,
-            manipulator_speed
-        }
-    );
+    let approach = taken!(given: Approach { closing_speed, manipulator_speed });
     let options = SimulationOptions {
         duration: given.take("duration")?,
         step: given.take("step")?,
@@ -111,18 +105,13 @@ pub fn impact_simulate<'py>(
     given.done()?;
     let run = run(py, &system, &approach, &options)?;
     let row = metrics(&system, &approach, &options, run.peaks)?;
-    let fields = Fields::new(py);
-    fields.vector("time", run.time)?;
-    fields.vector("contact_force", run.contact_force)?;
-    fields.vector("head_acceleration", run.head_acceleration)?;
-    fields.vector("head_position", run.head_position)?;
-    fields.vector("head_velocity", run.head_velocity)?;
-    fields.vector("manipulator_position", run.manipulator_position)?;
-    fields.vector("manipulator_velocity", run.manipulator_velocity)?;
-    fields.vector("compression", run.compression)?;
-    fields.vector("release_times", run.releases)?;
-    fields.vector("touch_times", run.touches)?;
-    Ok((fields.finish(), row_tuple(py, &row, foam.0.linear_range)?))
+    let fields = fields! { py;
+        vector run: time, contact_force, head_acceleration, head_position, head_velocity,
+            manipulator_position, manipulator_velocity, compression;
+        vector release_times = run.releases;
+        vector touch_times = run.touches;
+    };
+    Ok((fields, row_tuple(py, &row, foam.0.linear_range)?))
 }
 
 /// The response; only long work is worth a thread of its own.

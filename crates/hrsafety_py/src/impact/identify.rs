@@ -3,15 +3,14 @@
 use impact_core::identify::{
     self, DriveConstants, Drop, DropContact, DropModel, FoamFitSettings, Tube,
 };
-use numeric::parallel::Work;
-use numpy::{IntoPyArray, PyReadonlyArray1};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::Fields;
+use crate::arrays::{Fields, fields};
 use crate::errors::CoreError;
 use crate::keywords::{Keywords, taken};
-use crate::watch::{Report, here, watched};
+use crate::watch::{Report, here, spread, watched};
 
 type Samples<'py> = PyReadonlyArray1<'py, f64>;
 
@@ -38,14 +37,10 @@ pub fn identify_foam<'py>(
     given: Option<Keywords<'py>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let given = given.unwrap_or_default();
-    let settings = FoamFitSettings {
-        moving_mass: given.take("moving_mass")?,
-        gravity: given.take("gravity")?,
-        confidence: given.take("confidence")?,
-        contact: contact(given.take("attached")?),
-        bootstrap: given.take("bootstrap")?,
-        seed: given.take("seed")?,
-    };
+    let settings = taken!(given: FoamFitSettings {
+        moving_mass, gravity, confidence, contact = contact(given.take("attached")?), bootstrap,
+        seed,
+    });
     let progress: Option<Py<PyAny>> = given.take("progress")?;
     given.done()?;
     let mut signals = Vec::with_capacity(drops.len());
@@ -59,22 +54,17 @@ pub fn identify_foam<'py>(
     // A fit without resampling has nothing to count.
     let told = progress.as_ref().filter(|_| settings.bootstrap > 0);
     let report = Report::new(told, settings.bootstrap);
-    let fit = watched(py, report, |control| {
-        let work = Work {
-            threads: Some(1),
-            interrupted: &|| control.interrupted(),
-            progress: &|more| control.count(more),
-        };
+    let fit = spread(py, report, Some(1), |work| {
         identify::identify_foam(force, compression, &signals, &settings, work)
     })?;
     let fields = Fields::new(py);
     fields.value("stiffness", fit.stiffness)?;
     fields.value("damping_ratio", fit.damping_ratio)?;
     fields.value("friction", fit.friction)?;
-    fields.matrix("covariance", rows(&fit.covariance), 3, 3)?;
-    fields.matrix("interval", rows(&fit.interval), 3, 2)?;
+    fields.array("covariance", rows(&fit.covariance), [3, 3])?;
+    fields.array("interval", rows(&fit.interval), [3, 2])?;
     match fit.bootstrap_interval {
-        Some(interval) => fields.matrix("bootstrap_interval", rows(&interval), 3, 2)?,
+        Some(interval) => fields.array("bootstrap_interval", rows(&interval), [3, 2])?,
         None => fields.value("bootstrap_interval", py.None())?,
     }
     fields.vector("drop_heights", fit.drop_heights)?;
@@ -95,15 +85,15 @@ pub fn fit_static<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let (force, compression) = (static_force.as_slice()?, static_compression.as_slice()?);
     let line = identify::fit_static(force, compression, intercept).map_err(CoreError::from)?;
-    let fields = Fields::new(py);
-    fields.value("stiffness", line.slope)?;
-    fields.value("force_offset", line.intercept)?;
-    fields.matrix("covariance", rows(&line.covariance), 2, 2)?;
     let interval = rows(&[line.slope_interval, line.intercept_interval]);
-    fields.matrix("interval", interval, 2, 2)?;
-    fields.value("force_deviation", line.residual_deviation)?;
-    fields.value("degrees_of_freedom", line.degrees_of_freedom)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        value stiffness = line.slope;
+        value force_offset = line.intercept;
+        array [2, 2] covariance = rows(&line.covariance);
+        array [2, 2] interval = interval;
+        value force_deviation = line.residual_deviation;
+        value line: degrees_of_freedom;
+    })
 }
 
 /// Height of a mass that is dropped on foam.
@@ -113,24 +103,19 @@ pub fn drop_trajectory<'py>(
     py: Python<'py>,
     time: Samples<'py>,
     given: Option<Keywords<'py>>,
-) -> PyResult<Bound<'py, PyAny>> {
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let given = given.unwrap_or_default();
-    let model = DropModel {
-        mass: given.take("mass")?,
-        stiffness: given.take("stiffness")?,
-        damping_ratio: given.take("damping_ratio")?,
-        friction: given.take("friction")?,
-        height: given.take("height")?,
-        gravity: given.take("gravity")?,
-        contact: contact(given.take("attached")?),
-    };
+    let model = taken!(given: DropModel {
+        mass, stiffness, damping_ratio, friction, height, gravity,
+        contact = contact(given.take("attached")?),
+    });
     given.done()?;
     let time = time.as_slice()?;
     // How many events there are is known only afterwards: work of any length looks at signals.
     let heights = here(py, Report::none(), |control| {
         identify::drop_trajectory(time, &model, &|| control.interrupted())
     })?;
-    Ok(heights.into_pyarray(py).into_any())
+    Ok(heights.into_pyarray(py))
 }
 
 /// Acceleration and decay of an open-loop test.
@@ -144,13 +129,11 @@ pub fn fit_open_loop<'py>(
     let fit = watched(py, Report::none(), |control| {
         identify::fit_open_loop(time, angle, &|| control.interrupted())
     })?;
-    let fields = Fields::new(py);
-    fields.value("acceleration", fit.acceleration)?;
-    fields.value("decay", fit.decay)?;
-    fields.matrix("covariance", rows(&fit.covariance), 2, 2)?;
-    fields.matrix("interval", rows(&fit.interval), 2, 2)?;
-    fields.value("residual_deviation", fit.residual_deviation)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        value fit: acceleration, decay, residual_deviation;
+        array [2, 2] covariance = rows(&fit.covariance);
+        array [2, 2] interval = rows(&fit.interval);
+    })
 }
 
 /// Constants of a direct-drive joint from open-loop tests.
@@ -171,17 +154,13 @@ pub fn identify_direct_drive<'py>(
         amplifier_gain,
     )
     .map_err(CoreError::from)?;
-    let fields = Fields::new(py);
-    fields.value("command_gain", fit.command_gain)?;
-    fields.value("friction_offset", fit.friction_offset)?;
-    fields.value("decay", fit.decay)?;
-    fields.value("torque_constant", fit.torque_constant)?;
-    fields.value("viscous_friction", fit.viscous_friction)?;
-    fields.value("static_friction", fit.static_friction)?;
-    fields.matrix("covariance", rows(&fit.covariance), 2, 2)?;
-    fields.matrix("interval", rows(&fit.interval), 2, 2)?;
-    fields.vector("decay_interval", fit.decay_interval.to_vec())?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        value fit: command_gain, friction_offset, decay, torque_constant, viscous_friction,
+            static_friction;
+        array [2, 2] covariance = rows(&fit.covariance);
+        array [2, 2] interval = rows(&fit.interval);
+        vector decay_interval = fit.decay_interval.to_vec();
+    })
 }
 
 /// Proportional and derivative gain for a wanted stiffness and damping.
@@ -190,15 +169,7 @@ pub fn identify_direct_drive<'py>(
 pub fn pd_gains(given: Option<Keywords<'_>>) -> PyResult<(f64, f64)> {
     let given = given.unwrap_or_default();
     let [stiffness, damping] = [given.take("stiffness")?, given.take("damping")?];
-    let constants = taken!(
-        given,
-        DriveConstants {
-            lever_arm,
-            torque_constant,
-            viscous_friction,
-            amplifier_gain,
-        }
-    );
+    let constants = taken!(given: DriveConstants { lever_arm, torque_constant, viscous_friction, amplifier_gain });
     given.done()?;
     let gains = identify::pd_gains(stiffness, damping, &constants).map_err(CoreError::from)?;
     Ok((gains.proportional, gains.derivative))
@@ -209,16 +180,7 @@ pub fn pd_gains(given: Option<Keywords<'_>>) -> PyResult<(f64, f64)> {
 #[pyo3(signature = (**given))]
 pub fn tube_inertia(given: Option<Keywords<'_>>) -> PyResult<(f64, f64)> {
     let given = given.unwrap_or_default();
-    let tube = taken!(
-        given,
-        Tube {
-            density,
-            length,
-            width,
-            height,
-            wall
-        }
-    );
+    let tube = taken!(given: Tube { density, length, width, height, wall });
     given.done()?;
     let found = identify::tube_inertia(&tube).map_err(CoreError::from)?;
     Ok((found.mass, found.inertia))

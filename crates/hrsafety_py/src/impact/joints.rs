@@ -51,15 +51,7 @@ fn triple(manipulator: Manipulator) -> (f64, f64, f64) {
 #[pyo3(signature = (**given))]
 pub fn effective_one_joint(given: Option<Keywords<'_>>) -> PyResult<(f64, f64, f64)> {
     let given = given.unwrap_or_default();
-    let joint = taken!(
-        given,
-        OneJoint {
-            inertia,
-            damping,
-            stiffness,
-            lever_arm
-        }
-    );
+    let joint = taken!(given: OneJoint { inertia, damping, stiffness, lever_arm });
     given.done()?;
     Ok(triple(joint.manipulator().map_err(CoreError::from)?))
 }
@@ -69,17 +61,8 @@ pub fn effective_one_joint(given: Option<Keywords<'_>>) -> PyResult<(f64, f64, f
 #[pyo3(signature = (**given))]
 pub fn effective_two_joints(given: Option<Keywords<'_>>) -> PyResult<(f64, f64, f64)> {
     let given = given.unwrap_or_default();
-    let joints = taken!(
-        given,
-        TwoJoints {
-            mass_matrix,
-            damping,
-            stiffness,
-            second_link,
-            lever_arm,
-            elbow,
-        }
-    );
+    let joints =
+        taken!(given: TwoJoints { mass_matrix, damping, stiffness, second_link, lever_arm, elbow });
     given.done()?;
     Ok(triple(joints.manipulator().map_err(CoreError::from)?))
 }

@@ -11,8 +11,7 @@ use pyo3::types::PyTuple;
 
 use crate::errors::CoreError;
 use crate::impact::single::row_tuple;
-use crate::keywords::Keywords;
-use crate::parameters::word;
+use crate::keywords::{Keywords, word};
 use crate::watch::{Report, watched};
 
 /// Samples whose work ends within a tenth of the time that Ctrl-C may take.
@@ -59,7 +58,7 @@ pub fn hic(
     Ok((found.value, found.start, found.end))
 }
 
-/// Features of a signal in the order of the stub.
+/// Features of a signal in the order in which Python takes them.
 type Features = (
     f64,
     f64,

@@ -4,7 +4,6 @@ pub mod echoes;
 pub mod runs;
 pub mod steps;
 
-use numeric::error::{Failure, Given};
 use numpy::PyReadonlyArray1;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
@@ -21,27 +20,14 @@ use vff_core::world::frame::Frame;
 use vff_core::world::motion::Motion;
 use vff_core::world::obstacle::Obstacle;
 
-use crate::arrays::Fields;
+use crate::arrays::fields;
 use crate::errors::{CoreError, CoreResult};
-use crate::keywords::{Keywords, taken};
+use crate::keywords::{Keywords, taken, word};
 use crate::robots::sensing::Vision;
 use echoes::{EchoShape, Sonar};
 
 type Column<'py> = PyReadonlyArray1<'py, f64>;
 type Rows<'py> = PyReadonlyArray2<'py, f64>;
-
-/// Meaning of a word.
-fn word<T: Copy>(
-    name: &str,
-    rule: &'static str,
-    given: &str,
-    kinds: &[(&str, T)],
-) -> CoreResult<T> {
-    let known = kinds.iter().find(|(kind, _)| *kind == given);
-    known
-        .map(|(_, meaning)| *meaning)
-        .ok_or_else(|| Failure::invalid(name, rule, Given::Word(given.to_owned())).into())
-}
 
 /// Pairs of a contiguous array of two columns.
 fn pairs(values: &[f64]) -> impl Iterator<Item = Vector2<f64>> + '_ {
@@ -79,36 +65,22 @@ impl VirtualImpedance {
     #[pyo3(signature = (**given))]
     fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
         let given = given.unwrap_or_default();
-        let law = taken!(
-            given,
-            Impedance {
-                stiffness,
-                damping,
-                safe_distance,
-                speed_limit,
-                reference_stiffness,
-                reference_damping,
-                clamp
-            },
+        let law = taken!(given: Impedance {
+            stiffness, damping, safe_distance, speed_limit, reference_stiffness, reference_damping,
+            clamp,
             ..Impedance {
-                form: form_of(&given.take::<String>("form")?)?,
+                form: given.word("form", FORM, &FORMS)?,
                 ..Impedance::default()
-            }
-        );
+            },
+        });
         let speeds = [("closing", Speed::Closing), ("norm", Speed::Norm)];
-        let speed: String = given.take("speed")?;
         let bank = BankOptions {
-            pairing: Pairing {
-                gap: given.take("pairing_gap")?,
-                share: given.take("pairing_share")?,
-            },
-            rate: RateFilter {
-                speed: word("speed", "be \"closing\" or \"norm\"", &speed, &speeds)?,
-                time_constant: given.take("filter_time")?,
-                largest: given.take("largest_rate")?,
-                outlives_gaps: given.take("outlives_gaps")?,
-            },
-            rotation: rotation_of(&given.take::<String>("rotation")?)?,
+            pairing: taken!(given: Pairing { gap as pairing_gap, share as pairing_share }),
+            rate: taken!(given: RateFilter {
+                speed = given.word("speed", "be \"closing\" or \"norm\"", &speeds)?,
+                time_constant as filter_time, largest as largest_rate, outlives_gaps,
+            }),
+            rotation: given.word("rotation", ROTATION, &ROTATIONS)?,
             translated_by: given.take("translated_by")?,
         };
         given.done()?;
@@ -119,30 +91,24 @@ impl VirtualImpedance {
     }
 }
 
-/// Form of the law by its word.
-pub fn form_of(form: &str) -> CoreResult<Form> {
-    let kinds = [
-        ("off", Form::Off),
-        ("conventional", Form::Conventional),
-        ("active", Form::Active),
-        ("twice_scaled", Form::ActiveTwiceScaled),
-    ];
-    let rule = "be one of \"off\", \"conventional\", \"active\", \"twice_scaled\"";
-    word("form", rule, form, &kinds)
-}
+/// Forms of the law.
+const FORMS: [(&str, Form); 4] = [
+    ("off", Form::Off),
+    ("conventional", Form::Conventional),
+    ("active", Form::Active),
+    ("twice_scaled", Form::ActiveTwiceScaled),
+];
+const FORM: &str = "be one of \"off\", \"conventional\", \"active\", \"twice_scaled\"";
 
-fn rotation_of(rotation: &str) -> CoreResult<Rotation> {
-    let turns = [
-        ("heading", Rotation::ByHeading),
-        ("printed", Rotation::Printed),
-    ];
-    let rule = "be \"heading\" or \"printed\"";
-    word("rotation", rule, rotation, &turns)
-}
+/// Turns of vectors of the robot into the world.
+const ROTATIONS: [(&str, Rotation); 2] = [
+    ("heading", Rotation::ByHeading),
+    ("printed", Rotation::Printed),
+];
+const ROTATION: &str = "be \"heading\" or \"printed\"";
 
 /// Points of echoes: sensors (m), angles of their axes (rad) and readings (m).
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // references to Python objects
 pub fn collision_points<'py>(
     py: Python<'py>,
     sensor: Rows<'py>,
@@ -155,38 +121,36 @@ pub fn collision_points<'py>(
     let points: Vec<f64> = both
         .flat_map(|(pose, reading)| <[f64; 2]>::from(collision_point(&pose, *reading)))
         .collect();
-    let fields = Fields::new(py);
     let count = points.len() / 2;
-    fields.matrix("point", points, count, 2)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        array [count, 2] point = points;
+    })
 }
 
 /// Vectors of the robot in the directions of the world, by headings in rad.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // references to Python objects
 pub fn vectors_to_world<'py>(
     py: Python<'py>,
     vector: Rows<'py>,
     heading: Column<'py>,
-    rotation: &str,
+    rotation: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let rotation = rotation_of(rotation)?;
+    let rotation = word("rotation", rotation, ROTATION, &ROTATIONS)?;
     let both = pairs(vector.as_slice()?).zip(heading.as_slice()?);
     let turned: Vec<f64> = both
         .flat_map(|(vector, heading)| {
             <[f64; 2]>::from(rotation.to_world(&Frame::at([0.0; 2], *heading), vector))
         })
         .collect();
-    let fields = Fields::new(py);
     let count = turned.len() / 2;
-    fields.matrix("vector", turned, count, 2)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        array [count, 2] vector = turned;
+    })
 }
 
 /// Attraction in N towards offsets in m, for velocities in m/s.
 #[pyfunction]
 #[pyo3(signature = (offset, velocity, *, stiffness, damping))]
-#[allow(clippy::needless_pass_by_value)] // references to Python objects
 pub fn attraction_forces<'py>(
     py: Python<'py>,
     offset: Rows<'py>,
@@ -204,15 +168,14 @@ pub fn attraction_forces<'py>(
     let forces: Vec<f64> = both
         .flat_map(|(offset, velocity)| <[f64; 2]>::from(attraction.force(offset, velocity)))
         .collect();
-    let fields = Fields::new(py);
     let count = forces.len() / 2;
-    fields.matrix("force", forces, count, 2)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        array [count, 2] force = forces;
+    })
 }
 
 /// Spring and damper parts (N) at distances (m) and speeds (m/s), and the two scales.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // references to Python objects
 pub fn impedance_forces<'py>(
     py: Python<'py>,
     law: &VirtualImpedance,
@@ -223,12 +186,12 @@ pub fn impedance_forces<'py>(
     let both = distance.as_slice()?.iter().zip(speed.as_slice()?);
     let parts = both.map(|(d, v)| (prepared.spring(*d), prepared.damper(*d, *v)));
     let (spring, damper) = parts.unzip();
-    let fields = Fields::new(py);
-    fields.vector::<f64>("spring", spring)?;
-    fields.vector::<f64>("damper", damper)?;
-    fields.value("distance_scale", law.law.distance_scale())?;
-    fields.value("speed_scale", law.law.speed_scale())?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        vector spring = spring;
+        vector damper = damper;
+        value distance_scale = law.law.distance_scale();
+        value speed_scale = law.law.speed_scale();
+    })
 }
 
 /// Point of a line, or segment, between two points that counts as nearest to the origin.
@@ -237,12 +200,11 @@ type Foot = fn(Vector2<f64>, Vector2<f64>) -> Vector2<f64>;
 /// Feet of perpendiculars from the origin on the lines, or segments, between points.
 #[pyfunction]
 #[pyo3(signature = (one, other, *, form))]
-#[allow(clippy::needless_pass_by_value)] // references to Python objects
 pub fn collision_feet<'py>(
     py: Python<'py>,
     one: Rows<'py>,
     other: Rows<'py>,
-    form: &str,
+    form: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let forms: [(&str, Foot); 3] = [
         ("segment", clamped_foot),
@@ -250,15 +212,15 @@ pub fn collision_feet<'py>(
         ("printed", printed_foot),
     ];
     let rule = "be one of \"segment\", \"line\", \"printed\"";
-    let of = word("form", rule, form, &forms)?;
+    let of = word("form", form, rule, &forms)?;
     let ends = pairs(one.as_slice()?).zip(pairs(other.as_slice()?));
     let feet: Vec<f64> = ends
         .flat_map(|(one, other)| <[f64; 2]>::from(of(one, other)))
         .collect();
-    let fields = Fields::new(py);
     let count = feet.len() / 2;
-    fields.matrix("foot", feet, count, 2)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        array [count, 2] foot = feet;
+    })
 }
 
 /// The robot and its ear.
@@ -279,10 +241,10 @@ impl Follower {
         fix_interval: f64,
         fix_noise: bool,
         mirrored_fixes: bool,
-        velocity_rule: &str,
-        integration: &str,
+        velocity_rule: &Bound<'_, PyAny>,
+        integration: &Bound<'_, PyAny>,
         step: f64,
-    ) -> CoreResult<Self> {
+    ) -> PyResult<Self> {
         let [
             mass,
             body_radius,
@@ -300,8 +262,8 @@ impl Follower {
         let forms = [("chord", Integration::Chord), ("arc", Integration::Arc)];
         let integration = word(
             "integration",
-            "be \"chord\" or \"arc\"",
             integration,
+            "be \"chord\" or \"arc\"",
             &forms,
         )?;
         let settings = Settings {
@@ -330,11 +292,11 @@ impl Follower {
                 damping,
                 standoff,
             },
-            velocity: word("velocity_rule", rule, velocity_rule, &rules)?,
+            velocity: word("velocity_rule", velocity_rule, rule, &rules)?,
             step,
             ..Settings::default()
         };
-        Ok(Self(settings.checked()?))
+        Ok(Self(settings.checked().map_err(CoreError::from)?))
     }
 }
 
@@ -351,7 +313,6 @@ impl Follower {
 
 /// Standard deviations of range (m) and bearing (rad) of a fix, by Table 2.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // references to Python objects
 pub fn fix_deviations<'py>(
     py: Python<'py>,
     range: Column<'py>,
@@ -361,8 +322,8 @@ pub fn fix_deviations<'py>(
     let both = range.as_slice()?.iter().zip(bearing.as_slice()?);
     let parts = both.map(|(range, bearing)| noise.at(*range, *bearing));
     let (range, bearing) = parts.map(|[range, bearing]| (range, bearing)).unzip();
-    let fields = Fields::new(py);
-    fields.vector::<f64>("range", range)?;
-    fields.vector::<f64>("bearing", bearing)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        vector range = range;
+        vector bearing = bearing;
+    })
 }

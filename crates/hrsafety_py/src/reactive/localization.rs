@@ -2,8 +2,6 @@
 
 pub mod bursts;
 
-use numeric::error::{Failure, Given};
-use numeric::parallel::Work;
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -11,26 +9,15 @@ use vff_core::sensing::sound::batch::{FixColumns, locate_many};
 use vff_core::sensing::sound::fix::{self, Covariance, FixStatus};
 use vff_core::sensing::sound::microphones::{self, Pair};
 
-use crate::arrays::Fields;
-use crate::errors::{CoreError, CoreResult};
-use crate::watch::{Report, watched};
+use crate::arrays::{Fields, fields};
+use crate::keywords::{parameter_class, word};
+use crate::watch::{Report, spread};
 
 type Column<'py> = PyReadonlyArray1<'py, f64>;
-/// Row of three microphones.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct MicrophoneArray(pub microphones::MicrophoneArray);
 
-#[pymethods]
-impl MicrophoneArray {
-    #[new]
-    #[pyo3(signature = (*, spacing, speed_of_sound))]
-    fn new(spacing: f64, speed_of_sound: f64) -> CoreResult<Self> {
-        let array = microphones::MicrophoneArray {
-            spacing,
-            speed_of_sound,
-        };
-        Ok(Self(array.checked()?))
-    }
+parameter_class! {
+    /// Row of three microphones.
+    MicrophoneArray(microphones::MicrophoneArray) { spacing, speed_of_sound }
 }
 
 /// Words of the codes of fixes.
@@ -61,20 +48,16 @@ pub fn microphone_delays<'py>(
 pub fn parallel_ray_bearings<'py>(
     py: Python<'py>,
     array: &MicrophoneArray,
-    pair: &str,
+    pair: &Bound<'py, PyAny>,
     delay_12: Column<'py>,
     delay_13: Column<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let pair = match pair {
-        "12" => Pair::First,
-        "23" => Pair::Second,
-        "13" => Pair::Outer,
-        _ => {
-            let rule = "be one of \"12\", \"23\", \"13\"";
-            let error = Failure::invalid("pair", rule, Given::Word(pair.into()));
-            return Err(CoreError::from(error).into());
-        }
-    };
+    let pairs = [
+        ("12", Pair::First),
+        ("23", Pair::Second),
+        ("13", Pair::Outer),
+    ];
+    let pair = word("pair", pair, "be one of \"12\", \"23\", \"13\"", &pairs)?;
     let delays = delay_12.as_slice()?.iter().zip(delay_13.as_slice()?);
     let bearings = delays.map(|(a, b)| array.0.parallel_ray_bearing(pair, pair.delay([*a, *b])));
     let fields = Fields::new(py);
@@ -94,10 +77,10 @@ pub fn microphone_elevations<'py>(
     let angles: Vec<f64> = both
         .flat_map(|(range, bearing)| array.0.elevations(*range, *bearing))
         .collect();
-    let fields = Fields::new(py);
     let count = angles.len() / 3;
-    fields.matrix("elevation", angles, count, 3)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        array [count, 3] elevation = angles;
+    })
 }
 
 /// Ranges by the printed formula.
@@ -136,24 +119,17 @@ pub fn locate_sounds<'py>(
     };
     let report = Report::new(progress.as_ref(), first.len());
     let array = array.0;
-    let found = watched(py, report, |control| {
-        let work = Work {
-            threads,
-            interrupted: &|| control.interrupted(),
-            progress: &|rows| control.count(rows),
-        };
+    let found = spread(py, report, threads, |work| {
         locate_many(&array, first, second, &covariance, work)
     })?;
     fix_columns(py, found)
 }
 
 fn fix_columns(py: Python<'_>, found: FixColumns) -> PyResult<Bound<'_, PyDict>> {
-    let fields = Fields::new(py);
     let rows = found.range.len();
-    fields.vector("range", found.range)?;
-    fields.vector("bearing", found.bearing)?;
-    fields.cube("covariance", found.covariance, [rows, 2, 2])?;
-    fields.vector("curvature", found.curvature)?;
-    fields.vector("status_code", found.status)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        vector found: range, bearing, curvature;
+        array [rows, 2, 2] found: covariance;
+        vector status_code = found.status;
+    })
 }

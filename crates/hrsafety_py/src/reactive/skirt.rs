@@ -1,7 +1,5 @@
 //! Skirt: conversion of arguments and results.
 
-use numeric::error::{Failure, Given};
-use numeric::parallel::Work;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -15,10 +13,10 @@ use vff_core::sensing::sonar::ring::{
     Circumference, closing_gap, least_sensors, safe_distance as meeting_distance,
 };
 
-use crate::arrays::Fields;
+use crate::arrays::fields;
 use crate::errors::{CoreError, CoreResult};
-use crate::keywords::Keywords;
-use crate::watch::{Report, watched};
+use crate::keywords::{Keywords, parameter_class, taken, word};
+use crate::watch::{Report, spread};
 
 /// Word of an action.
 pub fn action_word(action: Action) -> &'static str {
@@ -53,13 +51,10 @@ pub fn skirt_closing_gap(sensors: usize, wheel_gap: f64) -> CoreResult<f64> {
 /// Lengths of the printed equations, the radius of the chassis if it is known.
 fn circumference(given: &Keywords<'_>, chassis_radius: Option<f64>) -> PyResult<Circumference> {
     let sensor_radius = given.take("sensor_radius")?;
-    let lengths = Circumference {
-        chassis_radius: chassis_radius.unwrap_or(sensor_radius),
-        sensor_radius,
-        wheel_sensor_radius: given.take("wheel_sensor_radius")?,
-        sensor_length: given.take("sensor_length")?,
-        correction: given.take("correction")?,
-    };
+    let lengths = taken!(given: Circumference {
+        chassis_radius = chassis_radius.unwrap_or(sensor_radius), sensor_radius = sensor_radius,
+        wheel_sensor_radius, sensor_length, correction,
+    });
     given.done()?;
     Ok(lengths.checked().map_err(CoreError::from)?)
 }
@@ -115,25 +110,11 @@ pub fn skirt_safe_distance(sensor_radius: f64, gap: f64) -> f64 {
 /// Velocities and yaw rates.
 type Movement<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>);
 
-/// Platform with three omni-wheels.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct TriOmniKinematics(TriOmni);
-
-#[pymethods]
-impl TriOmniKinematics {
-    #[new]
-    #[pyo3(signature = (*, wheel_radius, wheel_width, chassis_radius))]
-    fn new(wheel_radius: f64, wheel_width: f64, chassis_radius: f64) -> CoreResult<Self> {
-        let platform = TriOmni {
-            wheel_radius,
-            wheel_width,
-            chassis_radius,
-        };
-        Ok(Self(platform.checked()?))
-    }
+parameter_class! {
+    /// Platform with three omni-wheels.
+    TriOmniKinematics(TriOmni) { wheel_radius, wheel_width, chassis_radius }
 
     /// Wheel speeds of velocities and yaw rates, row by row.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn wheel_speeds<'py>(
         &self,
         py: Python<'py>,
@@ -150,7 +131,6 @@ impl TriOmniKinematics {
     }
 
     /// Velocities and yaw rates of wheel speeds, row by row.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn body_velocity<'py>(
         &self,
         py: Python<'py>,
@@ -170,11 +150,11 @@ impl TriOmniKinematics {
 /// Places of the sensors around the chassis.
 fn ring_of(given: &Keywords<'_>) -> PyResult<Ring> {
     let (sensors, wheel_gap) = (given.take("sensors")?, given.take("wheel_gap")?);
-    let layout: String = given.take("layout")?;
-    let bearings = match layout.as_str() {
-        "wheels" => Ring::beside_wheels(sensors, wheel_gap),
-        "even" => Ring::even(sensors),
-        other => return Err(unknown("layout", "be \"wheels\" or \"even\"", other).into()),
+    let layouts = [("wheels", true), ("even", false)];
+    let bearings = if given.word("layout", "be \"wheels\" or \"even\"", &layouts)? {
+        Ring::beside_wheels(sensors, wheel_gap)
+    } else {
+        Ring::even(sensors)
     };
     let (radius, inset) = (given.take("chassis_radius")?, given.take("sensor_inset")?);
     let ring = bearings.and_then(|bearings| Ring::new(radius, inset, bearings));
@@ -192,18 +172,19 @@ impl UltrasonicSkirt {
     fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
         let given = given.unwrap_or_default();
         let ring = ring_of(&given)?;
+        let policies = [
+            ("nearest", Policy::Nearest),
+            ("best_direction", Policy::BestDirection),
+            ("table_only", Policy::TableOnly),
+        ];
+        let policy = "be \"nearest\", \"best_direction\" or \"table_only\"";
         let safe_distance: Option<f64> = given.take("safe_distance")?;
-        let options = SkirtOptions {
-            safe_distance: safe_distance.unwrap_or_else(|| ring.safe_distance()),
-            rule: rule_of(&given.take::<String>("triggering")?)?,
-            policy: policy_of(&given.take::<String>("policy")?)?,
-            beam_width: given.take("beam_width")?,
-            rays: given.take("rays")?,
-            least_range: given.take("least_range")?,
-            most_range: given.take("most_range")?,
-            range_noise: given.take("range_noise")?,
-            firing_period: given.take("firing_period")?,
-        };
+        let options = taken!(given: SkirtOptions {
+            safe_distance = safe_distance.unwrap_or_else(|| ring.safe_distance()),
+            rule = given.word("triggering", RULE, &RULES)?,
+            policy = given.word("policy", policy, &policies)?, beam_width, rays, least_range,
+            most_range, range_noise, firing_period,
+        });
         given.done()?;
         Ok(Self(Skirt::new(ring, options).map_err(CoreError::from)?))
     }
@@ -229,60 +210,33 @@ impl UltrasonicSkirt {
     }
 
     /// Normal distances d1 to d8 and their limits, in m.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn normal_distances<'py>(
         &self,
         py: Python<'py>,
         readings: PyReadonlyArray1<'py, f64>,
         safe_distance: f64,
-        triggering: &str,
+        triggering: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let rule = rule_of(triggering)?;
+        let rule = word("triggering", triggering, RULE, &RULES)?;
         let rows = normal_distances(self.0.ring(), safe_distance, readings.as_slice()?, rule);
         let rows = rows.map_err(CoreError::from)?;
         rows.concat().to_pyarray(py).reshape([rows.len(), 2])
     }
 
     /// Bits of the sensors that are triggered.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn pattern(&self, readings: PyReadonlyArray1<'_, f64>) -> PyResult<u64> {
         Ok(self.0.decider().pattern(readings.as_slice()?))
     }
 
     /// What is done.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn action(&self, readings: PyReadonlyArray1<'_, f64>) -> PyResult<&'static str> {
         Ok(action_word(self.0.decider().action(readings.as_slice()?)))
     }
 }
 
-fn unknown(name: &str, requirement: &'static str, word: &str) -> CoreError {
-    Failure::invalid(name, requirement, Given::Word(word.into())).into()
-}
-
-fn rule_of(word: &str) -> CoreResult<Rule> {
-    match word {
-        "consistent" => Ok(Rule::Consistent),
-        "printed" => Ok(Rule::Printed),
-        other => Err(unknown(
-            "triggering",
-            "be \"consistent\" or \"printed\"",
-            other,
-        )),
-    }
-}
-
-fn policy_of(word: &str) -> CoreResult<Policy> {
-    match word {
-        "nearest" => Ok(Policy::Nearest),
-        "best_direction" => Ok(Policy::BestDirection),
-        "table_only" => Ok(Policy::TableOnly),
-        other => {
-            let rule = "be \"nearest\", \"best_direction\" or \"table_only\"";
-            Err(unknown("policy", rule, other))
-        }
-    }
-}
+/// When a sensor is triggered.
+const RULES: [(&str, Rule); 2] = [("consistent", Rule::Consistent), ("printed", Rule::Printed)];
+const RULE: &str = "be \"consistent\" or \"printed\"";
 
 /// How discs are laid out.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
@@ -294,46 +248,25 @@ impl SkirtScene {
     #[pyo3(signature = (**given))]
     fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
         let given = given.unwrap_or_default();
-        let options = DiscSceneOptions {
-            radius: given.take("disc_radius")?,
-            obstacles: given.take("obstacles")?,
-            course_distance: given.take("course_distance")?,
-            course_offset: given.take("course_offset")?,
-            half_size: given.take("half_size")?,
-            start_clearance: given.take("start_clearance")?,
-            spacing: given.take("spacing")?,
-            unseen_share: given.take("unseen_share")?,
-        };
+        let options = taken!(given: DiscSceneOptions {
+            radius as disc_radius, obstacles, course_distance, course_offset, half_size,
+            start_clearance, spacing, unseen_share,
+        });
         given.done()?;
         // With a robot of no size: that of the test is checked there.
         Ok(Self(options.checked(0.0).map_err(CoreError::from)?))
     }
 }
 
-/// How the robot moves.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct SkirtMotion(pub Travel);
-
-#[pymethods]
-impl SkirtMotion {
-    #[new]
-    #[pyo3(signature = (*, speed, acceleration, spin_rate, duration))]
-    fn new(speed: f64, acceleration: f64, spin_rate: f64, duration: f64) -> CoreResult<Self> {
-        let motion = Travel {
-            speed,
-            acceleration,
-            spin_rate,
-            duration,
-        };
-        Ok(Self(motion.checked()?))
-    }
+parameter_class! {
+    /// How the robot moves.
+    SkirtMotion(Travel) { speed, acceleration, spin_rate, duration }
 }
 
 /// Rows of the avoidance test.
 #[pyfunction]
 #[pyo3(signature = (skirt, scene, motion, *, layouts, repeats, seed, threads, progress))]
 #[allow(clippy::too_many_arguments)] // keyword-only in Python
-#[allow(clippy::needless_pass_by_value)] // references to Python objects
 pub fn skirt_test<'py>(
     py: Python<'py>,
     skirt: &UltrasonicSkirt,
@@ -355,26 +288,18 @@ pub fn skirt_test<'py>(
     .checked(&skirt.0)
     .map_err(CoreError::from)?;
     let report = Report::new(progress.as_ref(), plan.runs());
-    let rows = watched(py, report, |control| {
-        let work = Work {
-            threads,
-            interrupted: &|| control.interrupted(),
-            progress: &|runs| control.count(runs),
-        };
+    let rows = spread(py, report, threads, |work| {
         test_batch(&skirt.0, &plan, work)
     })?;
-    let fields = Fields::new(py);
     let directions = (0..rows.len()).map(|index| plan.direction(index).word());
-    fields.words("direction", directions)?;
     let clearances = rows.iter().map(|row| row.course.min_clearance).collect();
-    fields.vector("min_clearance", clearances)?;
     let times = rows
         .iter()
         .map(|row| row.course.contact_time.unwrap_or(f64::NAN));
-    fields.vector("contact_time", times.collect())?;
-    fields.vector(
-        "nearest_seen",
-        rows.iter().map(|row| row.nearest_seen).collect(),
-    )?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        words direction = directions;
+        vector min_clearance = clearances;
+        vector contact_time = times.collect();
+        each rows: nearest_seen;
+    })
 }

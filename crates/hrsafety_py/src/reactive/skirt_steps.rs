@@ -93,7 +93,7 @@ impl SkirtSteps {
         firings(&fields, rows, steps.percept().readings.len())?;
         let (discs, seen) = (&steps.scene().discs, &steps.scene().seen);
         let centers = discs.iter().map(|disc| disc.center);
-        fields.matrix("disc_center", flat(centers), discs.len(), 2)?;
+        fields.array("disc_center", flat(centers), [discs.len(), 2])?;
         let radii = discs.iter().map(|disc| disc.shape.inner_radius());
         fields.vector("disc_radius", radii.collect())?;
         fields.vector("disc_seen", seen.clone())?;
@@ -107,11 +107,11 @@ impl SkirtSteps {
 fn firings(fields: &Fields<'_>, rows: &SkirtRecord, sensors: usize) -> PyResult<()> {
     let count = rows.time.len();
     fields.vector("time", rows.time.clone())?;
-    fields.matrix("position", flat(rows.position.iter().copied()), count, 2)?;
+    fields.array("position", flat(rows.position.iter().copied()), [count, 2])?;
     fields.vector("heading", rows.heading.clone())?;
-    fields.matrix("velocity", flat(rows.velocity.iter().copied()), count, 2)?;
+    fields.array("velocity", flat(rows.velocity.iter().copied()), [count, 2])?;
     fields.vector("yaw_rate", rows.yaw_rate.clone())?;
-    fields.matrix("readings", rows.readings.clone(), count, sensors)?;
+    fields.array("readings", rows.readings.clone(), [count, sensors])?;
     fields.words(
         "action",
         rows.action.iter().map(|action| action_word(*action)),

@@ -10,9 +10,9 @@ use vff_core::run::as_built::{
 use vff_core::run::{AnyLaw, Contact, RunSummary};
 use vff_core::world::scenario;
 
-use crate::arrays::Fields;
+use crate::arrays::fields;
 use crate::errors::InvalidParameterError;
-use crate::keywords::Keywords;
+use crate::keywords::{Keywords, taken};
 use crate::laws::Law;
 use crate::parameters::Scenario;
 use crate::robots::differential::{Tracking, VirtualTorque};
@@ -42,11 +42,9 @@ impl AsBuilt {
             Ok(law) => SteeringLaw::Following(law.get().0),
             Err(_) => SteeringLaw::Torque(tracking.cast::<VirtualTorque>()?.get().0),
         };
-        let fusion = PoseFusion {
-            position: given.take("position_share")?,
-            heading: given.take("heading_share")?,
-            mark: given.take("mark_distance")?,
-        };
+        let fusion = taken!(given: PoseFusion {
+            position as position_share, heading as heading_share, mark as mark_distance,
+        });
         given.done()?;
         Ok(Self(as_built::AsBuilt {
             wheels: wheels.map(|wheels| wheels.iter().map(|wheel| *wheel.core()).collect()),
@@ -80,14 +78,12 @@ pub fn as_built_fields<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let (rows, wheels) = (columns.heading.len(), columns.wheels);
     let all = trajectory_fields(py, scenario, summary, columns.motion)?;
-    let fields = Fields::new(py);
-    fields.vector("heading", columns.heading)?;
-    fields.matrix("wheel_speed", columns.wheel_speed, rows, wheels)?;
-    fields.matrix("wheel_current", columns.wheel_current, rows, wheels)?;
-    fields.vector("energy_used", columns.energy_used)?;
-    fields.matrix("reference_position", columns.reference_position, rows, 2)?;
-    fields.matrix("seen_position", columns.seen_position, rows, 2)?;
-    all.update(fields.finish().as_mapping())?;
+    let fields = fields! { py;
+        vector columns: heading, energy_used;
+        array [rows, wheels] columns: wheel_speed, wheel_current;
+        array [rows, 2] columns: reference_position, seen_position;
+    };
+    all.update(fields.as_mapping())?;
     Ok(all)
 }
 
@@ -126,13 +122,11 @@ pub fn as_built_evaluate<'py>(
         let interrupted = || control.interrupted();
         evaluate_as_built(&scenario.0, &law.any, &built, weights, &interrupted)
     })?;
-    let scores = Fields::new(py);
-    scores.value("total", score.total)?;
-    scores.value("arrival_time", score.arrival_time)?;
-    scores.value("avoidance", score.avoidance)?;
-    scores.value("energy_saving", score.energy_saving)?;
+    let scores = fields! { py;
+        value score: total, arrival_time, avoidance, energy_saving;
+    };
     Ok((
-        scores.finish(),
+        scores,
         as_built_fields(py, &scenario.0, run.0, run.1)?,
         as_built_fields(py, &scenario.0.nominal(), nominal.0, nominal.1)?,
     ))
@@ -188,7 +182,6 @@ fn contact_fields<'py>(
     runs: &[Vec<Option<Contact>>],
     obstacles: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let fields = Fields::new(py);
     let column = |value: fn(&Contact) -> f64| -> Vec<f64> {
         let mut all = Vec::with_capacity(runs.len() * obstacles);
         for (index, touches) in runs.iter().enumerate() {
@@ -199,9 +192,10 @@ fn contact_fields<'py>(
         all
     };
     let (time, speed) = (column(|touch| touch.time), column(|touch| touch.speed));
-    fields.matrix("contact_time", time, runs.len(), obstacles)?;
-    fields.matrix("contact_speed", speed, runs.len(), obstacles)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        array [runs.len(), obstacles] contact_time = time;
+        array [runs.len(), obstacles] contact_speed = speed;
+    })
 }
 
 /// Histories of runs, a row a run, padded with NaN.
@@ -220,13 +214,13 @@ fn history_fields<'py>(
         }
         all
     };
-    let fields = Fields::new(py);
-    fields.matrix("time", padded(1, &|kept| kept.time.clone()), count, longest)?;
     let position = padded(2, &|kept| kept.position.concat());
-    fields.cube("position", position, [count, longest, 2])?;
     let distance = padded(obstacles, &|kept| widened(kept, obstacles));
-    fields.cube("distance", distance, [count, longest, obstacles])?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        array [count, longest] time = padded(1, &|kept| kept.time.clone());
+        array [count, longest, 2] position = position;
+        array [count, longest, obstacles] distance = distance;
+    })
 }
 
 /// Distances with as many columns as the scenario with the most obstacles has.

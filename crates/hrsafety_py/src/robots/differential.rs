@@ -1,6 +1,5 @@
 //! Two-wheel robot that follows a reference.
 
-use numeric::error::{Failure, Given};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -10,7 +9,7 @@ use vff_core::robots::differential::{
 };
 use vff_core::world::motion::Motion;
 
-use crate::arrays::Fields;
+use crate::arrays::fields;
 use crate::errors::{CoreError, CoreResult};
 use crate::keywords::{Keywords, parameter_class, taken};
 use crate::parameters::DifferentialDriveRobot;
@@ -27,13 +26,7 @@ impl Tracking {
     #[pyo3(signature = (**given))]
     fn full_speed(given: Option<Keywords<'_>>) -> PyResult<Self> {
         let given = given.unwrap_or_default();
-        let law = taken!(
-            given,
-            FullSpeed {
-                position_gain,
-                heading_gain
-            }
-        );
+        let law = taken!(given: FullSpeed { position_gain, heading_gain });
         given.done()?;
         Self::checked(differential::Tracking::FullSpeed(law))
     }
@@ -43,27 +36,17 @@ impl Tracking {
     #[pyo3(signature = (**given))]
     fn nonlinear(given: Option<Keywords<'_>>) -> PyResult<Self> {
         let given = given.unwrap_or_default();
-        let error_frame: String = given.take("error_frame")?;
-        let reference_turn: String = given.take("reference_turn")?;
-        let frame = match error_frame.as_str() {
-            "robot" => ErrorFrame::Robot,
-            "world" => ErrorFrame::World,
-            other => return unknown("error_frame", "be \"robot\" or \"world\"", other),
-        };
-        let turn = match reference_turn.as_str() {
-            "derivative" => ReferenceTurn::Derivative,
-            "printed" => ReferenceTurn::HeadingErrorPerPeriod,
-            other => {
-                let rule = "be \"derivative\" or \"printed\"";
-                return unknown("reference_turn", rule, other);
-            }
-        };
-        let law = Nonlinear {
-            damping_ratio: given.take("damping_ratio")?,
-            gain: given.take("gain")?,
-            frame,
-            turn,
-        };
+        let frames = [("robot", ErrorFrame::Robot), ("world", ErrorFrame::World)];
+        let turns = [
+            ("derivative", ReferenceTurn::Derivative),
+            ("printed", ReferenceTurn::HeadingErrorPerPeriod),
+        ];
+        let turn = "be \"derivative\" or \"printed\"";
+        let law = taken!(given: Nonlinear {
+            damping_ratio, gain,
+            frame = given.word("error_frame", "be \"robot\" or \"world\"", &frames)?,
+            turn = given.word("reference_turn", turn, &turns)?,
+        });
         given.done()?;
         Self::checked(differential::Tracking::Nonlinear(law))
     }
@@ -73,21 +56,10 @@ impl Tracking {
     #[pyo3(signature = (**given))]
     fn exponential(given: Option<Keywords<'_>>) -> PyResult<Self> {
         let given = given.unwrap_or_default();
-        let law = ExponentialGoal {
-            approach: taken!(
-                given,
-                FullSpeed {
-                    position_gain,
-                    heading_gain
-                }
-            ),
-            distance_gain: given.take("distance_gain")?,
-            bearing_gain: given.take("bearing_gain")?,
-            orientation_gain: given.take("orientation_gain")?,
-            goal_heading: given.take("goal_heading")?,
-            capture_radius: given.take("capture_radius")?,
-            rest_radius: given.take("rest_radius")?,
-        };
+        let law = taken!(given: ExponentialGoal {
+            approach = taken!(given: FullSpeed { position_gain, heading_gain }), distance_gain,
+            bearing_gain, orientation_gain, goal_heading, capture_radius, rest_radius,
+        });
         given.done()?;
         Self::checked(differential::Tracking::ExponentialGoal(law))
     }
@@ -98,11 +70,6 @@ impl Tracking {
     fn checked(law: differential::Tracking) -> PyResult<Self> {
         Ok(Self(law.checked().map_err(CoreError::from)?))
     }
-}
-
-fn unknown<T>(name: &str, rule: &'static str, word: &str) -> PyResult<T> {
-    let failure = Failure::invalid(name, rule, Given::Word(word.into()));
-    Err(CoreError::from(failure).into())
 }
 
 parameter_class! {
@@ -198,15 +165,15 @@ impl ReferencePath {
             .iter()
             .map(|instant| self.0.at(*instant, &mut cursor))
             .collect();
-        let fields = Fields::new(py);
         let count = states.len();
         let position = states.iter().flat_map(|state| state.position).collect();
-        fields.matrix("position", position, count, 2)?;
         let velocity = states.iter().flat_map(|state| state.velocity).collect();
-        fields.matrix("velocity", velocity, count, 2)?;
         let acceleration = states.iter().flat_map(|state| state.acceleration).collect();
-        fields.matrix("acceleration", acceleration, count, 2)?;
-        Ok(fields.finish())
+        Ok(fields! { py;
+            array [count, 2] position = position;
+            array [count, 2] velocity = velocity;
+            array [count, 2] acceleration = acceleration;
+        })
     }
 }
 
@@ -223,12 +190,7 @@ fn start_of(numbers: &[f64; 5]) -> TrackStart {
 }
 
 fn options_of(given: &Keywords<'_>) -> PyResult<TrackOptions> {
-    Ok(TrackOptions {
-        period: given.take("control_period")?,
-        step: given.take("step")?,
-        duration: given.take("duration")?,
-        goal: given.take("goal")?,
-    })
+    Ok(taken!(given: TrackOptions { period as control_period, step, duration, goal }))
 }
 
 /// History of one run.
@@ -255,19 +217,12 @@ pub fn track<'py>(
 }
 
 fn history(py: Python<'_>, run: TrackRun) -> PyResult<Bound<'_, PyDict>> {
-    let fields = Fields::new(py);
     let rows = run.time.len();
-    fields.vector("time", run.time)?;
-    fields.matrix("position", run.position, rows, 2)?;
-    fields.vector("heading", run.heading)?;
-    fields.vector("speed", run.speed)?;
-    fields.vector("turn_rate", run.turn_rate)?;
-    fields.vector("commanded_speed", run.commanded_speed)?;
-    fields.vector("commanded_turn_rate", run.commanded_turn_rate)?;
-    fields.matrix("reference_position", run.reference_position, rows, 2)?;
-    fields.matrix("reference_velocity", run.reference_velocity, rows, 2)?;
-    fields.vector("goal_phase", run.goal_phase)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        vector run: time, heading, speed, turn_rate, commanded_speed, commanded_turn_rate,
+            goal_phase;
+        array [rows, 2] run: position, reference_position, reference_velocity;
+    })
 }
 
 /// Summary columns of many runs.
@@ -312,16 +267,12 @@ pub fn track_batch<'py>(
 }
 
 fn summary<'py>(py: Python<'py>, rows: &[TrackRow], levels: usize) -> PyResult<Bound<'py, PyDict>> {
-    let fields = Fields::new(py);
-    let column = |value: fn(&TrackRow) -> f64| rows.iter().map(value).collect::<Vec<_>>();
-    fields.vector("final_error", column(|row| row.final_error))?;
-    fields.vector("max_error", column(|row| row.max_error))?;
-    fields.vector("final_heading", column(|row| row.final_heading))?;
-    fields.vector("path_length", column(|row| row.path_length))?;
     let settling = rows
         .iter()
         .flat_map(|row| row.settling_time.clone())
         .collect();
-    fields.matrix("settling_time", settling, rows.len(), levels)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        each rows: final_error, max_error, final_heading, path_length;
+        array [rows.len(), levels] settling_time = settling;
+    })
 }

@@ -12,9 +12,9 @@ use vff_core::sensing::{
 
 use crate::arrays::Fields;
 use crate::errors::{CoreError, CoreResult};
-use crate::keywords::{Keywords, taken};
+use crate::keywords::{Keywords, taken, word};
 use crate::maps::Lidar;
-use crate::parameters::{Scenario, word};
+use crate::parameters::Scenario;
 use crate::watch::{Control, Report, watched};
 
 type Rows<'py> = PyReadonlyArray2<'py, f64>;
@@ -37,17 +37,9 @@ impl Camera {
     #[pyo3(signature = (**given))]
     fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
         let given = given.unwrap_or_default();
-        let lens = taken!(
-            given,
-            Lens {
-                focal_length,
-                radial_distortion,
-                horizontal_scale,
-                image_center,
-                pixel_size,
-                image_size
-            }
-        );
+        let lens = taken!(given: Lens {
+            focal_length, radial_distortion, horizontal_scale, image_center, pixel_size, image_size,
+        });
         let pose = CameraPose::from_rows(given.take("rotation")?, given.take("translation")?);
         given.done()?;
         Ok(Self(
@@ -61,7 +53,6 @@ impl Camera {
     }
 
     /// Pixels of points; NaN for those without an image.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn project<'py>(&self, py: Python<'py>, points: Rows<'py>) -> PyResult<Matrix<'py>> {
         let (points, _) = points.as_slice()?.as_chunks::<3>();
         let pixel = |point: &[f64; 3]| self.0.project(*point).unwrap_or(NOTHING);
@@ -69,14 +60,12 @@ impl Camera {
     }
 
     /// Whether pixels lie in the picture.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn contains(&self, pixels: Rows<'_>) -> PyResult<Vec<bool>> {
         let (pixels, _) = pixels.as_slice()?.as_chunks::<2>();
         Ok(pixels.iter().map(|pixel| self.0.contains(*pixel)).collect())
     }
 
     /// Points at known heights that pixels show; NaN where there is none.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn reconstruct<'py>(
         &self,
         py: Python<'py>,
@@ -93,7 +82,6 @@ impl Camera {
     }
 
     /// Pixels of points with other parameters than those of this camera, and derivatives.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn linearize<'py>(
         &self,
         py: Python<'py>,
@@ -160,7 +148,6 @@ impl Estimator {
     }
 
     /// Estimates at measured positions; rows of the covariance are position, both, velocity.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn track<'py>(
         &self,
         py: Python<'py>,
@@ -177,7 +164,7 @@ impl Estimator {
             covariance.extend(track.covariance());
         }
         let fields = Fields::new(py);
-        fields.matrix("covariance", covariance, times.len(), 3)?;
+        fields.array("covariance", covariance, [times.len(), 3])?;
         estimates.into_fields(&fields)?;
         Ok(fields.finish())
     }
@@ -226,7 +213,6 @@ impl Vision {
     }
 
     /// Frames of a body on a known path, and what is known at the times of the path.
-    #[allow(clippy::needless_pass_by_value)] // the borrow of an array is an owned guard
     fn observe<'py>(
         &self,
         py: Python<'py>,
@@ -246,7 +232,7 @@ impl Vision {
         let fields = Fields::new(py);
         let frames = exposed.len();
         fields.vector("exposed", exposed)?;
-        fields.matrix("measured", measured, frames, 2)?;
+        fields.array("measured", measured, [frames, 2])?;
         estimates.into_fields(&fields)?;
         Ok(fields.finish())
     }
@@ -397,8 +383,8 @@ impl Estimates {
 
     fn into_fields(self, fields: &Fields<'_>) -> PyResult<()> {
         let length = self.measured_at.len();
-        fields.matrix("position", self.position, length, 2)?;
-        fields.matrix("velocity", self.velocity, length, 2)?;
+        fields.array("position", self.position, [length, 2])?;
+        fields.array("velocity", self.velocity, [length, 2])?;
         fields.vector("measured_at", self.measured_at)
     }
 }

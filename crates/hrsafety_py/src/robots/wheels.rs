@@ -1,7 +1,6 @@
 //! Wheels: conversion of arguments and results.
 
-use numeric::error::{Failure, Given};
-use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::robots::wheels::{
@@ -9,35 +8,19 @@ use vff_core::robots::wheels::{
     WheelWish,
 };
 
-use crate::arrays::Fields;
-use crate::errors::{CoreError, CoreResult};
-use crate::keywords::{Keywords, parameter_class, taken};
+use crate::arrays::{Fields, fields};
+use crate::errors::CoreError;
+use crate::keywords::{parameter_class, taken, value_class};
 use crate::watch::{Report, watched};
 
 type Column<'py> = PyReadonlyArray1<'py, f64>;
 type Rows<'py> = PyReadonlyArray2<'py, f64>;
-
-/// One wheel with its motor, encoder and controller.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct WheelDrive(wheels::WheelDrive);
+type Samples<'py> = Bound<'py, PyArray1<f64>>;
 
 impl WheelDrive {
     /// The checked drive.
     pub fn core(&self) -> &wheels::WheelDrive {
         &self.0
-    }
-}
-
-fn feedback_of(word: &str, poles: [f64; 2]) -> CoreResult<Feedback> {
-    match word {
-        "differences" => Ok(Feedback::Differences),
-        "observer" => Ok(Feedback::Observer { poles }),
-        "observed_speed" => Ok(Feedback::ObservedSpeed { poles }),
-        other => {
-            let rule = "be one of \"observer\", \"observed_speed\", \"differences\"";
-            let given = Given::Word(other.to_owned());
-            Err(Failure::invalid("feedback", rule, given).into())
-        }
     }
 }
 
@@ -49,12 +32,9 @@ fn feedback_word(feedback: Feedback) -> (&'static str, [f64; 2]) {
     }
 }
 
-#[pymethods]
-impl WheelDrive {
-    #[new]
-    #[pyo3(signature = (**given))]
-    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
-        let given = given.unwrap_or_default();
+value_class! {
+    /// One wheel with its motor, encoder and controller.
+    WheelDrive(wheels::WheelDrive) of given {
         let [inertia, viscous_friction, static_friction] = given.take("model")?;
         let model = WheelDynamics {
             inertia,
@@ -65,34 +45,26 @@ impl WheelDrive {
             let gear_ratio = given.take("gear_ratio")?;
             PyResult::Ok(counts.map(|counts| Encoder { counts, gear_ratio }))
         };
-        let feedback: String = given.take("feedback")?;
-        let drive = wheels::WheelDrive {
-            dynamics: taken!(
-                given,
-                WheelDynamics {
-                    inertia,
-                    viscous_friction,
-                    static_friction
-                }
-            ),
-            motor: Motor {
-                amplifier_gain: given.take("amplifier_gain")?,
-                resistance: given.take("winding_resistance")?,
-                back_emf: given.take("back_emf")?,
-                current_limit: given.take("current_limit")?,
-                supply_voltage: given.take("supply_voltage")?,
-            },
+        let poles = given.take("observer_poles")?;
+        let kinds = [
+            ("differences", Feedback::Differences),
+            ("observer", Feedback::Observer { poles }),
+            ("observed_speed", Feedback::ObservedSpeed { poles }),
+        ];
+        let rule = "be one of \"observer\", \"observed_speed\", \"differences\"";
+        wheels::WheelDrive {
+            dynamics: taken!(given: WheelDynamics { inertia, viscous_friction, static_friction }),
+            motor: taken!(given: Motor {
+                amplifier_gain, resistance as winding_resistance, back_emf, current_limit,
+                supply_voltage,
+            }),
             encoder: encoder(given.take("encoder_counts")?)?,
-            controller: WheelController {
-                proportional: given.take("proportional_gain")?,
-                derivative: given.take("derivative_gain")?,
-                model,
-                feedback: feedback_of(&feedback, given.take("observer_poles")?)?,
-            },
+            controller: taken!(given: WheelController {
+                proportional as proportional_gain, derivative as derivative_gain, model = model,
+                feedback = given.word("feedback", rule, &kinds)?,
+            }),
             period: given.take("period")?,
-        };
-        given.done()?;
-        Ok(Self(drive.checked().map_err(CoreError::from)?))
+        }
     }
 
     /// What the encoder reads of an open-loop test.
@@ -103,7 +75,7 @@ impl WheelDrive {
         command: f64,
         start_angle: f64,
         periods: usize,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    ) -> PyResult<Samples<'py>> {
         let test = OpenLoopTest {
             command,
             start_angle,
@@ -112,7 +84,7 @@ impl WheelDrive {
         let angles = watched(py, Report::none(), |control| {
             wheels::open_loop_angles(&self.0, &test, &|| control.interrupted())
         })?;
-        Ok(angles.into_pyarray(py).into_any())
+        Ok(angles.into_pyarray(py))
     }
 
     /// Histories of the wheel after a wanted motion, one row per wheel period.
@@ -141,18 +113,11 @@ impl WheelDrive {
             });
             wheels::follow(&self.0, start, wishes, &|| control.interrupted())
         })?;
-        let fields = Fields::new(py);
-        fields.vector("angle", run.angle)?;
-        fields.vector("speed", run.speed)?;
-        fields.vector("read_angle", run.read_angle)?;
-        fields.vector("known_angle", run.known_angle)?;
-        fields.vector("known_speed", run.known_speed)?;
-        fields.vector("current", run.current)?;
-        fields.vector("voltage", run.voltage)?;
-        fields.vector("ideal_current", run.ideal_current)?;
-        fields.value("energy", run.energy)?;
-        fields.value("ideal_energy", run.ideal_energy)?;
-        Ok(fields.finish())
+        Ok(fields! { py;
+            vector run: angle, speed, read_angle, known_angle, known_speed, current, voltage,
+                ideal_current;
+            value run: energy, ideal_energy;
+        })
     }
 }
 
@@ -299,13 +264,13 @@ parameter_class! {
         rim_speed: Column<'py>,
         start: f64,
         period: f64,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    ) -> PyResult<Samples<'py>> {
         let mut speed = start;
         let speeds = rim_speed.as_slice()?.iter().map(|&rim| {
             speed = self.0.ground_speed(rim, speed, period);
             speed
         });
-        Ok(speeds.collect::<Vec<f64>>().into_pyarray(py).into_any())
+        Ok(speeds.collect::<Vec<f64>>().into_pyarray(py))
     }
 }
 
@@ -315,7 +280,7 @@ pub fn wheel_reference<'py>(
     py: Python<'py>,
     speed: Column<'py>,
     period: f64,
-) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+) -> PyResult<(Samples<'py>, Samples<'py>)> {
     let mut reference = wheels::WheelReference::new(period);
     let (angle, acceleration): (Vec<f64>, Vec<f64>) = speed
         .as_slice()?
@@ -325,8 +290,8 @@ pub fn wheel_reference<'py>(
             (wish.angle, wish.acceleration)
         })
         .unzip();
-    let angle = angle.into_pyarray(py).into_any();
-    Ok((angle, acceleration.into_pyarray(py).into_any()))
+    let angle = angle.into_pyarray(py);
+    Ok((angle, acceleration.into_pyarray(py)))
 }
 
 /// Angles of a wheel that starts at rest under a held current.
@@ -337,7 +302,7 @@ pub fn wheel_response<'py>(
     time: Column<'py>,
     dynamics: [f64; 3],
     current: f64,
-) -> PyResult<Bound<'py, PyAny>> {
+) -> PyResult<Samples<'py>> {
     let [inertia, viscous_friction, static_friction] = dynamics;
     let wheel = WheelDynamics {
         inertia,
@@ -348,5 +313,5 @@ pub fn wheel_response<'py>(
     let rest = WheelState::default();
     let angles = time.as_slice()?.iter();
     let angles = angles.map(|&time| wheel.advance(rest, current, time).angle);
-    Ok(angles.collect::<Vec<f64>>().into_pyarray(py).into_any())
+    Ok(angles.collect::<Vec<f64>>().into_pyarray(py))
 }

@@ -70,7 +70,7 @@ pub fn columns<'py>(
     fields.vector("arrival_time", table.arrival_time)?;
     fields.vector("energy", table.energy)?;
     fields.vector("path_length", table.path_length)?;
-    fields.matrix("min_distance", table.min_distance, rows, obstacles)?;
+    fields.array("min_distance", table.min_distance, [rows, obstacles])?;
     fields.vector("min_clearance", table.min_clearance)?;
     fields.vector("entered_active", table.entered_active)?;
     fields.vector("contacts_moving", table.contacts_moving)?;
@@ -105,7 +105,7 @@ fn index_columns(
     fields.vector("gain_index", of_gains)?;
     let of_scenarios = indices().map(|(_, index)| signed(index)).collect();
     fields.vector("scenario_index", of_scenarios)?;
-    fields.matrix("gains", gains, rows, dimension)
+    fields.array("gains", gains, [rows, dimension])
 }
 
 /// A count as Python's integer type of arrays.

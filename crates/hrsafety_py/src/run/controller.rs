@@ -9,7 +9,7 @@ use vff_core::laws::shield::Status;
 use vff_core::run::controller::{self, Observation, Order, Sighting};
 use vff_core::world::geometry::RobotState;
 
-use crate::arrays::Fields;
+use crate::arrays::fields;
 use crate::errors::CoreError;
 use crate::laws::Law;
 use crate::maps::Lidar;
@@ -90,28 +90,21 @@ fn plan_of(order: &Order) -> Vec<(f64, [f64; 2])> {
 }
 
 fn fields_of<'py>(py: Python<'py>, order: &Order) -> PyResult<Bound<'py, PyDict>> {
-    let fields = Fields::new(py);
-    fields.value("force", (order.force.x, order.force.y))?;
-    fields.value("velocity", (order.velocity.x, order.velocity.y))?;
-    fields.value("speed", order.twist.map(|twist| twist.speed))?;
-    fields.value("turn_rate", order.twist.map(|twist| twist.turn_rate))?;
     let (before, heading) = order.course.map_or(([0.0; 2], 0.0), |(course, since)| {
         (course.velocity(since).into(), course.heading(since))
     });
-    fields.value("before", (before[0], before[1]))?;
-    fields.value("heading", heading)?;
-    fields.value("plan", plan_of(order))?;
     let off = order.off_plan;
-    fields.value(
-        "robot_off_plan",
-        off.map(|off| (off.position, off.velocity)),
-    )?;
-    fields.value("status", order.status.map(Status::word))?;
-    fields.value("taken_over", order.taken_over)?;
-    fields.value("timing", order.timing.word())?;
-    fields.value("arrived", order.arrived)?;
-    fields.value("clock_set_back", order.clock_set_back)?;
-    fields.value("oldest", order.oldest)?;
-    fields.value("unknown_beams", order.unknown_beams)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        value force = (order.force.x, order.force.y);
+        value velocity = (order.velocity.x, order.velocity.y);
+        value speed = order.twist.map(|twist| twist.speed);
+        value turn_rate = order.twist.map(|twist| twist.turn_rate);
+        value before = (before[0], before[1]);
+        value heading = heading;
+        value plan = plan_of(order);
+        value robot_off_plan = off.map(|off| (off.position, off.velocity));
+        value status = order.status.map(Status::word);
+        value order: taken_over, arrived, clock_set_back, oldest, unknown_beams;
+        value timing = order.timing.word();
+    })
 }

@@ -6,7 +6,7 @@ use vff_core::run::pursuit::{Encounter, NUMBERS, Pursued, Pursuer};
 use vff_core::run::{ContactCounts, as_built};
 use vff_core::search;
 
-use crate::arrays::Fields;
+use crate::arrays::fields;
 use crate::errors::InvalidParameterError;
 use crate::laws::Law;
 use crate::parameters::Scenario;
@@ -61,25 +61,22 @@ fn columns<'py>(
     found: &[Encounter],
     property: search::Property,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let fields = Fields::new(py);
     let column = |of: &dyn Fn(&Encounter) -> f64| found.iter().map(of).collect::<Vec<f64>>();
-    fields.vector("margin", column(&|each| property.margin(each)))?;
-    fields.vector("least_toward", column(&|each| each.least_toward))?;
-    fields.vector("min_clearance", column(&|each| each.least))?;
     let counts = |of: fn(&ContactCounts) -> u32| -> Vec<i64> {
         found
             .iter()
             .map(|each| i64::from(of(&each.contacts)))
             .collect()
     };
-    fields.vector("contacts_toward", counts(|each| each.toward))?;
-    fields.vector("contacts_away", counts(|each| each.away))?;
-    fields.vector("contacts_standing", counts(|each| each.standing))?;
-    fields.vector("wall_contacts", counts(|each| each.walls))?;
-    fields.vector("arrival_time", column(&|each| each.arrival_time))?;
-    fields.vector("top_speed", column(&|each| each.top_speed))?;
-    fields.vector("end_time", column(&|each| each.end_time))?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        vector margin = column(&|each| property.margin(each));
+        each found: least_toward, arrival_time, top_speed, end_time;
+        vector min_clearance = column(&|each| each.least);
+        vector contacts_toward = counts(|each| each.toward);
+        vector contacts_away = counts(|each| each.away);
+        vector contacts_standing = counts(|each| each.standing);
+        vector wall_contacts = counts(|each| each.walls);
+    })
 }
 
 #[pymethods]
@@ -177,13 +174,13 @@ impl Hunt {
             })
         })?;
         let fields = columns(py, &[found], search::Property::NotAtFault)?;
-        let more = Fields::new(py);
         let count = rows.time.len();
-        more.vector("time", rows.time)?;
-        more.matrix("position", rows.position, count, 2)?;
-        more.matrix("velocity", rows.velocity, count, 2)?;
-        more.matrix("person_position", rows.pursuer, count, 2)?;
-        fields.update(more.finish().as_mapping())?;
+        let more = fields! { py;
+            vector rows: time;
+            array [count, 2] rows: position, velocity;
+            array [count, 2] person_position = rows.pursuer;
+        };
+        fields.update(more.as_mapping())?;
         Ok(fields)
     }
 }

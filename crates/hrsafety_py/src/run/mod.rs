@@ -17,11 +17,11 @@ use vff_core::run::{
     simulate as run_once, terms_at,
 };
 
-use crate::arrays::Fields;
+use crate::arrays::{Fields, fields};
 use crate::errors::{CoreError, InvalidParameterError};
-use crate::keywords::Keywords;
+use crate::keywords::{Keywords, word};
 use crate::laws::Law;
-use crate::parameters::{Scenario, word};
+use crate::parameters::Scenario;
 use crate::python_law::raised;
 use crate::watch::{Report, here};
 
@@ -77,12 +77,12 @@ pub fn trajectory_fields<'py>(
     let (rows, obstacles) = (columns.time.len(), scenario.obstacle_count());
     let rules_heading = scenario.heading();
     fields.vector("time", columns.time)?;
-    fields.matrix("position", columns.position, rows, 2)?;
-    fields.matrix("velocity", columns.velocity, rows, 2)?;
+    fields.array("position", columns.position, [rows, 2])?;
+    fields.array("velocity", columns.velocity, [rows, 2])?;
     fields.vector("heading", vec![rules_heading; rows])?;
     let matrix = |name: &str, values: Vec<f64>, width: usize| {
         if values.len() == rows * width {
-            fields.matrix(name, values, rows, width)?;
+            fields.array(name, values, [rows, width])?;
         }
         Ok::<_, PyErr>(())
     };
@@ -95,7 +95,7 @@ pub fn trajectory_fields<'py>(
     }
     if columns.obstacle_position.len() == 2 * rows * obstacles {
         let shape = [rows, obstacles, 2];
-        fields.cube("obstacle_position", columns.obstacle_position, shape)?;
+        fields.array("obstacle_position", columns.obstacle_position, shape)?;
     }
     fields.value("outcome", summary.outcome.word())?;
     fields.value("arrival_time", summary.arrival_time.unwrap_or(f64::NAN))?;
@@ -162,13 +162,11 @@ pub fn evaluate<'py>(
     let (summary, columns) = run(py, &scenario.0, law, &options)?;
     let (nominal, nominal_columns) = run(py, &nominal_scenario, law, &options)?;
     let score = metrics::performance(&scenario.0, &summary, &nominal, weights_of(weights));
-    let scores = Fields::new(py);
-    scores.value("total", score.total)?;
-    scores.value("arrival_time", score.arrival_time)?;
-    scores.value("avoidance", score.avoidance)?;
-    scores.value("energy_saving", score.energy_saving)?;
+    let scores = fields! { py;
+        value score: total, arrival_time, avoidance, energy_saving;
+    };
     Ok((
-        scores.finish(),
+        scores,
         trajectory_fields(py, &scenario.0, summary, columns)?,
         trajectory_fields(py, &nominal_scenario, nominal, nominal_columns)?,
     ))
@@ -222,7 +220,6 @@ pub fn force_terms<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let terms = terms_at(&scenario.0, &law.any, position, velocity, time);
     let terms = terms.map_err(CoreError::from)?;
-    let fields = Fields::new(py);
     let count = terms.obstacles.len();
     let repulsive = terms
         .obstacles
@@ -234,23 +231,21 @@ pub fn force_terms<'py>(
         .iter()
         .flat_map(|obstacle| obstacle.detour)
         .collect();
-    fields.vector("attractive", terms.attractive.to_vec())?;
-    fields.matrix("repulsive", repulsive, count, 2)?;
-    fields.matrix("detour", detour, count, 2)?;
-    fields.vector("stabilizing", terms.stabilizing.to_vec())?;
-    fields.vector("total", terms.total.to_vec())?;
-    fields.words(
-        "region",
-        terms.obstacles.iter().map(|obstacle| obstacle.region),
-    )?;
     let side: Vec<i64> = terms
         .obstacles
         .iter()
         .map(|obstacle| obstacle.side.into())
         .collect();
-    fields.vector("side", side)?;
-    fields.value("omega", terms.omega)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        vector attractive = terms.attractive.to_vec();
+        array [count, 2] repulsive = repulsive;
+        array [count, 2] detour = detour;
+        vector stabilizing = terms.stabilizing.to_vec();
+        vector total = terms.total.to_vec();
+        words region = terms.obstacles.iter().map(|obstacle| obstacle.region);
+        vector side = side;
+        value terms: omega;
+    })
 }
 
 /// Forces and Lyapunov function at many states.
@@ -298,7 +293,7 @@ pub fn force_field<'py>(
     }
     let fields = Fields::new(py);
     for (name, column) in names.into_iter().zip(columns) {
-        fields.matrix(name, column, rows, 2)?;
+        fields.array(name, column, [rows, 2])?;
     }
     fields.vector("potential", potential)?;
     Ok(fields.finish())

@@ -7,7 +7,7 @@ use vff_core::laws::Situation;
 use vff_core::world::geometry::Body;
 use vff_core::world::obstacle::Shape;
 
-use crate::arrays::Fields;
+use crate::arrays::fields;
 
 /// Radius of a disc, length, width and heading of a rectangle; NaN where there is none.
 fn sizes(body: &Body) -> (f64, [f64; 2], f64) {
@@ -42,24 +42,23 @@ pub fn situation_fields<'py>(
     let count = bodies.len();
     let pairs = |of: &dyn Fn(&Body) -> [f64; 2]| bodies.iter().flat_map(of).collect();
     let values = |of: &dyn Fn(&Body) -> f64| bodies.iter().map(of).collect();
-    let fields = Fields::new(py);
-    fields.value("time", situation.time)?;
-    fields.vector("position", situation.robot.position.lane(0).to_vec())?;
-    fields.vector("velocity", situation.robot.velocity.lane(0).to_vec())?;
-    fields.value("heading", situation.heading)?;
     let place = |body: &Body| shown(body, body.state.position);
-    fields.matrix("obstacle_position", pairs(&place), count, 2)?;
     let speed = |body: &Body| shown(body, body.state.velocity);
-    fields.matrix("obstacle_velocity", pairs(&speed), count, 2)?;
-    fields.vector("obstacle_radius", values(&|body| sizes(body).0))?;
-    fields.matrix("obstacle_size", pairs(&|body| sizes(body).1), count, 2)?;
-    fields.vector("obstacle_heading", values(&|body| sizes(body).2))?;
     let active = |body: &Body| body.regions.active_radius;
-    fields.vector("active_radius", values(&active))?;
     let critical = |body: &Body| body.regions.critical_radius;
-    fields.vector("critical_radius", values(&critical))?;
     let present: Vec<bool> = bodies.iter().map(|body| body.state.present).collect();
-    fields.vector("obstacle_present", present)?;
-    fields.value("control_period", situation.interval)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        value situation: time, heading;
+        vector position = situation.robot.position.lane(0).to_vec();
+        vector velocity = situation.robot.velocity.lane(0).to_vec();
+        array [count, 2] obstacle_position = pairs(&place);
+        array [count, 2] obstacle_velocity = pairs(&speed);
+        vector obstacle_radius = values(&|body| sizes(body).0);
+        array [count, 2] obstacle_size = pairs(&|body| sizes(body).1);
+        vector obstacle_heading = values(&|body| sizes(body).2);
+        vector active_radius = values(&active);
+        vector critical_radius = values(&critical);
+        vector obstacle_present = present;
+        value control_period = situation.interval;
+    })
 }

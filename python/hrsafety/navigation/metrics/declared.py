@@ -39,10 +39,10 @@ class Metric(NamedTuple):
     meaning: str
 
 
-_ROBOT, _WORLD = _hrsafety.crowd_metric_names()
-METRICS: Mapping[str, Metric] = MappingProxyType({row[0]: Metric(*row) for row in _ROBOT})
+_ROBOT, _WORLD = ({row[0]: Metric._make(row) for row in rows} for rows in _hrsafety.crowd_metric_names())
+METRICS: Mapping[str, Metric] = MappingProxyType(_ROBOT)
 """What the native core declares about each metric of a robot, in the order of tables."""
-WORLD_METRICS: Mapping[str, Metric] = MappingProxyType({row[0]: Metric(*row) for row in _WORLD})
+WORLD_METRICS: Mapping[str, Metric] = MappingProxyType(_WORLD)
 """What the native core declares about each metric of a world."""
 
 

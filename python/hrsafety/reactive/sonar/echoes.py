@@ -280,7 +280,7 @@ class Sonar(Parameters):
             raise ShapeError("poses", "(3,) or (n, 3)", given.shape)
         if not np.all(np.isfinite(given)):
             raise InvalidParameterError("poses", "be finite", poses)
-        found = _hrsafety.sonar_readings(
+        found: Array = _hrsafety.sonar_readings(
             self._native,
             native_shapes("shapes", shapes),
             given.reshape(-1, 3),
@@ -328,7 +328,8 @@ def cast_rays(shapes: Sequence[Echoing], origins: npt.ArrayLike, angles: npt.Arr
     for name, array in (("origins", starts), ("angles", directions)):
         if not np.all(np.isfinite(array)):
             raise InvalidParameterError(name, "be finite", array)
-    return _hrsafety.cast_rays(native_shapes("shapes", shapes), starts, directions)["distance"]
+    distances: Array = _hrsafety.cast_rays(native_shapes("shapes", shapes), starts, directions)["distance"]
+    return distances
 
 
 def speed_of_sound(temperature: float) -> float:

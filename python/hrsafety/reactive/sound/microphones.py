@@ -137,8 +137,8 @@ def parallel_ray_bearing(
     own = instance("array", array, MicrophoneArray)
     chosen = word("pair", pair, ("12", "23", "13"))
     first, second = same_shape(delay_12=delay_12, delay_13=delay_13)
-    found = _hrsafety.parallel_ray_bearings(own._native, chosen, first.ravel(), second.ravel())
-    return found["bearing"].reshape(first.shape)
+    bearings: Array = _hrsafety.parallel_ray_bearings(own._native, chosen, first.ravel(), second.ravel())["bearing"]
+    return bearings.reshape(first.shape)
 
 
 def parallel_ray_bias(
@@ -226,8 +226,8 @@ def microphone_elevations(array: MicrophoneArray, *, range: npt.ArrayLike, beari
     behind = np.abs(angle) >= np.pi / 2.0
     if behind.any():
         raise InvalidParameterError("bearing", "be below a quarter turn: in front of the row", float(angle[behind][0]))
-    found = _hrsafety.microphone_elevations(own._native, distance.ravel(), angle.ravel())
-    return found["elevation"].reshape((*distance.shape, 3))
+    elevations: Array = _hrsafety.microphone_elevations(own._native, distance.ravel(), angle.ravel())["elevation"]
+    return elevations.reshape((*distance.shape, 3))
 
 
 def printed_range(array: MicrophoneArray, *, delay_12: npt.ArrayLike, delay_13: npt.ArrayLike) -> Array:
@@ -268,8 +268,8 @@ def printed_range(array: MicrophoneArray, *, delay_12: npt.ArrayLike, delay_13: 
     """
     own = instance("array", array, MicrophoneArray)
     first, second = same_shape(delay_12=delay_12, delay_13=delay_13)
-    found = _hrsafety.printed_ranges(own._native, first.ravel(), second.ravel())
-    return found["range"].reshape(first.shape)
+    ranges: Array = _hrsafety.printed_ranges(own._native, first.ravel(), second.ravel())["range"]
+    return ranges.reshape(first.shape)
 
 
 def same_shape(**values: npt.ArrayLike) -> tuple[Array, ...]:

@@ -11,9 +11,9 @@ use vff_core::world::frame::Frame;
 use vff_core::world::shape::PlacedShape;
 
 use super::{Column, Rows, pairs};
-use crate::arrays::Fields;
+use crate::arrays::fields;
 use crate::errors::{CoreError, CoreResult};
-use crate::keywords::Keywords;
+use crate::keywords::{Keywords, taken};
 
 /// Stream of a seed for readings outside a run.
 const READINGS: u64 = 3;
@@ -60,23 +60,15 @@ impl Sonar {
     #[pyo3(signature = (**given))]
     fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
         let given = given.unwrap_or_default();
-        let ranging = Ranging {
-            least: given.take("least_range")?,
-            most: given.take("most_range")?,
-            noise: given.take("range_noise")?,
-            temperature: given.take("temperature")?,
-            assumed_temperature: given.take("assumed_temperature")?,
-        };
-        let sensors = Sensors {
-            forward: given.take("forward")?,
-            spacing: given.take("spacing")?,
-            fan: given.take("fan")?,
-            beam_width: given.take("beam_width")?,
-            rays: given.take("rays")?,
-            ranging,
-            firing: Firing::named(&given.take::<String>("firing")?).map_err(CoreError::from)?,
-            rear: given.take("rear")?,
-        };
+        let ranging = taken!(given: Ranging {
+            least as least_range, most as most_range, noise as range_noise, temperature,
+            assumed_temperature,
+        });
+        let sensors = taken!(given: Sensors {
+            forward, spacing, fan, beam_width, rays, ranging = ranging,
+            firing = Firing::named(&given.take::<String>("firing")?).map_err(CoreError::from)?,
+            rear,
+        });
         given.done()?;
         sensors.array().map_err(CoreError::from)?;
         Ok(Self(sensors))
@@ -88,20 +80,19 @@ impl Sonar {
 pub fn sonar_mounts<'py>(py: Python<'py>, sonar: &Sonar) -> PyResult<Bound<'py, PyDict>> {
     let array = sonar.0.array().map_err(CoreError::from)?;
     let mounts = array.mounts();
-    let fields = Fields::new(py);
     let places = mounts
         .iter()
         .flat_map(|mount| [mount.position.x, mount.position.y])
         .collect();
-    fields.matrix("position", places, mounts.len(), 2)?;
-    fields.vector("axis", mounts.iter().map(Frame::angle).collect())?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        array [mounts.len(), 2] position = places;
+        vector axis = mounts.iter().map(Frame::angle).collect();
+    })
 }
 
 /// Readings (m) of all sensors at poses (x, y, heading), one after the other.
 #[pyfunction]
 #[pyo3(signature = (sonar, shapes, poses, *, seed, noise))]
-#[allow(clippy::needless_pass_by_value)] // references to Python objects
 pub fn sonar_readings<'py>(
     py: Python<'py>,
     sonar: &Sonar,
@@ -125,15 +116,14 @@ pub fn sonar_readings<'py>(
         array.measure(&body, &shapes, step, &mut readings, &mut normals);
         rows.extend_from_slice(&readings);
     }
-    let fields = Fields::new(py);
     let samples = rows.len() / count;
-    fields.matrix("readings", rows, samples, count)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        array [samples, count] readings = rows;
+    })
 }
 
 /// Distances (m) along rays to the first shape; infinite without one.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value)] // references to Python objects
 pub fn cast_rays<'py>(
     py: Python<'py>,
     shapes: Vec<PyRef<'py, EchoShape>>,
@@ -147,9 +137,9 @@ pub fn cast_rays<'py>(
         let along = shapes.iter().map(|shape| shape.cast(origin, direction));
         along.fold(f64::INFINITY, f64::min)
     });
-    let fields = Fields::new(py);
-    fields.vector("distance", distance.collect())?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        vector distance = distance.collect();
+    })
 }
 
 /// Speed of sound in m/s at a temperature in degrees Celsius.

@@ -1,16 +1,16 @@
 //! Layouts of the follower, and its runs through many of them.
 
-use numeric::parallel::Work;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::run::follower::{FollowerOutcome, Layouts, Setting, run_batch, touching_layouts};
 use vff_core::world::obstacle::Obstacle;
 use vff_core::world::shape::Shape;
 
-use super::{Follower, VirtualImpedance, word};
+use super::{Follower, VirtualImpedance};
 use crate::arrays::Fields;
-use crate::errors::{CoreError, CoreResult};
-use crate::watch::{Report, watched};
+use crate::errors::CoreError;
+use crate::keywords::word;
+use crate::watch::{Report, spread};
 
 /// How random layouts are drawn.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
@@ -21,11 +21,11 @@ impl FollowerLayouts {
     #[new]
     #[pyo3(signature = (*, kind, obstacle_speed, size_factor, leader_size))]
     fn new(
-        kind: &str,
+        kind: &Bound<'_, PyAny>,
         obstacle_speed: [f64; 2],
         size_factor: f64,
         leader_size: Option<[f64; 2]>,
-    ) -> CoreResult<Self> {
+    ) -> PyResult<Self> {
         let kinds = [
             ("tracking", Setting::Tracking),
             ("static", Setting::Static),
@@ -37,9 +37,9 @@ impl FollowerLayouts {
             speeds: obstacle_speed,
             size_factor,
             leader: leader_size.map(|size| size.map(|side| 0.5 * side)),
-            ..Layouts::of(word("kind", rule, kind, &kinds)?)
+            ..Layouts::of(word("kind", kind, rule, &kinds)?)
         };
-        Ok(Self(layouts.checked()?))
+        Ok(Self(layouts.checked().map_err(CoreError::from)?))
     }
 }
 
@@ -83,9 +83,9 @@ fn boxes(fields: &Fields<'_>, obstacles: &[Obstacle]) -> PyResult<()> {
         stops.push(stop);
     }
     let count = starts.len();
-    fields.matrix("center", centers, count, 2)?;
-    fields.matrix("size", sizes, count, 2)?;
-    fields.matrix("velocity", velocities, count, 2)?;
+    fields.array("center", centers, [count, 2])?;
+    fields.array("size", sizes, [count, 2])?;
+    fields.array("velocity", velocities, [count, 2])?;
     fields.vector("start", starts)?;
     fields.vector("stop", stops)
 }
@@ -102,12 +102,7 @@ pub fn follower_touching(
     threads: Option<usize>,
 ) -> PyResult<Vec<u64>> {
     let (settings, layouts) = (&follower.0, &layouts.0);
-    watched(py, Report::none(), |control| {
-        let work = Work {
-            threads,
-            interrupted: &|| control.interrupted(),
-            progress: &|_| (),
-        };
+    spread(py, Report::none(), threads, |work| {
         touching_layouts(settings, layouts, first, count, work)
     })
 }
@@ -115,7 +110,6 @@ pub fn follower_touching(
 /// Ends of the runs through the layouts of seeds.
 #[pyfunction]
 #[pyo3(signature = (follower, law, layouts, seeds, *, threads, progress))]
-#[allow(clippy::needless_pass_by_value)] // references to Python objects
 pub fn follower_batch<'py>(
     py: Python<'py>,
     follower: &Follower,
@@ -128,12 +122,7 @@ pub fn follower_batch<'py>(
     let settings = follower.with(law);
     let layouts = &layouts.0;
     let report = Report::new(progress.as_ref(), seeds.len());
-    let outcomes = watched(py, report, |control| {
-        let work = Work {
-            threads,
-            interrupted: &|| control.interrupted(),
-            progress: &|runs| control.count(runs),
-        };
+    let outcomes = spread(py, report, threads, |work| {
         run_batch(&settings, layouts, &seeds, work)
     })?;
     let fields = Fields::new(py);

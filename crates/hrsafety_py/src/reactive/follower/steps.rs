@@ -30,7 +30,6 @@ pub struct FollowerSteps {
 impl FollowerSteps {
     #[new]
     #[pyo3(signature = (follower, law, obstacles, *, seed, **given))]
-    #[allow(clippy::needless_pass_by_value)] // references to Python objects
     fn new(
         follower: &Follower,
         law: &VirtualImpedance,
@@ -123,14 +122,14 @@ fn samples(
         ("repulsion", &recording.repulsion),
     ];
     for (name, rows) in pairs {
-        fields.matrix(name, flat(rows), count, 2)?;
+        fields.array(name, flat(rows), [count, 2])?;
     }
-    fields.matrix("wheel_speed", recording.wheel_speed.concat(), count, 2)?;
-    fields.cube("shift", flat(&recording.shifts), [count, obstacles, 2])?;
+    fields.array("wheel_speed", recording.wheel_speed.concat(), [count, 2])?;
+    fields.array("shift", flat(&recording.shifts), [count, obstacles, 2])?;
     fields.vector("time", recording.time.clone())?;
     fields.vector("heading", recording.heading.clone())?;
-    fields.matrix("readings", recording.readings.clone(), count, sensors)?;
-    fields.matrix("clearance", recording.clearance.clone(), count, obstacles)
+    fields.array("readings", recording.readings.clone(), [count, sensors])?;
+    fields.array("clearance", recording.clearance.clone(), [count, obstacles])
 }
 
 /// End of a run.

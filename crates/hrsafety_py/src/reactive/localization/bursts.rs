@@ -3,7 +3,6 @@
 use std::sync::OnceLock;
 
 use numeric::error::{Failure, Given};
-use numeric::parallel::Work;
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -16,11 +15,11 @@ use vff_core::sensing::sound::trials::{
     Equipment, Repetition, TrialDelays, burst_delays, jittered_delays,
 };
 
-use crate::arrays::Fields;
+use crate::arrays::fields;
 use crate::errors::{CoreError, CoreResult};
-use crate::keywords::{Keywords, taken};
+use crate::keywords::{Keywords, parameter_class, taken};
 use crate::reactive::localization::MicrophoneArray;
-use crate::watch::{Report, watched};
+use crate::watch::{Report, spread, watched};
 
 /// Method, band in Hz, interpolation, window, start.
 type Options = (String, Option<[f64; 2]>, bool, Option<usize>, Option<usize>);
@@ -53,12 +52,7 @@ impl Burst {
                 return Err(refused("kind", rule, Given::Word(kind)));
             }
         };
-        let burst = burst::Burst {
-            sound,
-            duration: given.take("duration")?,
-            level: given.take("level")?,
-            ramp: given.take("ramp")?,
-        };
+        let burst = taken!(given: burst::Burst { sound = sound, duration, level, ramp });
         given.done()?;
         Ok(Self {
             burst: burst.checked().map_err(CoreError::from)?,
@@ -77,17 +71,9 @@ impl Burst {
     }
 }
 
-/// Analog-to-digital converter.
-#[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct Converter(recording::Converter);
-
-#[pymethods]
-impl Converter {
-    #[new]
-    #[pyo3(signature = (*, sample_rate, bits))]
-    fn new(sample_rate: f64, bits: Option<u32>) -> CoreResult<Self> {
-        Ok(Self(recording::Converter { sample_rate, bits }.checked()?))
-    }
+parameter_class! {
+    /// Analog-to-digital converter.
+    Converter(recording::Converter) { sample_rate, bits }
 }
 
 /// Frequency that is heard by and from something that moves.
@@ -141,11 +127,11 @@ pub fn record_burst<'py>(
         let interrupted = || control.interrupted();
         recording::record(signal, &array, &converter, &place, seed, run, &interrupted)
     })?;
-    let fields = Fields::new(py);
     let count = heard.samples.len() / 3;
-    fields.matrix("samples", heard.samples, 3, count)?;
-    fields.value("clipped", heard.clipped.to_vec())?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        array [3, count] heard: samples;
+        value clipped = heard.clipped.to_vec();
+    })
 }
 
 fn delay_options(options: Options, sample_rate: f64) -> CoreResult<DelayOptions> {
@@ -212,12 +198,12 @@ pub fn sound_delays<'py>(
         options,
         DelayFinder::delays,
     )?;
-    let fields = Fields::new(py);
-    fields.value("delays", found.delays.to_vec())?;
-    fields.value("lags", found.lags.to_vec())?;
-    fields.value("likeness", found.likeness.to_vec())?;
-    fields.value("start", found.start)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        value delays = found.delays.to_vec();
+        value lags = found.lags.to_vec();
+        value likeness = found.likeness.to_vec();
+        value found: start;
+    })
 }
 
 /// Likeness over lag from samples.
@@ -237,18 +223,17 @@ pub fn likeness_curves<'py>(
         options,
         DelayFinder::curves,
     )?;
-    let fields = Fields::new(py);
     let [first, second] = found.values;
-    fields.vector("values_12", first)?;
-    fields.vector("values_13", second)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        vector values_12 = first;
+        vector values_13 = second;
+    })
 }
 
 fn trial_columns(py: Python<'_>, found: TrialDelays) -> PyResult<Bound<'_, PyDict>> {
-    let fields = Fields::new(py);
-    fields.vector("delay_12", found.delay_12)?;
-    fields.vector("delay_13", found.delay_13)?;
-    Ok(fields.finish())
+    Ok(fields! { py;
+        vector found: delay_12, delay_13;
+    })
 }
 
 /// Delays with jitter of the arrivals, the runs of a source side by side.
@@ -263,18 +248,13 @@ pub fn jittered_sound_delays<'py>(
     let given = given.unwrap_or_default();
     let array = array.0;
     let arrival_deviation = given.take("arrival_deviation")?;
-    let repetition = taken!(given, Repetition { runs, seed });
+    let repetition = taken!(given: Repetition { runs, seed });
     let threads: Option<usize> = given.take("threads")?;
     let progress: Option<Py<PyAny>> = given.take("progress")?;
     given.done()?;
     let total = sources.len().saturating_mul(repetition.runs);
     let report = Report::new(progress.as_ref(), total);
-    let found = watched(py, report, |control| {
-        let work = Work {
-            threads,
-            interrupted: &|| control.interrupted(),
-            progress: &|runs| control.count(runs),
-        };
+    let found = spread(py, report, threads, |work| {
         jittered_delays(&array, &sources, arrival_deviation, &repetition, work)
     })?;
     trial_columns(py, found)
@@ -298,7 +278,7 @@ pub fn burst_trial_delays<'py>(
         converter: converter.0,
         options: delay_options(options, converter.0.sample_rate)?,
     };
-    let repetition = taken!(given, Repetition { runs, seed });
+    let repetition = taken!(given: Repetition { runs, seed });
     let threads: Option<usize> = given.take("threads")?;
     let progress: Option<Py<PyAny>> = given.take("progress")?;
     given.done()?;
@@ -306,12 +286,7 @@ pub fn burst_trial_delays<'py>(
     let total = places.len().saturating_mul(repetition.runs);
     let report = Report::new(progress.as_ref(), total);
     let hearings: Vec<Hearing> = places.into_iter().map(hearing).collect();
-    let found = watched(py, report, |control| {
-        let work = Work {
-            threads,
-            interrupted: &|| control.interrupted(),
-            progress: &|runs| control.count(runs),
-        };
+    let found = spread(py, report, threads, |work| {
         burst_delays(signal, &equipment, &hearings, &repetition, work)
     })?;
     trial_columns(py, found)
