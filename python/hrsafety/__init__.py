@@ -4,7 +4,8 @@
 scores how well and how safely they reach their goal. `impact` gives the loads of a foam-covered
 manipulator that hits a head, and designs the foam; `reactive` follows a sound and avoids what
 ultrasonic sensors see. `arms` reads arms from URDF and gives the masses of their points, `standards` holds
-limits of contact and separation distances. `io` reads and writes the files of others. Sub-modules load on
+limits of contact and separation distances. `io` reads and writes the files of others,
+`zones` designs and attacks the zones of a collision monitor. Sub-modules load on
 first use, so importing the package costs little more than importing numpy.
 """
 
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
         scenarios,
         standards,
         sweep,
+        zones,
     )
 
 __all__ = [
@@ -66,6 +68,7 @@ __all__ = [
     "scenarios",
     "standards",
     "sweep",
+    "zones",
 ]
 
 __version__ = "0.1.0"

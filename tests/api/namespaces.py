@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import ModuleType
 from typing import Any
 
-from hrsafety import arms, contact, impact, io, plotting, reactive, standards
+from hrsafety import arms, contact, impact, io, plotting, reactive, standards, zones
 from hrsafety import navigation as nav
 
 BELOW = {
@@ -15,6 +15,7 @@ BELOW = {
     standards: (),
     contact: (),
     io: (),
+    zones: (),
     reactive: ("follower", "skirt", "sonar", "sound"),
     plotting: ("arms", "comparisons", "gains", "impacts", "reactive", "robots", "runs", "sweeps"),
 }
