@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from hrsafety.plausibility import RANGES, ResultWarning
 
-__all__ = ["Motion", "Ways", "cutoff", "fitted_rows", "motion_of_ways", "position_noise", "smoothed_ways"]
+__all__ = ["Breaks", "Motion", "Ways", "cutoff", "fitted_rows", "motion_of_ways", "position_noise", "smoothed_ways"]
 
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.intp]
@@ -52,6 +52,34 @@ HINTS = ((0.001, "mm", "millimeters"), (0.01, "cm", "centimeters"))
 def cutoff(rows: float, step: float) -> float:
     """Return the frequency in Hz at which a local quadratic fit over so many rows passes 0.71 of a motion."""
     return 1.07 / (rows * step)
+
+
+class Breaks(NamedTuple):
+    """Steps that are no motion of one person; step k leads from row k to row k + 1, arrays have shape (n - 1,).
+
+    Attributes
+    ----------
+    gaps : ndarray of bool
+        Long times without a row.
+    switches : list of (int, int)
+        Pairs of rows from which on two people go on where the other one was.
+    exchanged : ndarray of bool
+        Steps over which ids were exchanged.
+    jumps, back : ndarray of bool
+        Steps to places that nobody can have got to, and those back from a single wrong one.
+    """
+
+    gaps: Flags
+    switches: list[tuple[int, int]]
+    exchanged: Flags
+    jumps: Flags
+    back: Flags
+
+    @property
+    def steps(self) -> Flags:
+        """All of them."""
+        found: Flags = self.gaps | self.exchanged | self.jumps | self.back
+        return found
 
 
 class Ways(NamedTuple):
@@ -127,20 +155,29 @@ class Ways(NamedTuple):
         sigma, gaps = position_noise(self), self.gaps(periods)
         told = list(found)
         if not found:
-            switches = self._switches(gaps, sigma)
-            told += self._switch_doubt(switches, named)
-            told += self._jump_doubts(self._exchanged(switches), named)
+            breaks = self._breaks(gaps, sigma)
+            told += self._switch_doubt(breaks.switches, named)
+            told += self._jump_doubts(breaks, lengths, speeds, named)
         told += self._gap_doubt(spans, gaps, named)
         told += self._noise(sigma, float(np.nanmedian(periods)) if same.any() else np.nan, lengths[same], smoothing)
         return tuple(told)
 
-    def breaks(self) -> Flags:
-        """Return the steps over which nothing is fitted: gaps, jumps and exchanges of ids, (n - 1,)."""
-        gaps = self.gaps(self.periods())
-        exchanged = self._exchanged(self._switches(gaps, position_noise(self)))
-        jumps, back = self._jumps(exchanged)
-        found: Flags = gaps | exchanged | jumps | back
-        return found
+    def breaks(self) -> Breaks:
+        """Return the steps that are no motion of one person: gaps, jumps and exchanges of ids."""
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            return self._breaks(self.gaps(self.periods()), position_noise(self))
+
+    def _breaks(self, gaps: Flags, sigma: float) -> Breaks:
+        switches = self._switches(gaps, sigma)
+        exchanged = self._exchanged(switches)
+        return Breaks(gaps, switches, exchanged, *self._jumps(exchanged))
+
+    def median_speed(self) -> float:
+        """Return the median speed in m/s of those who do not stand, 0 if all do."""
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            speeds = self._steps()[2]
+        walking = speeds[speeds > STANDING]
+        return float(np.median(walking)) if len(walking) else 0.0
 
     def _steps(self) -> tuple[Array, Array, Array]:
         """Return times in s, lengths in m and speeds in m/s of the steps; the speed from one way to another is 0."""
@@ -240,9 +277,10 @@ class Ways(NamedTuple):
         jumps[:-1] |= back[1:]
         return jumps, back
 
-    def _jump_doubts(self, exchanged: Flags, named: Callable[[int], str]) -> tuple[ResultWarning, ...]:
-        _, lengths, speeds = self._steps()
-        jumps, back = self._jumps(exchanged)
+    def _jump_doubts(
+        self, breaks: Breaks, lengths: Array, speeds: Array, named: Callable[[int], str]
+    ) -> tuple[ResultWarning, ...]:
+        jumps, back, exchanged = breaks.jumps, breaks.back, breaks.exchanged
         told = []
         if jumps.any():
             found = np.flatnonzero(jumps)
@@ -305,7 +343,7 @@ class Ways(NamedTuple):
         more = f" ({len(switches) - 1} more exchanges)" if len(switches) > 1 else ""
         message = (
             f"{names} exchange places at {self.time[one]:g} s{more}: their ids were probably switched; exchange them "
-            "from there on"
+            "from there on, as recording.relabeled() and load_people(..., relabel=True) do"
         )
         return (ResultWarning("identity_switch", names, message),)
 

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
-from dataclasses import field
+from collections.abc import Iterator, Mapping
+from dataclasses import field, fields, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety import navigation as nav
-from hrsafety._arguments import finite, instance, number, positive, with_article
+from hrsafety._arguments import finite, instance, positive
+from hrsafety._doubts import checked_doubts
 from hrsafety._records import dataclass
-from hrsafety._tracks import WINDOW, Ways, smoothed_ways
+from hrsafety._sources import Source
+from hrsafety._tracks import WINDOW, Breaks, Ways, smoothed_ways
 from hrsafety.datasets.flow import Flow, flow_of
+from hrsafety.datasets.robots import RecordedRobot
+from hrsafety.datasets.row_checks import checked_ids, checked_order, checked_velocity, checked_window, finite_array
 from hrsafety.datasets.track_ends import TrackEnds, ends_doubts, lost_doubts, track_ends
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.plausibility import ResultWarning, telling
@@ -23,7 +26,7 @@ __all__ = ["Recording"]
 
 Array = npt.NDArray[np.float64]
 
-_OF_FRAMES = "give the frames per second, load_pedestrians(..., fps=) or --fps, or divide the times by them"
+_OF_FRAMES = "give the frames per second, load_people(..., fps=) or --fps, or divide the times by them"
 _SMOOTHING = "recording.smoothed(0.6) takes the noise out"
 
 
@@ -35,10 +38,28 @@ class Recording:
     ----------
     time_s : array_like, shape (n,)
         Instants in s, not decreasing.
-    person : array_like of int, shape (n,)
+    person : array_like of int or str, shape (n,)
         Who; the instants of one person must strictly increase.
     position : array_like, shape (n, 2)
         Positions in m.
+    velocity : array_like, shape (n, 2), or None
+        Velocities in m/s as they were stored; see `motion` for those that are estimated.
+    walls : sequence of ndarray, each of shape (k, 2)
+        Rings and lines in m, of rings without the first point again.
+    robot : RecordedRobot or None
+        Robot among the people.
+    frame_rate : float or None
+        Frames per second.
+    frame_rate_from : {"file", "format", "argument", "stored velocities"} or None
+        Who says so.
+    time_origin : float
+        Time of the file at ``time_s = 0``, in s.
+    source : Source or None
+        File that the recording was read from.
+    details : mapping of str to object
+        What else was found in the file: counts of rows that were left out, scenes, units.
+    notes : sequence of ResultWarning
+        Doubts of whoever made the recording; they are among the `warnings`.
 
     Raises
     ------
@@ -57,43 +78,50 @@ class Recording:
     """
 
     time_s: Array
-    person: npt.NDArray[np.int64]
+    person: npt.NDArray[Any]
     position: Array
+    velocity: Array | None = None
+    walls: tuple[Array, ...] = ()
+    robot: RecordedRobot | None = None
+    frame_rate: float | None = None
+    frame_rate_from: str | None = None
+    time_origin: float = 0.0
+    source: Source | None = None
+    details: Mapping[str, Any] = field(default_factory=dict)
+    notes: tuple[ResultWarning, ...] = ()
     _order: npt.NDArray[np.intp] = field(init=False, repr=False)
-    _ids: npt.NDArray[np.int64] = field(init=False, repr=False)
+    _ids: npt.NDArray[Any] = field(init=False, repr=False)
     _first: npt.NDArray[np.intp] = field(init=False, repr=False)
     _sorted: Ways | None = field(init=False, repr=False, default=None)
     _ends: TrackEnds | None = field(init=False, repr=False, default=None)
+    _found: Breaks | None = field(init=False, repr=False, default=None)
     _warnings: tuple[ResultWarning, ...] | None = field(init=False, repr=False, default=None)
 
     def __post_init__(self) -> None:
         """Check the rows and freeze the arrays."""
-        time, position = _finite("time_s", self.time_s), _finite("position", self.position)
-        try:
-            person = np.array(self.person)
-        except (TypeError, ValueError, OverflowError):
-            raise InvalidParameterError("person", "hold integers", self.person) from None
+        time, position = finite_array("time_s", self.time_s), finite_array("position", self.position)
         if time.ndim != 1:
             raise ShapeError("time_s", "(n,)", time.shape)
         if len(time) == 0:
             raise InvalidParameterError("time_s", "hold at least one row", Shown("an empty array"))
-        if person.shape != time.shape:
-            raise ShapeError("person", f"({len(time)},)", person.shape)
+        person = checked_ids(self.person, len(time))
         if position.shape != (len(time), 2):
             raise ShapeError("position", f"({len(time)}, 2)", position.shape)
-        if person.dtype.kind not in "iu":
-            raise InvalidParameterError("person", "hold integers", Shown(str(person.dtype)))
-        order = _checked_order(time, person)
+        if self.velocity is not None:
+            object.__setattr__(self, "velocity", checked_velocity(self.velocity, position.shape))
+        object.__setattr__(self, "notes", tuple(checked_doubts("notes", self.notes)))
+        order = checked_order(time, person)
         ids, first = np.unique(person[order], return_index=True)
-        arrays = {"time_s": time, "person": person.astype(np.int64), "position": position, "_order": order}
-        arrays |= {"_ids": ids.astype(np.int64), "_first": np.append(first, len(time))}
+        arrays = {"time_s": time, "person": person, "position": position, "_order": order}
+        arrays |= {"_ids": ids, "_first": np.append(first, len(time))}
         for name, array in arrays.items():
             array.setflags(write=False)
             object.__setattr__(self, name, array)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return what makes the recording again, without what was found out about it."""
-        return _recording, (self.time_s, self.person, self.position)
+        names = (each.name for each in fields(self) if each.init)
+        return _recording, ({name: getattr(self, name) for name in names},)
 
     def __len__(self) -> int:
         """Return the number of rows."""
@@ -113,7 +141,7 @@ class Recording:
         slower than 0.7 m/s. ``teleport``: a step faster than 6 m/s and longer than 0.5 m among slow ones.
         ``identity_switch``: two people go on where the other one was. ``gap_in_track``: no row for longer than 2 s and
         10 median steps. ``noisy_positions``: noise of differences beyond 3 m/s^2 and a quarter of a step.
-        ``single_rows``: more than a tenth of the people have one row. ``broken_tracks``: more than half of the ways
+        ``single_row``: somebody has one row only. ``broken_tracks``: more than half of the ways
         that end go on under another id within 1 s.
 
         Examples
@@ -126,7 +154,8 @@ class Recording:
         if self._warnings is None:
             ways = self._ways().doubts(self._named, moving="the people", of_frames=_OF_FRAMES, smoothing=_SMOOTHING)
             units = all(each.code != "implausible" for each in ways)
-            object.__setattr__(self, "_warnings", (*ways, *ends_doubts(self._track_ends(), self._named, units=units)))
+            ends = ends_doubts(self._track_ends(), self._named, units=units)
+            object.__setattr__(self, "_warnings", (*self.notes, *ways, *ends))
         return self._warnings  # type: ignore[return-value]  # just set
 
     def _track_ends(self) -> TrackEnds:
@@ -181,19 +210,91 @@ class Recording:
         """
         ways = self._ways()
         found = np.empty_like(self.position)
-        found[self._order] = smoothed_ways(ways, positive("window", window), ways.breaks())
-        return Recording(time_s=self.time_s, person=self.person, position=found)
+        found[self._order] = smoothed_ways(ways, positive("window", window), self._breaks().steps)
+        return replace(self, position=found, velocity=None)
 
-    def people(self) -> npt.NDArray[np.int64]:
+    @property
+    def sampling_period(self) -> float:
+        """Median time between two rows of a person in s; NaN if nobody has two."""
+        steps = np.diff(self._ways().time)[self._ways().same]
+        return float(np.median(steps)) if len(steps) else float("nan")
+
+    def median_speed(self) -> float:
+        """Return the median speed in m/s of those who do not stand, 0 if all do."""
+        return self._ways().median_speed()
+
+    def _breaks(self) -> Breaks:
+        if self._found is None:
+            object.__setattr__(self, "_found", self._ways().breaks())
+        return self._found  # type: ignore[return-value]  # just set
+
+    @property
+    def switches(self) -> list[tuple[Any, Any, float]]:
+        """Pairs of people who go on where the other one was, with the first instant after it in s."""
+        ways = self._ways()
+        ids = self._ids[ways.who]
+        return [(*sorted((ids[a].item(), ids[b].item())), float(ways.time[a])) for a, b in self._breaks().switches]
+
+    @property
+    def teleports(self) -> list[tuple[Any, float, float]]:
+        """Steps to places that nobody can have got to: id, last instant before and first one after it in s."""
+        return self._steps_of(self._breaks().jumps)
+
+    @property
+    def gaps(self) -> list[tuple[Any, float, float]]:
+        """Long times without a row: id, last instant before and first one after it in s."""
+        return self._steps_of(self._breaks().gaps)
+
+    def _steps_of(self, steps: npt.NDArray[np.bool_]) -> list[tuple[Any, float, float]]:
+        ways, rows = self._ways(), np.flatnonzero(steps)
+        ids = self._ids[ways.who[rows]].tolist()
+        return list(zip(ids, ways.time[rows].tolist(), ways.time[rows + 1].tolist(), strict=True))
+
+    def relabeled(self) -> Recording:
+        """Return the recording with the ids of `switches` exchanged again.
+
+        Returns
+        -------
+        Recording
+            The same places under other ids from each exchange on; ``details["relabeled"]`` lists the exchanges.
+
+        Examples
+        --------
+        >>> from hrsafety.datasets import Recording
+        >>> time, ids = [0, 0, 1, 1, 2, 2, 3, 3], [1, 2] * 4
+        >>> walk = [[0, 0], [0, 5], [1, 0], [1, 5], [2, 5], [2, 0], [3, 5], [3, 0]]
+        >>> walked = Recording(time_s=time, person=ids, position=walk)
+        >>> walked.switches, walked.relabeled().switches
+        ([(1, 2, 2.0)], [])
+        """
+        person, done = self.person.copy(), list[tuple[Any, Any, float]]()
+        for one, other, when in self.switches:
+            later = self.time_s >= when
+            first, second = later & (person == one), later & (person == other)
+            person[first], person[second] = other, one
+            done.append((one, other, when))
+        if not done:
+            return self
+        order = np.lexsort((person, self.time_s))
+        velocity = None if self.velocity is None else self.velocity[order]
+        rows: dict[str, Any] = {
+            "time_s": self.time_s,
+            "person": person[order],
+            "position": self.position[order],
+            "velocity": velocity,
+        }
+        return replace(self, **rows, details={**self.details, "relabeled": done})
+
+    def people(self) -> npt.NDArray[Any]:
         """Return the ids of all people, sorted."""
         return self._ids.copy()
 
-    def track(self, person: int) -> tuple[Array, Array]:
+    def track(self, person: int | str) -> tuple[Array, Array]:
         """Return the recorded way of one person.
 
         Parameters
         ----------
-        person : int
+        person : int or str
             Id.
 
         Returns
@@ -208,19 +309,20 @@ class Recording:
         InvalidParameterError
             If nobody has this id.
         """
-        index = int(np.searchsorted(self._ids, person)) if isinstance(person, int | np.integer) else len(self._ids)
+        fits = isinstance(person, str if self._ids.dtype.kind == "U" else int | np.integer)
+        index = int(np.searchsorted(self._ids, person)) if fits else len(self._ids)
         if index == len(self._ids) or self._ids[index] != person:
             raise InvalidParameterError("person", "be the id of a recorded person", person)
         rows = slice(self._first[index], self._first[index + 1])
         ways = self._ways()
         return ways.time[rows].copy(), ways.position[rows].copy()
 
-    def tracks(self) -> Iterator[tuple[int, Array, Array]]:
+    def tracks(self) -> Iterator[tuple[Any, Array, Array]]:
         """Go through the recorded ways of everybody, in the order of the ids.
 
         Yields
         ------
-        person : int
+        person : int or str
             Id.
         time : ndarray, shape (k,)
             Instants in s.
@@ -238,7 +340,7 @@ class Recording:
         for person, begin, end in zip(self._ids.tolist(), ends[:-1], ends[1:], strict=True):
             yield person, ways.time[begin:end], ways.position[begin:end]
 
-    def present(self, start_time: float, *, duration: float) -> npt.NDArray[np.int64]:
+    def present(self, start_time: float, *, duration: float) -> npt.NDArray[Any]:
         """Return who is in view for some time within a window.
 
         Parameters
@@ -260,7 +362,7 @@ class Recording:
         """
         return self._seen(start_time, duration, for_some_time=True)
 
-    def momentary(self, start_time: float, *, duration: float) -> npt.NDArray[np.int64]:
+    def momentary(self, start_time: float, *, duration: float) -> npt.NDArray[Any]:
         """Return who is in view at one single instant of a window only.
 
         These are people with a single row, and people whose last row is the begin or whose
@@ -285,11 +387,11 @@ class Recording:
         """
         return self._seen(start_time, duration, for_some_time=False)
 
-    def _seen(self, start_time: float, duration: float, *, for_some_time: bool) -> npt.NDArray[np.int64]:
-        start_time, duration = _checked_window(start_time, duration)
+    def _seen(self, start_time: float, duration: float, *, for_some_time: bool) -> npt.NDArray[Any]:
+        start_time, duration = checked_window(start_time, duration)
         first, last = (self.time_s[self._order[rows]] for rows in (self._first[:-1], self._first[1:] - 1))
         shared = np.minimum(last, start_time + duration) - np.maximum(first, start_time)
-        seen: npt.NDArray[np.int64] = self._ids[shared > 0.0 if for_some_time else shared == 0.0]
+        seen: npt.NDArray[Any] = self._ids[shared > 0.0 if for_some_time else shared == 0.0]
         return seen
 
     @telling(lambda self, *_, **__: self.warnings)
@@ -327,10 +429,10 @@ class Recording:
         >>> walk.humans(0.4, duration=10.0)[0].path[0]
         (0.0, 0.4)
         """
-        start_time, duration = _checked_window(start_time, duration)
+        start_time, duration = checked_window(start_time, duration)
         people = []
-        for person in self.present(start_time, duration=duration):
-            time, position = self.track(int(person))
+        for person in self.present(start_time, duration=duration).tolist():
+            time, position = self.track(person)
             begin = max(int(np.searchsorted(time, start_time, side="right")) - 1, 0)
             end = int(np.searchsorted(time, start_time + duration, side="left")) + 1
             people.append(nav.Human.from_path(time[begin:end] - start_time, position[begin:end], **human_fields))
@@ -411,40 +513,5 @@ class Recording:
         return flow_of([(time, position) for _, time, position in self.tracks()])
 
 
-def _recording(time: Array, person: npt.NDArray[np.int64], position: Array) -> Recording:
-    return Recording(time_s=time, person=person, position=position)
-
-
-def _finite(name: str, value: npt.ArrayLike) -> Array:
-    """Return a copy of ``value`` as float64, or say why not."""
-    try:
-        array = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError):
-        raise InvalidParameterError(name, "be an array of numbers", Shown(with_article(type(value).__name__))) from None
-    if not np.isfinite(array).all():
-        raise InvalidParameterError(name, "be finite", float(array[~np.isfinite(array)][0]))
-    return array
-
-
-def _checked_order(time: Array, person: npt.NDArray[Any]) -> npt.NDArray[np.intp]:
-    """Return the order of the rows by person, then by time, or say which row is out of order."""
-    backward = np.flatnonzero(np.diff(time) < 0.0)
-    if len(backward):
-        row = int(backward[0]) + 1
-        rule = f"not be before time_s[{row - 1}] = {time[row - 1]}"
-        remedy = "sort the rows by time: np.lexsort((person, time_s)) gives their order"
-        raise InvalidParameterError(f"time_s[{row}]", rule, float(time[row]), remedy)
-    # The rows are sorted by time, and a stable sort keeps that.
-    order = np.argsort(person, kind="stable")
-    same = (np.diff(person[order]) == 0) & (np.diff(time[order]) <= 0.0)
-    if same.any():
-        row = int(order[int(np.flatnonzero(same)[0]) + 1])
-        raise InvalidParameterError(f"person[{row}]", "have one row for each instant", Shown(f"two at {time[row]} s"))
-    return order
-
-
-def _checked_window(start_time: object, duration: object) -> tuple[float, float]:
-    begin = number("start_time", start_time)
-    if not math.isfinite(begin):
-        raise InvalidParameterError("start_time", "be finite", start_time)
-    return begin, positive("duration", duration)
+def _recording(fields: dict[str, Any]) -> Recording:
+    return Recording(**fields)

@@ -26,8 +26,6 @@ NEAR, ALIKE = 0.6, 1.0
 """There it begins so near the expected place, in m, and with a velocity that differs by less, in m/s."""
 BROKEN_SHARE, FEW_ENDS = 0.5, 5
 """A larger share of the ends that go on under another id is no accident, if there are so many ends."""
-SINGLE_SHARE = 0.1
-"""A larger share of people with one row only is no accident."""
 
 
 class TrackEnds(NamedTuple):
@@ -115,12 +113,13 @@ def ends_doubts(ends: TrackEnds, named: Callable[[int], str], *, units: bool) ->
     people = len(ends.begin)
     single = np.flatnonzero(ends.begin == ends.end)
     told = []
-    if len(single) > SINGLE_SHARE * people:
+    if len(single):
+        more = "s have" if len(single) > 1 else " has"
         message = (
-            f"{len(single)} of {people} people have one row only ({named(int(single[0]))}) and are left out of runs: "
+            f"{len(single)} of {people} way{more} one row only ({named(int(single[0]))}) and are left out of runs: "
             "ids that change from row to row? Give each person one id"
         )
-        told.append(ResultWarning("single_rows", "person", message))
+        told.append(ResultWarning("single_row", "person", message))
     before = ends.end < ends.span[1]
     before[single] = False
     broken = np.flatnonzero(before & (ends.follower >= 0))

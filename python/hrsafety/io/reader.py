@@ -5,8 +5,7 @@ from __future__ import annotations
 import hashlib
 import importlib
 import re
-from collections.abc import Callable, Mapping
-from dataclasses import field
+from collections.abc import Callable
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import Any
 
 from hrsafety._arguments import word
 from hrsafety._records import dataclass
+from hrsafety._sources import Source
 from hrsafety.errors import FileError
 from hrsafety.io.text import decoded, read_bytes
 from hrsafety.plausibility import ResultWarning
@@ -21,7 +21,16 @@ from hrsafety.plausibility import ResultWarning
 __all__ = ["READERS", "Document", "Reader", "Source", "reader_of", "readers"]
 
 READERS: dict[str, tuple[str, ...]] = {
-    "people": (),
+    "people": (
+        "hrsafety.io.people.databases",
+        "hrsafety.io.people.scenes",
+        "hrsafety.io.people.splines",
+        "hrsafety.io.people.mocap",
+        "hrsafety.io.people.juelich",
+        "hrsafety.io.people.drones",
+        "hrsafety.io.people.bare",
+        "hrsafety.io.people.tables",
+    ),
     "log": (),
     "map": (),
     "scene": (),
@@ -30,28 +39,6 @@ READERS: dict[str, tuple[str, ...]] = {
 
 HEAD = 65536
 """Bytes by which a file is recognized."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Source:
-    """Where something was read from.
-
-    Attributes
-    ----------
-    path : str
-        The file or folder as it was given.
-    format : str
-        Name of the reader.
-    sha256 : str
-        Digest of the file, in hexadecimal digits; of several files, that of their digests in the order of their names.
-    arguments : mapping of str to object
-        What the caller said beside the file, only what differs from the defaults.
-    """
-
-    path: str
-    format: str
-    sha256: str
-    arguments: Mapping[str, Any] = field(default_factory=dict)
 
 
 class Document:
@@ -87,6 +74,18 @@ class Document:
         text, told = decoded(self.data, self.name)
         self.warnings.extend(told)
         return text
+
+    @cached_property
+    def plain(self) -> bytes:
+        """The text as UTF-8 without a mark, lines ended by line feeds."""
+        text = self.text
+        data = self.data if len(self.data) == len(text) and text.isascii() else text.encode("utf-8")
+        return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n") if b"\r" in data else data
+
+    @cached_property
+    def first_lines(self) -> list[str]:
+        """Lines of the first 64 KiB, by which files are recognized; of a longer file the last may be cut."""
+        return self.plain[:HEAD].decode("utf-8", "replace").split("\n")
 
     @cached_property
     def lines(self) -> list[str]:

@@ -67,7 +67,7 @@ def test_people_with_one_row_are_doubted(share: float, seed: int) -> None:
     time, who, place = stream(seed=seed)
     changed = np.random.default_rng(seed).random(len(who)) < share
     found = recorded(time, np.where(changed, 10_000 + np.arange(len(who)), who), place)
-    assert "single_rows" in codes(found)
+    assert "single_row" in codes(found)
 
 
 def test_two_streams_that_meet_are_no_broken_tracks() -> None:

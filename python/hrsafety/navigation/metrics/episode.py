@@ -262,7 +262,7 @@ class Episode(Parameters):
             raise InvalidParameterError("period", "be (0, 0) for what is smoothed", self.period)
         robot, walks = self.ways()
         own, walked = (
-            smoothed_ways(each, length, each.breaks() | (np.diff(each.time) > 1.5 * self.step))
+            smoothed_ways(each, length, each.breaks().steps | (np.diff(each.time) > 1.5 * self.step))
             for each in (robot, walks)
         )
         people = np.asarray(self.people, dtype=np.float64).copy()

@@ -1,0 +1,1 @@
+"""Recorded people in the layouts that researchers publish."""
