@@ -24,22 +24,22 @@ from hrsafety import navigation as nav
 n = int(sys.argv[1])
 def people(count, size=1e3):
     places = np.random.default_rng(0).uniform(-size, size, (count, 2)).tolist()
-    return [nav.crowd.Person(start=tuple(each), route=[(0.0, 0.0)], desired_speed=1.0) for each in places]
+    return [nav.Person(start=tuple(each), route=[(0.0, 0.0)], desired_speed=1.0) for each in places]
 def robots(count, law):
     ends = [((3.0 * k, 0.0), (3.0 * k, 9.0)) for k in range(count)]
-    return [nav.crowd.CrowdRobot(start=a, goal=b, law=law) for a, b in ends]
+    return [nav.Robot(start=a, goal=b, law=law) for a, b in ends]
 """
 TAIL = "\nprint(1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
 WORK: dict[str, tuple[str, int, int, int]] = {
     # Work, two sizes, and the power of the size to which memory is in proportion.
     "person of a world": (
-        "nav.crowd.simulate_crowd(nav.crowd.World(people=people(n), time_limit=0.1))",
+        "nav.simulate(nav.World(people=people(n), time_limit=0.1))",
         20_000,
         60_000,
         1,
     ),
     "recorded place": (
-        "nav.crowd.simulate_crowd(nav.crowd.World(people=people(100), time_limit=0.05 * n / 100))",
+        "nav.simulate(nav.World(people=people(100), time_limit=0.05 * n / 100))",
         200_000,
         800_000,
         1,
@@ -52,13 +52,13 @@ WORK: dict[str, tuple[str, int, int, int]] = {
     ),
     "robot and somebody its law sees": (
         "law = nav.OptimalReciprocalCollisionAvoidance()\n"
-        "nav.crowd.simulate_crowd(nav.crowd.World(people=people(n), robots=robots(20, law), time_limit=0.1))",
+        "nav.simulate(nav.World(people=people(n), robots=robots(20, law), time_limit=0.1))",
         1_000,
         4_000,
         1,
     ),
     "parallel environment, robots cubed": (
-        "gym.parallel_env(nav.crowd.World(robots=robots(n, None))).reset(seed=0)",
+        "gym.parallel_env(nav.World(robots=robots(n, None))).reset(seed=0)",
         10,
         40,
         3,

@@ -18,6 +18,7 @@ import pytest
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
+from hrsafety.navigation.crowd.simulation import simulated
 
 ROUNDS = 3
 DENSITY, RADIUS, SPEED = 0.2, 0.3, 1.3
@@ -52,13 +53,13 @@ def crowd(count: int) -> tuple[np.ndarray, np.ndarray]:
     return place, generator.uniform(0.0, side, grid.shape)
 
 
-def world(count: int, model: nav.crowd.Pedestrian, step: float, steps: int) -> nav.crowd.World:
+def world(count: int, model: nav.crowd.Pedestrian, step: float, steps: int) -> nav.World:
     """Return people on a grid."""
     people = [
-        nav.crowd.Person(start=tuple(a), route=[tuple(b)], model=model, radius=RADIUS, desired_speed=SPEED)
+        nav.Person(start=tuple(a), route=[tuple(b)], model=model, radius=RADIUS, desired_speed=SPEED)
         for a, b in zip(*(each.tolist() for each in crowd(count)), strict=True)
     ]
-    return nav.crowd.World(people=people, step=step, time_limit=step * steps)
+    return nav.World(people=people, step=step, time_limit=step * steps)
 
 
 def told(benchmark: Any, name: str, rate: float, work: Callable[[], object]) -> None:
@@ -76,7 +77,7 @@ def test_people(benchmark: Any, name: str, count: int) -> None:
     given = world(count, model, step, steps)
 
     def run() -> None:
-        nav.crowd.simulate_crowds([given], threads=1)
+        simulated([given], threads=1)
 
     told(benchmark, f"{name}, {count}", count * steps / fastest(run), run)
 
@@ -161,7 +162,7 @@ def test_pyrvo(benchmark: Any, driven: bool, count: int) -> None:
 # ---- threads and metrics ----------------------------------------------------------------------------
 
 
-def circles(count: int) -> list[nav.crowd.World]:
+def circles(count: int) -> list[nav.World]:
     """Return circle crossings."""
     law = nav.OptimalReciprocalCollisionAvoidance()
     return [scenarios.circle_crossing(case, law=law) for case in range(count)]
@@ -172,9 +173,7 @@ def test_two_threads(benchmark: Any) -> None:
     # Wall time: needs two cores that are free.
     model, step, steps = MODELS["Moussaid, 5 m"]
     given = [replace(world(1000, model, step, steps), seed=seed) for seed in range(8)]
-    one, two = (
-        fastest(lambda n=threads: nav.crowd.simulate_crowds(given, threads=n), time.perf_counter) for threads in (1, 2)
-    )
+    one, two = (fastest(lambda n=threads: simulated(given, threads=n), time.perf_counter) for threads in (1, 2))
     benchmark.pedantic(lambda: None, rounds=1)
     print(f"two threads: {one / two:.2f} times as fast as one")
 
@@ -182,15 +181,15 @@ def test_two_threads(benchmark: Any) -> None:
 @pytest.mark.parametrize("kind", ["circle crossings", "corridors"])
 @pytest.mark.benchmark(group="worlds")
 def test_metrics(benchmark: Any, kind: str) -> None:
-    robot = nav.crowd.CrowdRobot(start=(0.0, -5.0), goal=(9.0, -5.0), law=nav.OptimalReciprocalCollisionAvoidance())
+    robot = nav.Robot(start=(0.0, -5.0), goal=(9.0, -5.0), law=nav.OptimalReciprocalCollisionAvoidance())
     given = (
         circles(500)
         if kind == "circle crossings"
         else [scenarios.corridor(60, model=nav.crowd.Moussaid(), robots=[robot], seed=seed) for seed in range(4)]
     )
-    runs = nav.crowd.simulate_crowds(given, threads=1)
+    runs = simulated(given, threads=1)
     episodes = [each for run in runs for each in nav.crowd.episodes_of(run)]
-    simulated = fastest(lambda: nav.crowd.simulate_crowds(given, threads=1))
+    elapsed = fastest(lambda: simulated(given, threads=1))
     scored = fastest(lambda: nav.metrics.evaluate_many(episodes, threads=1))
     benchmark.pedantic(lambda: None, rounds=1)
-    print(f"metrics, {kind}: {100.0 * scored / simulated:.0f} % of the time of the runs")
+    print(f"metrics, {kind}: {100.0 * scored / elapsed:.0f} % of the time of the runs")

@@ -21,6 +21,7 @@ from hrsafety.benchmarks import SUITES, entry
 from hrsafety.benchmarks.protocol import Case
 from hrsafety.benchmarks.reacting import SCENES
 from hrsafety.navigation.crowd.contacts import contacts_of
+from hrsafety.navigation.crowd.simulation import simulated
 from page_tables import DOCS, SENSING, head, line, percent, print_or_write
 
 MODELS = (
@@ -72,11 +73,11 @@ def encounters(model: nav.crowd.Pedestrian, recording: datasets.Recording, law: 
     found = []
     for crossing in scenarios.crossings(recording, runs=CROSSINGS):
         scene = crossing.scenario
-        robot = nav.crowd.CrowdRobot(start=scene.start, goal=scene.goal, law=law, robot=scene.robot)
+        robot = nav.Robot(scene.robot, start=scene.start, goal=scene.goal, law=law)
         world = scenarios.with_recording(
             recording, 1.0, model=model, robots=[robot], start_time=crossing.start_time, radius=0.4
         )
-        (episode,) = nav.crowd.episodes_of(nav.crowd.simulate_crowd(world))
+        (episode,) = nav.crowd.episodes_of(nav.simulate(world))
         (arrival_time,) = nav.metrics.evaluate_many([episode]).arrival_time.tolist()
         found.append(contacts_of(episode, arrival_time))
     return tuple(sum(getattr(each, kind) > 0 for each in found) for kind in ("toward", "away", "standing"))
@@ -126,8 +127,8 @@ def flow(model: nav.crowd.Pedestrian, door: float) -> tuple[str, float]:
     """Return people per second through a door, from the first fifth of them to the fourth, and how many stay."""
     rooms = [scenarios.bottleneck(100, door=door, model=model, seed=seed) for seed in range(LABORATORY_SEEDS)]
     flows, inside = [], 0
-    for run in nav.crowd.simulate_crowds(rooms):
-        out = ~(run.position[..., 0] < 8.0)
+    for run in simulated(rooms):
+        out = ~(run.obstacle_position[..., 0] < 8.0)
         times = np.sort(run.time[out.argmax(axis=0)[out.any(axis=0)]])
         inside += int((~out[-1]).sum())
         first, last = int(0.2 * len(times)), int(0.8 * len(times))
@@ -150,7 +151,7 @@ def suite(name: str) -> Iterator[str]:
     kinds = ("contact with people %", "with walls %", "moving toward %", "moving away %", "at fault %")
     words = ("law", "people measured", "success %", *kinds, "time, s", "least gap, m", "delay of people, s")
     yield from head(*words, *(("exits, 1/s", "deadlocked %") if name in COUNTED else ()))
-    alone = nav.crowd.simulate_crowds([replace(world, robots=()) for world in worlds_of(name, LAWS[0], "exact")])
+    alone = simulated([replace(world, robots=()) for world in worlds_of(name, LAWS[0], "exact")])
     for law in LAWS:
         for word in (law, f"{law}+shield"):
             for sensing in SENSING:
@@ -158,7 +159,7 @@ def suite(name: str) -> Iterator[str]:
                 yield row(worlds_of(name, word, sensing), (word, sensing), alone, counted=name in COUNTED)
 
 
-def worlds_of(name: str, word: str, sensing: str) -> list[nav.crowd.World]:
+def worlds_of(name: str, word: str, sensing: str) -> list[nav.World]:
     """Return the worlds of a suite with a law, which knows how people are measured."""
     speed = SUITES[name].fastest or 0.0
     cases = range(SUITE_CASES[name])
@@ -166,11 +167,9 @@ def worlds_of(name: str, word: str, sensing: str) -> list[nav.crowd.World]:
     return [SCENES[name](case, index) for index in cases]
 
 
-def row(
-    worlds: list[nav.crowd.World], words: tuple[str, str], alone: list[nav.crowd.CrowdTrajectories], *, counted: bool
-) -> str:
+def row(worlds: list[nav.World], words: tuple[str, str], alone: list[nav.Trajectory], *, counted: bool) -> str:
     """Return the row of a law and of how people are measured."""
-    runs = nav.crowd.simulate_crowds(worlds)
+    runs = simulated(worlds)
     episodes = [nav.crowd.episodes_of(run, other)[0] for run, other in zip(runs, alone, strict=True)]
     table = nav.metrics.evaluate_many(episodes)
     found = [contacts_of(*each) for each in zip(episodes, table.arrival_time.tolist(), strict=True)]

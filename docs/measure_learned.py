@@ -15,6 +15,7 @@ from dataclasses import replace
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.navigation.crowd.contacts import contacts_of
+from hrsafety.navigation.crowd.simulation import simulated
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.warnings.shields import Motion
 from page_tables import DOCS, ERROR, LATE, LATENCY, head, line, percent, print_or_write
@@ -60,7 +61,7 @@ def row(words: str, name: str, law: object) -> str:
     """Return a line of the table."""
     step = SHORT if words == FINE else PERIOD
     cases = (scenarios.circle_crossing(case, law=law, **WORLDS[words]) for case in range(CASES))
-    runs = nav.crowd.simulate_crowds([finer(world, step, late=words == MEASURED) for world in cases])
+    runs = simulated([finer(world, step, late=words == MEASURED) for world in cases])
     episodes = [nav.crowd.episodes_of(run)[0] for run in runs]
     table = nav.metrics.evaluate_many(episodes)
     found = [contacts_of(*each) for each in zip(episodes, table.arrival_time.tolist(), strict=True)]

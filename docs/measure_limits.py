@@ -20,7 +20,6 @@ import numpy as np
 import hrsafety
 from hrsafety import navigation as nav
 from hrsafety.impact.batch import STATUS_WORDS as IMPACT_WORDS
-from hrsafety.navigation.crowd.episodes import WORLD_OUTCOMES
 from hrsafety.navigation.trajectory import Outcome
 from hrsafety.reactive.sound.fixes import STATUS_WORDS as FIX_WORDS
 from hrsafety.standards.verdicts import VERDICTS
@@ -90,7 +89,6 @@ def statuses() -> dict[str, list[str]]:
     """Return every word that says how far a result can be trusted, by what carries it."""
     return {
         "`outcome` of a run": list(get_args(Outcome)),
-        "`outcome` of a robot in a world": list(WORLD_OUTCOMES),
         "`status` of an impact": list(IMPACT_WORDS),
         "`status` of a located sound": list(FIX_WORDS),
         "`verdict` of a limit of contact": list(VERDICTS),

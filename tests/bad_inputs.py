@@ -78,7 +78,7 @@ STUDY = sweep.ImpactStudy(manipulator=ARM, foam=FOAM, head=HEAD, fixed={"closing
 PEOPLE = datasets.Recording(
     time_s=[0.0, 0.0, 0.4, 0.4], person=[1, 2, 1, 2], position=[[0.0, 0.0], [5.0, 1.0], [0.5, 0.0], [5.5, 1.0]]
 )
-MET = navigation.crowd.simulate_crowd(scenarios.circle_crossing(0))
+MET = navigation.simulate(scenarios.circle_crossing(0))
 NAMES = {
     "np": np,
     "gym": gym,
@@ -163,44 +163,42 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "masked positions": "nav.Human.from_path([0.0, 0.4], np.ma.masked_greater([[0.0, 0.0], [9.0, 0.0]], 5.0))",
     },
     "Worlds of people": {
-        "person who starts nowhere": 'nav.crowd.Person(start=(float("nan"), 0))',
-        "point of a route that is nowhere": 'nav.crowd.Person(start=(0, 0), route=[(1, 0), (float("inf"), 0)])',
-        "person without a body": "nav.crowd.Person(start=(0, 0), route=[(5, 0)], radius=0)",
-        "person who walks backward": "nav.crowd.Person(start=(0, 0), route=[(5, 0)], desired_speed=-1.0)",
-        "person who is more than aware": "nav.crowd.Person(start=(0, 0), route=[(5, 0)], awareness=1.2)",
-        "more than everybody distracted": "nav.crowd.Person(start=(0, 0), route=[(5, 0)], distracted_share=1.5)",
-        "no way to repeat": 'nav.crowd.Person(start=(0, 0), at_end="repeat")',
-        "end of a way, misspelt": 'nav.crowd.Person(start=(0, 0), route=[(5, 0)], at_end="leaves")',
-        "recorded person with more instants than places": "nav.crowd.Person(start=(0, 0), "
-        "recording=([0.0, 1.0], [(0, 0)]))",
+        "person who starts nowhere": 'nav.Person(start=(float("nan"), 0))',
+        "point of a route that is nowhere": 'nav.Person(start=(0, 0), route=[(1, 0), (float("inf"), 0)])',
+        "person without a body": "nav.Person(start=(0, 0), route=[(5, 0)], radius=0)",
+        "person who walks backward": "nav.Person(start=(0, 0), route=[(5, 0)], desired_speed=-1.0)",
+        "person who is more than aware": "nav.Person(start=(0, 0), route=[(5, 0)], awareness=1.2)",
+        "more than everybody distracted": "nav.Person(start=(0, 0), route=[(5, 0)], distracted_share=1.5)",
+        "no way to repeat": 'nav.Person(start=(0, 0), at_end="repeat")',
+        "end of a way, misspelt": 'nav.Person(start=(0, 0), route=[(5, 0)], at_end="leaves")',
+        "recorded person with more instants than places": "nav.Person(start=(0, 0), recording=([0.0, 1.0], [(0, 0)]))",
         "people without mass": "nav.crowd.SocialForce2000(mass=0)",
         "people who turn at once": "nav.crowd.Moussaid(relaxation_time=0)",
         "range of a force below zero": "nav.crowd.SocialForce1995(range=-0.3)",
         "people who see nobody": "nav.crowd.CollisionFreeSpeed(cutoff=0)",
         "time gap that never ends": 'nav.crowd.CollisionFreeSpeed(time_gap=float("inf"))',
-        "source that takes people back": "nav.crowd.Source(low=(0, 0), high=(1, 1), rate=-1, route=[(5, 0)])",
-        "source with exchanged corners": "nav.crowd.Source(low=(1, 1), high=(0, 0), rate=1, route=[(5, 0)])",
-        "world that stands still": "nav.crowd.World(step=0)",
-        "world that never ends": 'nav.crowd.World(time_limit=float("inf"))',
-        "world that repeats itself backward": "nav.crowd.World(period=(-10, 0))",
-        "wall of one point": "nav.crowd.World(walls=[[(0, 0)]])",
-        "robot that starts on a person": "nav.crowd.World(people=[nav.crowd.Person(start=(0.1, 0))], "
-        "robots=[nav.crowd.CrowdRobot(start=(0, 0), goal=(5, 0))])",
-        "robot that starts in a wall": "nav.crowd.World(walls=[[(0.1, -1), (0.1, 1)]], "
-        "robots=[nav.crowd.CrowdRobot(start=(0, 0), goal=(5, 0))])",
-        "robots that start on each other": "nav.crowd.World("
-        "robots=[nav.crowd.CrowdRobot(start=(0, 0), goal=(5, 0))] * 2)",
-        "robot that decides between steps": "nav.crowd.World(robots=[nav.crowd.CrowdRobot(start=(0, 0), goal=(5, 0), "
+        "source that takes people back": "nav.Source(low=(0, 0), high=(1, 1), rate=-1, route=[(5, 0)])",
+        "source with exchanged corners": "nav.Source(low=(1, 1), high=(0, 0), rate=1, route=[(5, 0)])",
+        "world that stands still": "nav.World(step=0)",
+        "world that never ends": 'nav.World(time_limit=float("inf"))',
+        "world that repeats itself backward": "nav.World(period=(-10, 0))",
+        "wall of one point": "nav.World(walls=[[(0, 0)]])",
+        "robot that starts on a person": "nav.World(people=[nav.Person(start=(0.1, 0))], "
+        "robots=[nav.Robot(start=(0, 0), goal=(5, 0))])",
+        "robot that starts in a wall": "nav.World(walls=[[(0.1, -1), (0.1, 1)]], "
+        "robots=[nav.Robot(start=(0, 0), goal=(5, 0))])",
+        "robots that start on each other": "nav.World(robots=[nav.Robot(start=(0, 0), goal=(5, 0))] * 2)",
+        "robot that decides between steps": "nav.World(robots=[nav.Robot(start=(0, 0), goal=(5, 0), "
         "control_period=0.07)])",
-        "robot that sees nobody": "nav.crowd.CrowdRobot(start=(0, 0), goal=(5, 0), sensing_range=0)",
+        "robot that sees nobody": "nav.Robot(start=(0, 0), goal=(5, 0), sensing_range=0)",
         "awareness of an instant": "nav.crowd.decide(nav.crowd.Moussaid(), position=[(0, 0)], velocity=[(0, 0)], "
         "goal=[(1, 0)], awareness=2)",
         "radius of an instant": "nav.crowd.decide(nav.crowd.Moussaid(), position=[(0, 0)], velocity=[(0, 0)], "
         "goal=[(1, 0)], radius=-0.2)",
         "robot and people of unequal length": "nav.metrics.Episode(position=[(0, 0), (1, 0)], people=[[(2, 0)]], "
         "step=0.1, goal=(5, 0), robot_radius=0.3)",
-        "scenario among worlds": "nav.simulate_many([nav.crowd.World(), 3], nav.VirtualForceField())",
-        "world without a robot for a law": "nav.simulate_many(nav.crowd.World(), nav.VirtualForceField())",
+        "scenario among worlds": "nav.simulate_many([nav.World(), 3], nav.VirtualForceField())",
+        "world without a robot for a law": "nav.simulate_many(nav.World(), nav.VirtualForceField())",
         "step of a world from outside": "nav.simulate_many(scenarios.circle_crossing(0), "
         "nav.VirtualForceField(), step=0.02)",
         "more than everybody reacts": "scenarios.with_recording(people, 1.5)",
@@ -384,7 +382,7 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "'peak_head_acceleration', most=10**9)",
     },
     "Learners and crowds": {
-        "environment without a robot": "gym.CrowdEnv(nav.crowd.World())",
+        "environment without a robot": "gym.CrowdEnv(nav.World())",
         "no environments": "gym.CrowdVectorEnv(gym.circle_crossing(), num_envs=0)",
         "action misspelt": 'gym.CrowdEnv(gym.circle_crossing(), action="velocty")',
         "action of three numbers": "gym.CrowdEnv(gym.circle_crossing()).step([0.0, 0.0, 0.0])",

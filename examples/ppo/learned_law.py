@@ -118,7 +118,7 @@ def compare(path: str | Path, *, first: int = 0, cases: int = 500) -> None:
     for name, law in laws.items():
         table = nav.simulate_many(worlds, law)
         fault = nav.metrics.wilson(int((table.contacts_at_fault > 0).sum()), cases)
-        shares = "".join(f" {each!s:38}" for each in (table.success_share, table.contact_share, fault))
+        shares = "".join(f" {each!s:38}" for each in (table.success, table.contact, fault))
         print(f"{name:20}{shares} {table.arrival_time[table.arrived].mean():.2f}", flush=True)
 
 

@@ -53,12 +53,12 @@ TOUCH: dict[str, Any] = {"robot": 16.0, "body": 0.6, "region": 75e3}
 HIT = contact.Contact(**TOUCH, covering=PAD)
 BORNE = {"force": 280.0, "pressure": 3.8e6}
 TRAP = nav.StaticMap.from_polylines([[(3.0, -1.5), (3.0, 1.5)], [(1.0, 1.5), (3.0, 1.5)], [(1.0, -1.5), (3.0, -1.5)]])
-WALKER = nav.crowd.Person(start=(1.0, 2.0), route=[(3.0, 2.0)])
-CROSSER = nav.crowd.CrowdRobot(start=(0.0, 0.0), goal=(3.0, 0.0))
+WALKER = nav.Person(start=(1.0, 2.0), route=[(3.0, 2.0)])
+CROSSER = nav.Robot(start=(0.0, 0.0), goal=(3.0, 0.0))
 
 
-def _crowd(**given: Any) -> nav.crowd.CrowdTrajectories:
-    return nav.crowd.simulate_crowd(nav.crowd.World(**given))
+def _crowd(**given: Any) -> nav.Trajectory:
+    return nav.simulate(nav.World(**given))
 
 
 def _scores(**given: Any) -> tuple[object, ...]:

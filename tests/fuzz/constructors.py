@@ -25,7 +25,7 @@ NO_CONSTRUCTORS: dict[type, str] = {
     **dict.fromkeys(
         (arms.EffectiveMass, arms.MassHistory, arms.PointMasses, arms.Workspace), "made by functions of arms"
     ),
-    **dict.fromkeys((nav.crowd.CrowdTrajectories, nav.crowd.Divergence), "made by a run of a world"),
+    **dict.fromkeys((nav.Trajectory, nav.crowd.Divergence), "made by a run of a world"),
     **dict.fromkeys((nav.metrics.Falsification, nav.metrics.Pursuit), "made by falsify"),
     **dict.fromkeys((nav.metrics.SafetyDecision, nav.metrics.SafetyRecord), "made by record_safety"),
     nav.laws.ShieldDecision: "made by a shield",
@@ -40,7 +40,7 @@ _FOAM = contact.Linear(modulus=1e5)
 _PLANNED = contact.PlannedContact(limit=standards.limits().contact("chest", "transient"), speed=0.2)
 _SAMPLES = np.linspace(0.0, 1.0, 5)
 _SQUARE = np.stack([_SAMPLES, np.zeros(5)], axis=1)
-_WORLD = nav.crowd.World(robots=[nav.crowd.CrowdRobot(start=(0.0, 0.0), goal=(3.0, 0.0))])
+_WORLD = nav.World(robots=[nav.Robot(start=(0.0, 0.0), goal=(3.0, 0.0))])
 _AXIS = sweep.Axis(name="foam_damping", low=0.0, high=100.0, points=4)
 _SPEED = sweep.Axis(name="closing_speed", low=0.1, high=1.0, points=4)
 
@@ -92,9 +92,9 @@ REQUIRED: dict[Callable[..., Any], Right] = {
     nav.Rectangle: {"center": (1.0, 2.0), "length": 1.0, "width": 0.5},
     nav.Run: {"scenario": nav.Scenario(start=(3.9, 0.6), goal=(0.0, 0.6)), "law": nav.VirtualForceField()},
     nav.Scenario: {"start": (3.9, 0.6), "goal": (0.0, 0.6), "obstacles": [nav.Disc(center=(2.0, 0.5), radius=0.1)]},
-    nav.crowd.CrowdRobot: {"start": (0.0, 0.0), "goal": (3.0, 0.0)},
-    nav.crowd.Person: {"start": (0.0, 0.0)},
-    nav.crowd.Source: {"low": (0.0, 0.0), "high": (1.0, 1.0), "rate": 0.5, "route": [(5.0, 0.5)]},
+    nav.Robot: {"start": (0.0, 0.0), "goal": (3.0, 0.0)},
+    nav.Person: {"start": (0.0, 0.0)},
+    nav.Source: {"low": (0.0, 0.0), "high": (1.0, 1.0), "rate": 0.5, "route": [(5.0, 0.5)]},
     nav.gains.GainConstraint: {"metric": "min_clearance", "at_least": 0.1},
     nav.laws.PythonLaw: {"function": _idle},
     nav.laws.SafeNavigation: {"law": nav.VirtualForceField()},

@@ -222,9 +222,9 @@ def test_a_python_law_is_told_the_deceleration() -> None:
 def test_robots_of_a_crowd_keep_them() -> None:
     robot = nav.DifferentialDriveRobot(max_turn_rate=0.7, max_turn_acceleration=2.0, max_deceleration=1.0)
     law = SafeNavigation(nav.VirtualForceField(), shield=Shield(), yielding=Yielding())
-    driven = nav.crowd.CrowdRobot(start=(0.0, 0.0), goal=(-5.0, 1.0), robot=robot, law=law, control_period=0.1)
-    person = nav.crowd.Person(start=(-4.0, 0.0), route=[(4.0, 0.5)])
-    run = nav.crowd.simulate_crowd(nav.crowd.World(people=[person], robots=[driven], time_limit=20.0))
+    driven = nav.Robot(robot, start=(0.0, 0.0), goal=(-5.0, 1.0), law=law, control_period=0.1)
+    person = nav.Person(start=(-4.0, 0.0), route=[(4.0, 0.5)])
+    run = nav.simulate(nav.World(people=[person], robots=[driven], time_limit=20.0))
     times, heading = run.time, run.robot_heading[:, 0]
     turn = np.diff(heading) / np.diff(times)
     assert np.abs(turn).max() <= 0.7 * SLACK + 1e-7

@@ -12,10 +12,11 @@ from hrsafety import scenarios
 from hrsafety.benchmarks.entries import MARGIN
 from hrsafety.benchmarks.protocol import Case, Suite
 from hrsafety.benchmarks.results import Row
-from hrsafety.navigation.crowd import CrowdRobot, World
-from hrsafety.navigation.crowd.agents import FASTEST_DRAWN
+from hrsafety.navigation.crowd.agents import FASTEST_DRAWN, Robot
 from hrsafety.navigation.crowd.contacts import contacts_of
 from hrsafety.navigation.crowd.episodes import outcome_of
+from hrsafety.navigation.crowd.simulation import simulated
+from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.metrics.between import touched_between
 from hrsafety.navigation.warnings.shields import Motion
 
@@ -52,14 +53,14 @@ def _antipodal(case: Case, index: int) -> World:
     return _sensed(scenarios.antipodal(20, law=_law(case, STEP_ERROR), robots=1, seed=case.seed + index), case)
 
 
-def _driven(case: Case, start: tuple[float, float], goal: tuple[float, float]) -> CrowdRobot:
-    return CrowdRobot(start=start, goal=goal, law=_law(case, STEP_ERROR), measurement=case.measurement)
+def _driven(case: Case, start: tuple[float, float], goal: tuple[float, float]) -> Robot:
+    return Robot(start=start, goal=goal, law=_law(case, STEP_ERROR), measurement=case.measurement)
 
 
-def _free(world: World, robot: CrowdRobot) -> World:
+def _free(world: World, robot: Robot) -> World:
     """Return the world with the robot, without people who would touch it at its start."""
     place = np.array(robot.start)
-    room = robot.robot.radius + 0.05
+    room = robot.body.radius + 0.05
     people = [each for each in world.people if np.hypot(*(np.array(each.start) - place)) > each.radius + room]
     return replace(world, people=people, robots=[robot])
 
@@ -84,7 +85,7 @@ def _worlds(scene: Callable[[Case, int], World]) -> Callable[[Case], Iterator[Ro
 
     def run(case: Case) -> Iterator[Row]:
         worlds = [scene(case, index) for index in case.cases]
-        runs = nav.crowd.simulate_crowds(worlds, threads=case.threads)
+        runs = simulated(worlds, threads=case.threads)
         episodes = [nav.crowd.episodes_of(each)[0] for each in runs]
         table = nav.metrics.evaluate_many(episodes, threads=case.threads)
         for row, (index, each) in enumerate(zip(case.cases, runs, strict=True)):

@@ -116,9 +116,7 @@ def _row(line: Sequence[str], where: str) -> Row:
         )
     except ValueError:
         row = None
-    # Worlds of people may diverge, too.
-    known = (*OUTCOMES, "diverged")
-    if row is None or min(getattr(row, name) for name in _COUNTS) < 0 or row.outcome not in known:
+    if row is None or min(getattr(row, name) for name in _COUNTS) < 0 or row.outcome not in OUTCOMES:
         rule = f"hold rows of this benchmark ({', '.join(NAMES)})"
         remedy = "remove the line, and its episode is run again"
         raise InvalidParameterError("out", rule, Shown(f"{','.join(line)[:80]!r} in {where}"), remedy)

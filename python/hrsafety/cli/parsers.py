@@ -185,8 +185,9 @@ def _add_simulate(commands: Any) -> None:
         "--fail-on",
         metavar="WORDS",
         help="exit with code 3, after everything was written, if in any run one of these happened: contact, "
-        "moving_contact (the robot moved), timed_out, stopped, not_arrived (also after a contact), any (anything but "
-        "an arrival without a contact); several with commas between. Without it the last line says how the runs ended",
+        "moving_contact (the robot moved), timed_out, stopped, diverged, not_arrived (also after a contact), any "
+        "(anything but an arrival without a contact); several with commas between. Without it the last line says how "
+        "the runs ended",
     )
     law = parser.add_argument_group("law (what is not given comes from the scenario file, else from the defaults)")
     law.add_argument(

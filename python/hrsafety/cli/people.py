@@ -205,7 +205,8 @@ def _totals(summary: RunTable, met: _Encounters) -> Iterator[str]:
     near = np.sort(met.distance[met.distance < met.active])
     yield f"runs       {len(summary)}: {int(arrived.sum())} reached the goal"
     for word, meaning in OUTCOMES.items():
-        yield f"  {word:<10} {int((summary.outcome == word).sum()):4d}  {meaning}"
+        if word != "diverged":  # as worlds do only
+            yield f"  {word:<10} {int((summary.outcome == word).sum()):4d}  {meaning}"
     yield (
         f"  of those that collided, {int((touched & arrived).sum())} reached the goal; at a contact the robot moved "
         f"in {int(while_moving.sum())} and only stood in {int((touched & ~while_moving).sum())}"

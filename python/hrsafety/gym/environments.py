@@ -79,7 +79,7 @@ class Environments:
         world = self.task.world
         if not world.robots:
             raise InvalidParameterError("world.robots", "hold a robot to drive", 0)
-        fastest = world.robots[0].robot.max_acceleration if max_acceleration is None else max_acceleration
+        fastest = world.robots[0].body.max_acceleration if max_acceleration is None else max_acceleration
         self._native = _hrsafety.CrowdEnvironments(
             world._native,
             self.count,
@@ -94,7 +94,7 @@ class Environments:
             progress=number("progress", progress),
             step_reward=number("step_reward", step_reward),
             max_acceleration=positive("max_acceleration", fastest),
-            max_turn_rate=turn_rate_of(world.robots[0].robot, max_turn_rate),
+            max_turn_rate=turn_rate_of(world.robots[0].body, max_turn_rate),
             autoreset_mode=autoreset_mode,
             metrics=self.metrics,
         )

@@ -19,7 +19,7 @@ from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.gym.environments import ActionKind, Frame, turn_rate_of
 from hrsafety.gym.single import RENDER_MODES, CrowdEnv
 from hrsafety.gym.worlds import Task, doubts_of
-from hrsafety.navigation.crowd.agents import CrowdRobot
+from hrsafety.navigation.crowd.agents import Robot
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.laws.situation import Situation
 from hrsafety.navigation.metrics.between import wrapped
@@ -33,9 +33,9 @@ Action = npt.NDArray[np.float32]
 class _Told:
     """What drives a robot in the worlds of the others: what its learner says, rest once its episode has ended."""
 
-    def __init__(self, robot: CrowdRobot, action: str, turn: float, acceleration: float) -> None:
-        self.kind, self.fastest = action, robot.robot.max_speed
-        self.force, self.turn = robot.robot.mass * acceleration, turn
+    def __init__(self, robot: Robot, action: str, turn: float, acceleration: float) -> None:
+        self.kind, self.fastest = action, robot.body.max_speed
+        self.force, self.turn = robot.body.mass * acceleration, turn
         self.ahead = math.atan2(robot.goal[1] - robot.start[1], robot.goal[0] - robot.start[0])
         self.reset()
 
@@ -185,8 +185,8 @@ class CrowdParallelEnv(ParallelEnv[str, Any, Action]):  # type: ignore[misc]  # 
         return _Told(
             robot,
             word("action", options.get("action", "velocity"), get_args(ActionKind)),
-            turn_rate_of(robot.robot, options.get("max_turn_rate")) * (robot.control_period or world.step),
-            robot.robot.max_acceleration if acceleration is None else positive("max_acceleration", acceleration),
+            turn_rate_of(robot.body, options.get("max_turn_rate")) * (robot.control_period or world.step),
+            robot.body.max_acceleration if acceleration is None else positive("max_acceleration", acceleration),
         )
 
     def _seen_by(self, task: Task, index: int) -> Task:

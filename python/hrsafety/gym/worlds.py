@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from hrsafety import scenarios
 from hrsafety._arguments import Pair, count, finite, flag, instance, pair, sequence
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.crowd.agents import CrowdRobot
+from hrsafety.navigation.crowd.agents import Robot
 from hrsafety.navigation.crowd.pedestrians import Pedestrian
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.robots.bodies import HolonomicRobot
@@ -72,11 +72,11 @@ def _corner(name: str, value: object) -> Pair:
     return finite(name, x), finite(name, y)
 
 
-def _robot(start: Pair, goal: Pair) -> CrowdRobot:
-    return CrowdRobot(start=start, goal=goal, robot=HolonomicRobot(radius=0.3, max_speed=1.0), control_period=_PERIOD)
+def _robot(start: Pair, goal: Pair) -> Robot:
+    return Robot(HolonomicRobot(radius=0.3, max_speed=1.0), start=start, goal=goal, control_period=_PERIOD)
 
 
-def _among(world: World, robot: CrowdRobot, visible: bool, area: Area | None = None) -> Task:
+def _among(world: World, robot: Robot, visible: bool, area: Area | None = None) -> Task:
     """Return the task of a robot in a world; starts that are drawn anew lie in a corner of their area before."""
     awareness = 1.0 if flag("visible", visible) else 0.0
     people = [replace(each, awareness=awareness, start=area[1] if area else each.start) for each in world.people]

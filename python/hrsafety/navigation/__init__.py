@@ -18,6 +18,8 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.navigation.batch import simulate_batch as simulate_batch
     from hrsafety.navigation.comparison import compare as compare
     from hrsafety.navigation.controller import Controller as Controller
+    from hrsafety.navigation.crowd.agents import Person as Person, Robot as Robot, Source as Source
+    from hrsafety.navigation.crowd.world import World as World
     from hrsafety.navigation.gains.changes import gain_sensitivity as gain_sensitivity
     from hrsafety.navigation.gains.results import GainSearch as GainSearch
     from hrsafety.navigation.gains.search import optimize_gains as optimize_gains

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Literal, get_args, overload
+from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -15,8 +15,6 @@ from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety._statistics import Mean, Share, mean_interval, wilson
 from hrsafety.navigation.batch import simulate_batch
-from hrsafety.navigation.crowd.comparison import CrowdComparison
-from hrsafety.navigation.crowd.table import CrowdTable
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.laws.python_law import AnyLaw
 from hrsafety.navigation.many import simulate_many
@@ -34,6 +32,8 @@ __all__ = ["Comparison", "Metric", "Standing", "compare", "step_cost"]
 
 Metric = Literal["arrival_time", "min_clearance", "energy", "path_length", "performance_total"]
 METRICS: tuple[str, ...] = get_args(Metric)
+_OF_SUCCESS = ("arrival_time", "energy", "path_length")
+"""What a run that ended otherwise has no fair value of."""
 
 
 @displayed
@@ -45,41 +45,53 @@ class Standing:
     ----------
     law : str
         Its name.
-    success, contact : Share
-        Share of the episodes in which it arrived without a contact, and with a contact, with
-        95 % Wilson intervals.
+    success, contact, diverged : Share
+        Share of the episodes in which it arrived without a contact, in which it had one, however they ended, and in
+        which the world diverged before the robot arrived, with 95 % Wilson intervals.
     obstacle_contact, wall_contact : Share
-        Share with a contact with an obstacle, and with a map.
+        Share with a contact with an obstacle or a person, and with a map or a wall.
     moving_contact, toward_contact, away_contact : Share
         Share with a contact while the robot itself was moving; with one toward which it moved, and with one that
         came from behind or from the side, as ``contacts_toward`` and ``contacts_away`` of a `RunTable`.
     at_fault : Share
-        Share with a contact at fault.
+        Share with a contact at fault; every one with a wall is.
+    robot_contact : Share
+        Share of the episodes in whose world robots touched each other, whichever; these are no contacts of
+        the shares above.
     arrival_time, energy, path_length : Mean
-        Over the episodes with success, in s, J and m, with 95 % bootstrap intervals.
+        Over the episodes with success, in s, J and m, with 95 % bootstrap intervals; energy is not known of worlds.
     min_clearance, performance_total : Mean
-        Over all episodes, in m and from 0 to 1.
+        Over all episodes, in m and from 0 to 1; the performance is not known of worlds.
+    discomfort_time, person_delay : Mean
+        Over the episodes of worlds in which they are known, in s: for the delay, people were simulated without robots,
+        too.
     """
 
     law: str
     success: Share
     contact: Share
+    diverged: Share
     obstacle_contact: Share
     wall_contact: Share
     moving_contact: Share
     toward_contact: Share
     away_contact: Share
     at_fault: Share
+    robot_contact: Share
     arrival_time: Annotated[Mean, "s"]
     energy: Annotated[Mean, "J"]
     path_length: Annotated[Mean, "m"]
     min_clearance: Annotated[Mean, "m"]
     performance_total: Mean
+    discomfort_time: Annotated[Mean, "s"]
+    person_delay: Annotated[Mean, "s"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
-class Comparison(PairedRuns[RunTable]):
+class Comparison(PairedRuns):
     """Runs of several laws in the same episodes, a scenario and a seed each: rows are laws, columns episodes.
+
+    An episode of a world is a robot of it.
 
     Attributes
     ----------
@@ -92,7 +104,7 @@ class Comparison(PairedRuns[RunTable]):
     seed : ndarray of int, shape (episodes,)
         Seed of each episode.
     outcome : ndarray of str, shape (laws, episodes)
-        ``"arrived"``, ``"collided"``, ``"timed_out"`` or ``"stopped"``.
+        ``"arrived"``, ``"collided"``, ``"timed_out"``, ``"stopped"`` or ``"diverged"``.
     arrival_time, energy, path_length, min_clearance : ndarray, shape (laws, episodes)
         In s (NaN without arrival), J, m and m.
     min_distance : ndarray, shape (laws, episodes, obstacles)
@@ -108,22 +120,22 @@ class Comparison(PairedRuns[RunTable]):
     @property
     def arrival_time(self) -> Array:
         """First entry into the tolerance circle in s."""
-        return self._by_law(self.runs.arrival_time)
+        return self.metric("arrival_time")
 
     @property
     def energy(self) -> Array:
         """Electrical loss in J."""
-        return self._by_law(self.runs.energy)
+        return self.metric("energy")
 
     @property
     def path_length(self) -> Array:
         """Path length in m."""
-        return self._by_law(self.runs.path_length)
+        return self.metric("path_length")
 
     @property
     def min_clearance(self) -> Array:
         """Least distance of the surfaces in m."""
-        return self._by_law(self.runs.min_clearance)
+        return self.metric("min_clearance")
 
     @property
     def min_distance(self) -> Array:
@@ -138,7 +150,34 @@ class Comparison(PairedRuns[RunTable]):
     @property
     def performance_total(self) -> Array:
         """Criterion H."""
-        return self._by_law(self.runs.performance_total)
+        return self.metric("performance_total")
+
+    def metric(self, name: str) -> Array:
+        """Return a metric of every episode.
+
+        Parameters
+        ----------
+        name : str
+            ``"arrival_time"``, ``"min_clearance"``, ``"energy"``, ``"path_length"``, ``"performance_total"``, and of
+            worlds one of ``nav.metrics.METRICS``.
+
+        Returns
+        -------
+        ndarray, shape (laws, episodes)
+            Its values; NaN where a run has none.
+
+        Raises
+        ------
+        InvalidParameterError
+            If there is no such metric.
+        """
+        word("metric", name, (*METRICS, *self.runs.values))
+        return self._by_law(self.runs.values[name] if name in self.runs.values else getattr(self.runs, name))
+
+    def _known(self) -> tuple[str, ...]:
+        """Return the metrics that the runs have."""
+        own = (name for name in METRICS if getattr(self.runs, name) is not None)
+        return tuple(dict.fromkeys((*own, *self.runs.values)))
 
     def columns(self) -> Columns:
         """Return the columns of the runs by name, a row for each law and episode.
@@ -177,45 +216,45 @@ class Comparison(PairedRuns[RunTable]):
         """
         row = self._row("law", law)
         arrived = self.outcome[row] == "arrived"
-        runs, table = len(arrived), self.runs
+        table = self.runs
 
-        def share(counts: npt.NDArray[np.int64]) -> Share:
-            return wilson(int((self._by_law(counts)[row] > 0).sum()), runs)
+        def share(flags: npt.NDArray[Any]) -> Share:
+            return wilson(int(self._by_law(flags > 0)[row].sum()), len(arrived))
 
-        def successful(values: Array) -> Mean:
-            return mean_interval(values[row][arrived])
+        def mean(name: str) -> Mean:
+            values = self.metric(name)[row] if name in self._known() else np.full(len(arrived), np.nan)
+            return mean_interval(values[np.isfinite(values) & (arrived if name in _OF_SUCCESS else True)])
 
+        among_robots = table.values.get("robot_contacts", np.zeros(len(table), dtype=np.int64))
         return Standing(
             law=law,
-            success=wilson(int(arrived.sum()), runs),
-            contact=wilson(int((self.outcome[row] == "collided").sum()), runs),
+            success=share(table.outcome == "arrived"),
+            contact=share(table.touched),
+            diverged=share(table.outcome == "diverged"),
             obstacle_contact=share(table.contacts_moving + table.contacts_standing - table.wall_contacts),
             wall_contact=share(table.wall_contacts),
             moving_contact=share(table.contacts_moving),
             toward_contact=share(table.contacts_toward),
             away_contact=share(table.contacts_away),
             at_fault=share(table.contacts_at_fault),
-            arrival_time=successful(self.arrival_time),
-            energy=successful(self.energy),
-            path_length=successful(self.path_length),
-            min_clearance=mean_interval(self.min_clearance[row][np.isfinite(self.min_clearance[row])]),
-            performance_total=mean_interval(self.performance_total[row]),
+            robot_contact=share(among_robots),
+            **{name: mean(name) for name in (*METRICS, "discomfort_time", "person_delay")},
         )
 
     def standings(self) -> list[Standing]:
         """Return the standing of every law, in the order given."""
         return [self.standing(law) for law in self.laws]
 
-    def difference(self, first: str, second: str, metric: Metric = "performance_total") -> Mean:
+    def difference(self, first: str, second: str, metric: str | None = None) -> Mean:
         """Return the mean difference of two laws, episode by episode.
 
         Parameters
         ----------
         first, second : str
             Names of the laws; the difference is first minus second.
-        metric : {"arrival_time", "min_clearance", "energy", "path_length", "performance_total"}
-            What is compared. Time, energy and length are compared in the episodes in which
-            both laws arrived without a contact, the others in all.
+        metric : str or None
+            As of `metric`. Time, energy and length are compared in the episodes in which both laws arrived without a
+            contact, the others in all in which they are finite. ``None``: the performance, in worlds the time.
 
         Returns
         -------
@@ -227,43 +266,14 @@ class Comparison(PairedRuns[RunTable]):
         InvalidParameterError
             If there is no such law or metric.
         """
-        word("metric", metric, METRICS)
-        successful = metric in ("arrival_time", "energy", "path_length")
-        return self._difference(first, second, getattr(self, metric), successful=successful)
-
-
-@overload
-def compare(
-    scenarios: Scenario | Sequence[Scenario] | Mapping[str, Scenario],
-    laws: AnyLaw | Sequence[AnyLaw] | Mapping[str, AnyLaw],
-    *,
-    seeds: Seeds | None = ...,
-    built: AsBuilt | None = ...,
-    weights: Sequence[float] = ...,
-    integrator: Integrator = ...,
-    step: float = ...,
-    hold: bool = ...,
-    stop_on_contact: bool = ...,
-    threads: int | None = ...,
-    progress: Progress | None = ...,
-) -> Comparison: ...
-
-
-@overload
-def compare(
-    scenarios: World | Sequence[World] | Mapping[str, World],
-    laws: AnyLaw | Sequence[AnyLaw] | Mapping[str, AnyLaw],
-    *,
-    seeds: Seeds | None = ...,
-    people_alone: bool = ...,
-    threads: int | None = ...,
-    progress: Progress | None = ...,
-) -> CrowdComparison: ...
+        name = ("arrival_time" if self.runs.values else "performance_total") if metric is None else metric
+        word("metric", name, self._known())
+        return self._difference(first, second, self.metric(name).astype(np.float64), successful=name in _OF_SUCCESS)
 
 
 @telling(of_scenarios)
 def compare(
-    scenarios: Scenario | Sequence[Scenario] | Mapping[str, Scenario] | World | Sequence[World] | Mapping[str, World],
+    scenarios: Scenario | World | Sequence[Scenario | World] | Mapping[str, Scenario | World],
     laws: AnyLaw | Sequence[AnyLaw] | Mapping[str, AnyLaw],
     *,
     seeds: Seeds | None = None,
@@ -276,7 +286,7 @@ def compare(
     people_alone: bool = False,
     threads: int | None = None,
     progress: Progress | None = None,
-) -> Comparison | CrowdComparison:
+) -> Comparison:
     """Run every law in the same scenarios with the same seeds, and compare them episode by episode.
 
     Parameters
@@ -298,9 +308,8 @@ def compare(
 
     Returns
     -------
-    Comparison or CrowdComparison
-        Every run; shares with intervals, and differences of the same episodes. Of worlds with the social
-        metrics.
+    Comparison
+        Every run; shares with intervals, and differences of the same episodes.
 
     Raises
     ------
@@ -321,7 +330,7 @@ def compare(
     >>> result.outcome[:, 0].tolist()
     ['arrived', 'arrived']
     """
-    runs: RunTable | CrowdTable = simulate_many(  # type: ignore[call-overload, misc]  # either kind
+    runs = simulate_many(
         scenarios,
         laws,
         seeds=seeds,
@@ -335,7 +344,7 @@ def compare(
         threads=threads,
         progress=progress,
     )
-    return CrowdComparison(runs=runs) if isinstance(runs, CrowdTable) else Comparison(runs=runs)
+    return Comparison(runs=runs)
 
 
 def step_cost(law: AnyLaw, scenario: Scenario, *, repeats: int = 5) -> float:

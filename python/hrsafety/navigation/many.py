@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any, cast, overload
+from typing import cast
 
 import numpy as np
 import numpy.typing as npt
@@ -14,8 +14,8 @@ from hrsafety._arguments import Array, callback, flag, number, thread_count
 from hrsafety._bounds import MOST_PATH_NUMBERS, MOST_TABLE_ROWS
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown, SimulationError
-from hrsafety.navigation.crowd.study import CrowdStudy
-from hrsafety.navigation.crowd.table import CrowdTable
+from hrsafety.navigation.crowd.simulation import OWN_LAWS
+from hrsafety.navigation.crowd.study import WorldStudy
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.laws.python_law import AnyLaw
@@ -31,7 +31,7 @@ from hrsafety.navigation.run_arguments import (
     sets_of,
 )
 from hrsafety.navigation.scenario import Scenario
-from hrsafety.navigation.simulation import as_built
+from hrsafety.navigation.simulation import as_built, refuse_in_worlds
 from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.navigation.trajectory import Integrator
 from hrsafety.navigation.warnings.units import of_scenarios
@@ -41,43 +41,10 @@ from hrsafety.tables import Columns
 __all__ = ["simulate_many"]
 
 
-@overload
-def simulate_many(
-    scenarios: Scenario | Sequence[Scenario] | Mapping[str, Scenario],
-    laws: AnyLaw | Sequence[AnyLaw] | Mapping[str, AnyLaw],
-    *,
-    gains: npt.ArrayLike | Mapping[str, npt.ArrayLike] | None = ...,
-    seeds: Seeds | None = ...,
-    built: AsBuilt | None = ...,
-    paths: bool = ...,
-    weights: Sequence[float] = ...,
-    integrator: Integrator = ...,
-    step: float = ...,
-    hold: bool = ...,
-    stop_on_contact: bool = ...,
-    descent: bool = ...,
-    threads: int | None = ...,
-    progress: Progress | None = ...,
-) -> RunTable: ...
-
-
-@overload
-def simulate_many(
-    scenarios: World | Sequence[World] | Mapping[str, World],
-    laws: AnyLaw | Sequence[AnyLaw] | Mapping[str, AnyLaw],
-    *,
-    gains: npt.ArrayLike | Mapping[str, npt.ArrayLike] | None = ...,
-    seeds: Seeds | None = ...,
-    people_alone: bool = ...,
-    threads: int | None = ...,
-    progress: Progress | None = ...,
-) -> CrowdTable: ...
-
-
 @telling(of_scenarios)
 def simulate_many(
-    scenarios: Scenario | Sequence[Scenario] | Mapping[str, Scenario] | World | Sequence[World] | Mapping[str, World],
-    laws: AnyLaw | Sequence[AnyLaw] | Mapping[str, AnyLaw],
+    scenarios: Scenario | World | Sequence[Scenario | World] | Mapping[str, Scenario | World],
+    laws: AnyLaw | Sequence[AnyLaw] | Mapping[str, AnyLaw] | None = None,
     *,
     gains: npt.ArrayLike | Mapping[str, npt.ArrayLike] | None = None,
     seeds: Seeds | None = None,
@@ -92,7 +59,7 @@ def simulate_many(
     people_alone: bool = False,
     threads: int | None = None,
     progress: Progress | None = None,
-) -> RunTable | CrowdTable:
+) -> RunTable:
     """Run every law in every scenario with every seed and every gain set, on all cores.
 
     Each run has the bits of `simulate` and `evaluate`, on any number of threads. Point masses run side
@@ -106,7 +73,7 @@ def simulate_many(
     laws : law, sequence of laws, or mapping of str to law
         What drives the robot, in a world every robot: laws of the package and laws of your own
         (`PythonLaw`), which run on one thread; without names they are called by their class, those of
-        one class numbered.
+        one class numbered. ``None``: every robot of a world has its own, called ``"own"``.
     gains : array_like of shape (n, g), mapping, or None
         Gain sets in the order of ``GAIN_NAMES`` of the laws, or arrays by these names that broadcast,
         the missing ones taken from each law. ``None``: the gains of each law.
@@ -135,9 +102,9 @@ def simulate_many(
 
     Returns
     -------
-    RunTable or CrowdTable
-        One row for each (law, scenario, seed, gains) in this order, the gains fastest; of worlds a
-        `CrowdTable` with the social metrics, a row for each robot.
+    RunTable
+        One row for each (law, scenario, seed, gains) in this order, the gains fastest; of worlds with the social
+        metrics, and a row for each robot.
 
     Raises
     ------
@@ -169,10 +136,12 @@ def simulate_many(
     >>> crowds.outcome.tolist(), bool((crowds.person_delay < 1.0).all())
     (['arrived', 'arrived', 'arrived'], True)
     """
-    named, drivers = named_scenarios(scenarios), named_laws(laws)
+    named = named_scenarios(scenarios)
+    among_people = not isinstance(named, Numbered) and isinstance(next(iter(named.values())), World)
+    drivers: dict[str, Law] = {"own": OWN_LAWS} if laws is None and among_people else named_laws(laws)
     sets = sets_of(drivers, gains)
     drawn = None if seeds is None else checked_seeds(seeds)
-    if not isinstance(named, Numbered) and isinstance(next(iter(named.values())), World):
+    if among_people:
         own = {
             "built": built,
             "paths": paths,
@@ -180,9 +149,9 @@ def simulate_many(
             "integrator": integrator,
             "step": step,
         }
-        _refuse_in_worlds(own | {"hold": hold, "stop_on_contact": stop_on_contact, "descent": descent})
+        refuse_in_worlds(own | {"hold": hold, "stop_on_contact": stop_on_contact, "descent": descent})
         worlds = cast("Mapping[str, World]", named)
-        crowds = CrowdStudy(worlds, drivers, sets, drawn, flag("people_alone", people_alone))
+        crowds = WorldStudy(worlds, drivers, sets, drawn, flag("people_alone", people_alone))
         return crowds.run(thread_count(threads), callback("progress", progress))
     if flag("people_alone", people_alone):
         raise InvalidParameterError("people_alone", "be False for scenarios, whose people do not react", people_alone)
@@ -204,29 +173,6 @@ def simulate_many(
     else:
         options |= {"built": robot._native, "histories": paths}
     return study.run(check_weights(weights), options, callback("progress", progress))
-
-
-_OF_SCENARIOS: Mapping[str, Any] = {
-    "built": None,
-    "paths": False,
-    "weights": (1 / 3, 1 / 3, 1 / 3),
-    "integrator": "semi_implicit_euler",
-    "step": 0.01,
-    "hold": True,
-    "stop_on_contact": False,
-    "descent": False,
-}
-"""Options that worlds do not have, and their defaults."""
-
-
-def _refuse_in_worlds(given: Mapping[str, object]) -> None:
-    """Refuse options that worlds do not have."""
-    for name, value in given.items():
-        # Arrays have no single truth value.
-        plain = isinstance(value, bool | int | float | str | tuple | np.generic)
-        if value is not _OF_SCENARIOS[name] and not (plain and value == _OF_SCENARIOS[name]):
-            remedy = "worlds have a step of their own, and run to their end"
-            raise InvalidParameterError(name, "be left out for worlds", value, remedy)
 
 
 @dataclass(frozen=True, slots=True)
@@ -347,7 +293,7 @@ class _Study:
             seed=seeds[episode],
             built=self.built,
             motion_step=self.motion_step,
-            **columns,
+            **columns,  # type: ignore[arg-type]  # each under its own name
         )
 
 

@@ -1,4 +1,4 @@
-"""How a run can end: the words of the core's one list, and what each says."""
+"""How a run can end: the words of the core, and what each says."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from hrsafety import _hrsafety
 __all__ = ["OUTCOMES", "Outcome"]
 
 # For type checkers, which cannot ask the core; a test compares it with the list.
-Outcome = Literal["arrived", "collided", "timed_out", "stopped"]
+Outcome = Literal["arrived", "collided", "timed_out", "stopped", "diverged"]
 
-OUTCOMES: Mapping[str, str] = MappingProxyType(dict(_hrsafety.run_outcomes()))
-"""What each outcome says, by its word, in the order of the core."""
+OUTCOMES: Mapping[str, str] = MappingProxyType(
+    dict(_hrsafety.run_outcomes()) | {"diverged": "a state of the world was no longer finite"}
+)
+"""What each outcome says, by its word, in the order of the core; a world that diverges ends, a scenario fails."""

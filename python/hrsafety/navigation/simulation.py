@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import count, flag, instance, number, sequence, word
@@ -18,13 +21,51 @@ from hrsafety.navigation.trajectory import OPTIONAL_COLUMNS, Integrator, Traject
 from hrsafety.navigation.warnings.units import of_scenarios
 from hrsafety.plausibility import telling
 
-__all__ = ["as_built", "evaluate", "simulate"]
+if TYPE_CHECKING:
+    from hrsafety.navigation.crowd.world import World
+
+__all__ = ["as_built", "evaluate", "refuse_in_worlds", "simulate"]
+
+_OF_SCENARIOS: dict[str, Any] = {
+    "built": None,
+    "paths": False,
+    "weights": (1 / 3, 1 / 3, 1 / 3),
+    "integrator": "semi_implicit_euler",
+    "step": 0.01,
+    "hold": True,
+    "stop_on_contact": False,
+    "descent": False,
+    "record": None,
+    "every": 1,
+}
+"""Options that worlds do not have, and their defaults."""
+
+
+def refuse_in_worlds(given: Mapping[str, object]) -> None:
+    """Refuse options that worlds do not have.
+
+    Parameters
+    ----------
+    given : mapping of str to object
+        What the caller gave, by name.
+
+    Raises
+    ------
+    InvalidParameterError
+        If one is not the default.
+    """
+    for name, value in given.items():
+        # Arrays have no single truth value.
+        plain = isinstance(value, bool | int | float | str | tuple | np.generic)
+        if value is not _OF_SCENARIOS[name] and not (plain and value == _OF_SCENARIOS[name]):
+            remedy = "worlds have a step of their own, and run to their end"
+            raise InvalidParameterError(name, "be left out for worlds", value, remedy)
 
 
 @telling(of_scenarios)
 def simulate(
-    scenario: Scenario,
-    law: AnyLaw,
+    scenario: Scenario | World,
+    law: AnyLaw | None = None,
     *,
     built: AsBuilt | None = None,
     integrator: Integrator = "semi_implicit_euler",
@@ -34,16 +75,18 @@ def simulate(
     record: Sequence[str] | None = None,
     every: int = 1,
 ) -> Trajectory:
-    """Run one robot from start to goal.
+    """Run one robot from start to goal, or everybody in a world.
 
     A holonomic robot moves as a point mass; a two-wheel robot follows the point mass that the law drives.
 
     Parameters
     ----------
-    scenario : Scenario
-        Robot, start, goal, obstacles, measurement.
-    law : Law, callable or object
-        What drives the robot; see `PythonLaw` for laws of your own.
+    scenario : Scenario or World
+        Robot, start, goal, obstacles, measurement; or people that react, robots and walls, which take none of the
+        options below.
+    law : Law, callable, object or None
+        What drives the robot, in a world every robot; see `PythonLaw` for laws of your own. ``None``: every robot
+        of a world has its own.
     built : AsBuilt or None
         How the robot is built: wheels with controllers, cameras, the tracking of a two-wheel robot.
         ``None``: ideal wheels and what the scenario measures, as ``AsBuilt()`` says, whose run of a
@@ -71,15 +114,15 @@ def simulate(
     Returns
     -------
     Trajectory
-        The run.
+        The run. Where a state of a world is no longer finite it ends, and ``diverged`` says when and for whom.
 
     Raises
     ------
     InvalidParameterError
         If the step is not positive and finite or does not divide the control period, a word is
-        unknown, or an option does not suit the robot.
+        unknown, an option does not suit the robot, a law cannot work in a world, or a record would not fit into memory.
     SimulationError
-        If the state became non-finite.
+        If the state of a scenario became non-finite.
 
     Examples
     --------
@@ -101,8 +144,20 @@ def simulate(
     >>> run = nav.simulate(scene, nav.VirtualForceField(), record=["distance"], every=6)
     >>> len(run.time), run.force is None, round(float(run.min_distance[0]), 3)
     (112, True, 0.536)
+
+    A robot and a person who sees it meet head-on:
+
+    >>> person = nav.Person(start=(6, 0.1), route=[(0, 0.1)], desired_speed=1.2)
+    >>> robot = nav.Robot(start=(0, 0), goal=(6, 0))
+    >>> world = nav.World(people=[person], robots=[robot])
+    >>> nav.simulate(world, nav.OptimalReciprocalCollisionAvoidance()).outcome
+    'arrived'
     """
-    instance("scenario", scenario, Scenario)
+    if not isinstance(scenario, Scenario):
+        own = {"built": built, "integrator": integrator, "step": step, "hold": hold}
+        own = {"built": built, "integrator": integrator, "step": step, "hold": hold}
+        refuse_in_worlds(own | {"stop_on_contact": stop_on_contact, "record": record, "every": every})
+        return _of_world(scenario, law)
     law = as_law(law)
     names, rows = _kept(record), count("every", every, most=MOST_INTERVAL)
     robot = as_built([scenario], built, integrator, hold=hold)
@@ -130,6 +185,16 @@ def simulate(
         every=rows,
     )
     return Trajectory(scenario=scenario, law=law, motion_step=float(step), **fields)
+
+
+def _of_world(scenario: World, law: AnyLaw | None) -> Trajectory:
+    """Return the run of a world."""
+    # Here: runs of scenarios load nothing of it.
+    from hrsafety.navigation.crowd import simulation
+    from hrsafety.navigation.crowd.world import World
+
+    instance("scenario", scenario, Scenario, World)
+    return simulation.simulated([scenario if law is None else simulation.driven(scenario, as_law(law))], threads=1)[0]
 
 
 def _kept(record: Sequence[str] | None) -> list[str]:

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array
+from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.navigation.knowledge import Sensing, sensing_of
 from hrsafety.navigation.laws.force_laws import Law
@@ -22,7 +23,7 @@ from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, Table, each, plane, with_units
 
-__all__ = ["CONTACT_SPEED", "DECIDED_OVERLAP", "Integrator", "Trajectory", "without_obstacles"]
+__all__ = ["CONTACT_SPEED", "DECIDED_OVERLAP", "Divergence", "Integrator", "Trajectory", "without_obstacles"]
 
 Integrator = Literal["semi_implicit_euler", "rk4"]
 CONTACT_SPEED = _hrsafety.CONTACT_SPEED
@@ -32,6 +33,26 @@ DECIDED_OVERLAP = _hrsafety.DECIDED_OVERLAP
 at last, whoever came."""
 OPTIONAL_COLUMNS = ("force", "stabilizing", "lyapunov", "wheel_current", "obstacle_position", "distance")
 """Columns that a run may leave out, see ``record`` of `simulate`."""
+
+
+@displayed
+@dataclass(frozen=True, slots=True)
+class Divergence:
+    """Whose state was no longer finite, which ended the world.
+
+    Parameters
+    ----------
+    time : float
+        When, in s.
+    kind : {"person", "robot"}
+        Who.
+    index : int
+        Which of them.
+    """
+
+    time: Annotated[float, "s"]
+    kind: Literal["person", "robot"]
+    index: int
 
 
 class Followed(Protocol):
@@ -50,12 +71,27 @@ class Trajectory(Table):
     wheels and sensors of ideal point masses; scenario, law, forces, currents, energy and outcome of a run
     after a reference (`tracking.track`), which ends after its duration.
 
+    Of a `World` the obstacles are the people, those from sources last, the rows are its steps, and the run goes on
+    after the arrival of the robot; distances and contacts of a robot are those up to its arrival. In a world of several
+    robots, or without any, what is of one robot stands in ``robots``, and asking the run for it raises an
+    `AttributeError`.
+
     Attributes
     ----------
-    scenario : Scenario
+    scenario : Scenario or World
         What was simulated.
+    robots : tuple of Trajectory
+        The run as each robot of a world has it; of a scenario, or a world with one robot, this one.
+    robot_position, robot_velocity : ndarray, shape (n, k, 2)
+        Of all k robots, in m and m/s.
+    robot_heading : ndarray, shape (n, k)
+        Of all robots, in rad.
+    robot_arrival_time : ndarray, shape (k,)
+        When each arrived, in s; NaN for those that did not.
+    outcomes : tuple of str
+        How it ended for each robot.
     law : Law
-        The law that drove the robot.
+        The law that drove the robot; ``None`` for a robot of a world without one.
     time : ndarray, shape (n,)
         Instants in s.
     position, velocity : ndarray, shape (n, 2)
@@ -71,8 +107,24 @@ class Trajectory(Table):
     distance : ndarray, shape (n, m)
         Distance d from obstacle centre (rectangle: contour) to robot centre in m; NaN while
         absent.
-    outcome : {"arrived", "collided", "timed_out", "stopped", "running"}
-        How it ended. A contact makes it ``"collided"`` whatever came after. ``"running"``: the run so
+    obstacle_velocity : ndarray of shape (n, m, 2), or None
+        Velocities of the people of a world in m/s; NaN while absent.
+    obstacle_radius, desired_speed, awareness : ndarray of shape (m,), or None
+        Of the people of a world, in m, in m/s, and from 0 to 1, as drawn.
+    person_arrival_time : ndarray of shape (m,), or None
+        When each person of a world reached the end of the route, in s; NaN for those who did not.
+    person_arrival_position : ndarray of shape (m, 2), or None
+        Where that was, in m. Who leaves at the end is absent from that instant on.
+    wall_rescues : int
+        How often somebody of a world was set back who would have passed a wall or come nearer to it than a tenth of
+        the radius: nobody does, whatever a model decides.
+    max_person_speed : float
+        Largest speed of the people of a world who decide, in m/s, also between instants and before walls take of it.
+    diverged : Divergence or None
+        Whose state was no longer finite, if that ended the world.
+    outcome : {"arrived", "collided", "timed_out", "stopped", "diverged", "running"}
+        How it ended. A contact makes it ``"collided"`` whatever came after; those between robots of a world do not.
+        ``"diverged"``: the state of a world was no longer finite before the robot arrived. ``"running"``: the run so
         far of a `Run` that is under way.
     arrival_time : float
         First entry into the tolerance circle, in s; NaN without arrival.
@@ -144,8 +196,9 @@ class Trajectory(Table):
     RunTable : many runs.
     """
 
-    # `X | Any`: None in a run after a reference only, which callers that made an episode need not ask.
-    scenario: Scenario | Any = None
+    # `X | Any`: None in a run after a reference only, which callers that made an episode need not ask. A `World` is
+    # known by those who have one only: runs of scenarios load nothing of it.
+    scenario: Any = None
     law: Law | Any = None
     time: Annotated[Array, "s"]
     position: Annotated[Array, "m"]
@@ -154,6 +207,15 @@ class Trajectory(Table):
     heading: Annotated[Array, "rad"]
     wheel_current: Array | Any = None
     obstacle_position: Annotated[Array | Any, "m"] = None
+    obstacle_velocity: Annotated[Array | Any, "m/s"] = None
+    obstacle_radius: Array | Any = None
+    desired_speed: Array | Any = None
+    awareness: Array | Any = None
+    person_arrival_time: Annotated[Array | Any, "s"] = None
+    person_arrival_position: Annotated[Array | Any, "m"] = None
+    wall_rescues: int = 0
+    max_person_speed: Annotated[float, "m/s"] = 0.0
+    diverged: Divergence | None = None
     distance: Annotated[Array | Any, "m"] = None
     outcome: Outcome | Literal["running"] | Any = None
     arrival_time: Annotated[float | Any, "s"] = None
@@ -186,6 +248,41 @@ class Trajectory(Table):
     goal_phase: npt.NDArray[np.bool_] | Any = None
     reference: Followed | None = None
     tracking: Tracking | None = None
+
+    @property
+    def robot(self) -> int:
+        """Index of the robot whose run it is."""
+        return 0
+
+    @property
+    def robots(self) -> tuple[Trajectory, ...]:
+        """The run as each robot has it."""
+        return (self,)
+
+    @property
+    def robot_position(self) -> Array:
+        """Positions of all robots in m."""
+        return self.position[:, None]
+
+    @property
+    def robot_velocity(self) -> Array:
+        """Velocities of all robots in m/s."""
+        return self.velocity[:, None]
+
+    @property
+    def robot_heading(self) -> Array:
+        """Headings of all robots in rad."""
+        return self.heading[:, None]
+
+    @property
+    def robot_arrival_time(self) -> Array:
+        """When each robot arrived, in s."""
+        return np.array([self.arrival_time])
+
+    @property
+    def outcomes(self) -> tuple[str, ...]:
+        """How the run ended for each robot."""
+        return tuple(each.outcome for each in self.robots)
 
     @property
     def contacts_moving(self) -> int:

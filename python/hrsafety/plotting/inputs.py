@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from hrsafety._arguments import word
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
+from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import OPTIONAL_COLUMNS, Trajectory
 from hrsafety.plotting.style import Limits
@@ -21,8 +21,10 @@ Array = npt.NDArray[np.float64]
 def checked_trajectory(name: str, value: object) -> Trajectory:
     """Return ``value`` if it is a trajectory."""
     if not isinstance(value, Trajectory):
-        remedy = "`plotting.crowds` draws worlds" if isinstance(value, CrowdTrajectories) else None
-        raise InvalidParameterError(name, "be a Trajectory", Shown(type(value).__name__), remedy)
+        raise InvalidParameterError(name, "be a Trajectory", Shown(type(value).__name__))
+    if isinstance(value.scenario, World):
+        remedy = "`plotting.crowds` draws worlds"
+        raise InvalidParameterError(name, "be the run of a scenario", Shown("the run of a world"), remedy)
     if value.scenario is None:
         remedy = "`plotting.robots.tracking_paths` and `tracking_errors` draw it"
         raise InvalidParameterError(name, "be the run of a scenario", Shown("a run after a reference"), remedy)

@@ -9,7 +9,9 @@ import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety._arguments import checked_seed, count, flag, instance, not_negative
-from hrsafety.navigation.crowd import CrowdRobot, Pedestrian, Person, World
+from hrsafety.navigation.crowd.agents import Person, Robot
+from hrsafety.navigation.crowd.pedestrians import Pedestrian
+from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.laws.python_law import AnyLaw
 from hrsafety.scenarios.placing import drawn, model_of
 
@@ -92,7 +94,7 @@ def antipodal(
     of = model_of(model)
     return World(
         robots=[
-            CrowdRobot(start=tuple(start), goal=tuple(goal), law=law, robot=body)
+            Robot(body, start=tuple(start), goal=tuple(goal), law=law)
             for start, goal in zip(disturbed[:driven], goals[:driven], strict=True)
         ],
         people=[
@@ -146,14 +148,14 @@ def circle_crossing(
     --------
     >>> from hrsafety import navigation as nav, scenarios
     >>> world = scenarios.circle_crossing(3, law=nav.OptimalReciprocalCollisionAvoidance())
-    >>> nav.crowd.simulate_crowd(world).outcomes
+    >>> nav.simulate(world).outcomes
     ('arrived',)
     """
     of = _reciprocal() if model is None else instance("model", model, Pedestrian)
     awareness = 1.0 if flag("visible", visible) else 0.0
     starts = nav.crowd.circle_starts(checked_seed("case", case), people).tolist()
     body = nav.HolonomicRobot(radius=0.3, max_speed=1.0) if robot is None else robot
-    driven = CrowdRobot(start=(0.0, -4.0), goal=(0.0, 4.0), law=law, robot=body, heading=0.5 * math.pi)
+    driven = Robot(body, start=(0.0, -4.0), goal=(0.0, 4.0), law=law, heading=0.5 * math.pi)
     return World(
         people=[
             Person(start=(x, y), route=[(-x, -y)], model=of, radius=0.3, desired_speed=1.0, awareness=awareness)

@@ -11,7 +11,9 @@ from hrsafety._arguments import checked_seed, instance, number, positive
 from hrsafety._doubts import LateDoubts
 from hrsafety.datasets import Recording
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.crowd import CrowdRobot, Pedestrian, Person, World
+from hrsafety.navigation.crowd.agents import Person, Robot
+from hrsafety.navigation.crowd.pedestrians import Pedestrian
+from hrsafety.navigation.crowd.world import World
 from hrsafety.scenarios.placing import model_of
 
 __all__ = ["with_recording"]
@@ -27,7 +29,7 @@ def with_recording(
     share: float,
     *,
     model: Pedestrian | None = None,
-    robots: Sequence[CrowdRobot] = (),
+    robots: Sequence[Robot] = (),
     start_time: float | None = None,
     time_limit: float = 60.0,
     radius: float = RECORDED_RADIUS,
@@ -44,7 +46,7 @@ def with_recording(
         The first share of those in view, from 0 to 1, reacts; the others follow the recording.
     model : Pedestrian or None
         Model of those who react; ``None``: `CollisionFreeSpeed`.
-    robots : sequence of CrowdRobot
+    robots : sequence of Robot
         Robots among them.
     start_time : float or None
         Instant of the recording at which the world starts, in s; ``None``: its first one.

@@ -6,7 +6,9 @@ from collections.abc import Sequence
 
 from hrsafety._arguments import count, flag, number, positive
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.crowd import CrowdRobot, Pedestrian, Person, Source, World
+from hrsafety.navigation.crowd.agents import Person, Robot, Source
+from hrsafety.navigation.crowd.pedestrians import Pedestrian
+from hrsafety.navigation.crowd.world import World
 from hrsafety.scenarios.placing import FAR, MOST_PEOPLE, RADIUS, drawn, extent, lattice, model_of
 
 __all__ = ["bottleneck", "corridor", "cross_torus", "crossing"]
@@ -32,7 +34,7 @@ def corridor(
     model: Pedestrian | None = None,
     radius: float = RADIUS,
     desired_speed: float | None = None,
-    robots: Sequence[CrowdRobot] = (),
+    robots: Sequence[Robot] = (),
     seed: int = 0,
     time_limit: float = 40.0,
 ) -> World:
@@ -52,7 +54,7 @@ def corridor(
         Of the people, in m.
     desired_speed : float or None
         Of the people, in m/s; ``None``: drawn.
-    robots : sequence of CrowdRobot
+    robots : sequence of Robot
         Robots among them.
     seed : int
         Seed of the places and of the world.
@@ -110,7 +112,7 @@ def crossing(
     rate: float = 1.0,
     model: Pedestrian | None = None,
     desired_speed: float | None = None,
-    robots: Sequence[CrowdRobot] = (),
+    robots: Sequence[Robot] = (),
     seed: int = 0,
     time_limit: float = 60.0,
 ) -> World:
@@ -128,7 +130,7 @@ def crossing(
         Model of the people; ``None``: `CollisionFreeSpeed`.
     desired_speed : float or None
         Of the people, in m/s; ``None``: drawn.
-    robots : sequence of CrowdRobot
+    robots : sequence of Robot
         Robots among them.
     seed : int
         Seed of the places and of the world.
@@ -195,7 +197,7 @@ def cross_torus(
     side: float = 10.0,
     model: Pedestrian | None = None,
     desired_speed: float | None = None,
-    robots: Sequence[CrowdRobot] = (),
+    robots: Sequence[Robot] = (),
     seed: int = 0,
     time_limit: float = 60.0,
 ) -> World:
@@ -211,7 +213,7 @@ def cross_torus(
         Model of the people; ``None``: `CollisionFreeSpeed`.
     desired_speed : float or None
         Of the people, in m/s; ``None``: drawn.
-    robots : sequence of CrowdRobot
+    robots : sequence of Robot
         Robots among them.
     seed : int
         Seed of the places and of the world.
@@ -263,7 +265,7 @@ def bottleneck(
     door: float = 1.0,
     model: Pedestrian | None = None,
     desired_speed: float | None = None,
-    robots: Sequence[CrowdRobot] = (),
+    robots: Sequence[Robot] = (),
     seed: int = 0,
     time_limit: float = 120.0,
 ) -> World:
@@ -279,7 +281,7 @@ def bottleneck(
         Model of the people; ``None``: `CollisionFreeSpeed`.
     desired_speed : float or None
         Of the people, in m/s; ``None``: drawn.
-    robots : sequence of CrowdRobot
+    robots : sequence of Robot
         Robots among them.
     seed : int
         Seed of the places and of the world.

@@ -182,7 +182,7 @@ class NavigationStudy(Study):
             if names is not None:
                 raise InvalidParameterError("names", "be None when the scenarios have names", names)
             names, given = tuple(given), tuple(given.values())
-        scenes = (given,) if isinstance(given, nav.Scenario | nav.crowd.World) else given
+        scenes = (given,) if isinstance(given, nav.Scenario | nav.World) else given
         scenes = tuple(sequence("scenarios", "be a sequence or a mapping of Scenario", scenes))
         for index, scene in enumerate(scenes):
             if not isinstance(scene, nav.Scenario):
@@ -325,7 +325,7 @@ class NavigationStudy(Study):
 
 def _no_scenario(given: object) -> tuple[object, str | None]:
     """Return what an error shows of something that is no Scenario, and the advice for it."""
-    if isinstance(given, nav.crowd.World):
+    if isinstance(given, nav.World):
         return Shown("a World"), "worlds of people that react are run by nav.simulate_many and nav.compare"
     return given, None
 

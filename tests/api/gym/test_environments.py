@@ -31,11 +31,11 @@ OPTIONS: list[dict[str, Any]] = [
 
 def one_person(**options: Any) -> gym.CrowdEnv:
     """Return a robot that starts 2 m from its goal, and a person who stands aside."""
-    person = nav.crowd.Person(start=(1.0, 1.0), radius=0.3, awareness=0.0, model=nav.crowd.ReciprocalAvoidance())
-    robot = nav.crowd.CrowdRobot(
-        start=(0.0, 0.0), goal=(2.0, 0.0), robot=nav.HolonomicRobot(radius=0.3, max_speed=1.0), control_period=0.25
+    person = nav.Person(start=(1.0, 1.0), radius=0.3, awareness=0.0, model=nav.crowd.ReciprocalAvoidance())
+    robot = nav.Robot(
+        start=(0.0, 0.0), goal=(2.0, 0.0), body=nav.HolonomicRobot(radius=0.3, max_speed=1.0), control_period=0.25
     )
-    world = nav.crowd.World(people=[person], robots=[robot], step=0.25, time_limit=5.0)
+    world = nav.World(people=[person], robots=[robot], step=0.25, time_limit=5.0)
     return gym.CrowdEnv(world, **options)
 
 
@@ -111,11 +111,11 @@ def test_an_observation_holds_what_it_says() -> None:
     np.testing.assert_allclose(observation[6:10], [0.75, 1.0, -1.0, 0.0], atol=1e-6)
 
 
-def through_a_wall(**options: Any) -> nav.crowd.World:
+def through_a_wall(**options: Any) -> nav.World:
     """Return somebody whose model leads through a wall, far from a robot."""
-    walker = nav.crowd.Person(start=(0, 0), route=[(6, 0)], model=nav.crowd.Moussaid(), desired_speed=1.34)
-    robot = nav.crowd.CrowdRobot(start=(0, 40), goal=(9, 40), robot=nav.HolonomicRobot(max_speed=1.0))
-    return nav.crowd.World(people=[walker], robots=[robot], walls=[[(3, -5), (3, 5)]], time_limit=8.0, **options)
+    walker = nav.Person(start=(0, 0), route=[(6, 0)], model=nav.crowd.Moussaid(), desired_speed=1.34)
+    robot = nav.Robot(nav.HolonomicRobot(max_speed=1.0), start=(0, 40), goal=(9, 40))
+    return nav.World(people=[walker], robots=[robot], walls=[[(3, -5), (3, 5)]], time_limit=8.0, **options)
 
 
 def test_info_counts_who_was_set_back_at_a_wall() -> None:
@@ -129,7 +129,7 @@ def test_info_counts_who_was_set_back_at_a_wall() -> None:
     alone = replace(through_a_wall(), robots=[])
     assert counts[0] == 0
     assert counts == sorted(counts)
-    assert counts[-1] == nav.crowd.simulate_crowd(alone).wall_rescues > 0
+    assert counts[-1] == nav.simulate(alone).wall_rescues > 0
     assert env.reset()[1]["wall_rescues"] == 0
 
 
@@ -242,7 +242,7 @@ def test_bad_options_are_named() -> None:
         with pytest.raises(InvalidParameterError, match=message):
             gym.CrowdVectorEnv(gym.circle_crossing(), **options)
     with pytest.raises(InvalidParameterError, match="hold a robot"):
-        gym.CrowdEnv(nav.crowd.World())
+        gym.CrowdEnv(nav.World())
 
 
 def test_environments_that_would_not_fit_into_memory_are_refused() -> None:
@@ -251,7 +251,7 @@ def test_environments_that_would_not_fit_into_memory_are_refused() -> None:
         gym.CrowdVectorEnv(task, num_envs=2**20)
     law = nav.OptimalReciprocalCollisionAvoidance()
     ends = [((3.0 * k, 20.0), (3.0 * k, 30.0)) for k in range(60)]
-    others = [nav.crowd.CrowdRobot(start=start, goal=goal, law=law) for start, goal in ends]
+    others = [nav.Robot(start=start, goal=goal, law=law) for start, goal in ends]
     crowded = replace(task, world=replace(task.world, robots=[*task.world.robots, *others]))
     with pytest.raises(InvalidParameterError, match="pairs of a robot under a law and somebody it may see together"):
         gym.CrowdVectorEnv(crowded, num_envs=2100)

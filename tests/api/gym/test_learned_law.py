@@ -39,7 +39,7 @@ def test_axes_to_the_goal_turn_back(learned: ModuleType) -> None:
 @pytest.mark.parametrize("case", [0, 3, 7])
 def test_the_law_drives_as_the_policy_did_in_the_environment(learned: ModuleType, case: int) -> None:
     law = learned.LearnedLaw.load(learned.WEIGHTS)
-    run = nav.crowd.simulate_crowd(scenarios.circle_crossing(case, law=law, visible=False))
+    run = nav.simulate(scenarios.circle_crossing(case, law=law, visible=False))
     env = gymnasium.make("hrsafety/CircleCrossing-v0", visible=False).unwrapped
     seen, _ = env.reset(seed=case)
     ended, places = False, []
@@ -58,11 +58,10 @@ def test_it_succeeds_more_often_than_reciprocal_avoidance_and_drives_into_nobody
     law = learned.LearnedLaw.load(learned.WEIGHTS)
     laws = nav.OptimalReciprocalCollisionAvoidance(), law, nav.SafeNavigation(law, shield=nav.Shield(person_speed=1.0))
     reciprocal, bare, shielded = (
-        nav.crowd.crowd_batch([scenarios.circle_crossing(case, law=each, visible=False) for case in CASES])
-        for each in laws
+        nav.simulate_many([scenarios.circle_crossing(case, law=each, visible=False) for case in CASES]) for each in laws
     )
-    assert bare.success_share.low > reciprocal.success_share.high
-    assert shielded.success_share.low > reciprocal.success_share.high
+    assert bare.success.low > reciprocal.success.high
+    assert shielded.success.low > reciprocal.success.high
     assert (shielded.robot_on_person + shielded.mutual_contacts).sum() == 0
 
 
@@ -73,7 +72,7 @@ def test_the_example_prints_every_fault_as_the_table_of_the_guide_counts_it(
     line = next(each for each in capsys.readouterr().out.splitlines() if each.startswith("reciprocal "))
     worlds = [scenarios.circle_crossing(case, visible=False) for case in range(20)]
     table = nav.simulate_many(worlds, nav.OptimalReciprocalCollisionAvoidance())
-    counts = table.success_share, table.contact_share, nav.metrics.wilson(int((table.contacts_at_fault > 0).sum()), 20)
+    counts = table.success, table.contact, nav.metrics.wilson(int((table.contacts_at_fault > 0).sum()), 20)
     assert all(str(share) in line for share in counts)
     # Contacts that the person brought about, while the robot moved toward them, too.
     assert (table.contacts_at_fault > 0).sum() > (table.robot_on_person + table.mutual_contacts > 0).sum()

@@ -22,16 +22,16 @@ ENDS = [((-5.0, -5.0), (5.0, 5.0)), ((-5.0, 5.0), (5.0, -5.0)), ((5.0, 0.0), (-5
 KINDS: list[dict[str, Any]] = [{}, {"action": "unicycle", "lidar": 8}, {"action": "acceleration", "frame": "goal"}]
 
 
-def robot(index: int, law: Any = None, period: float = 0.25) -> nav.crowd.CrowdRobot:
+def robot(index: int, law: Any = None, period: float = 0.25) -> nav.Robot:
     start, goal = ENDS[index]
     body = nav.HolonomicRobot(radius=0.3, max_speed=0.9)
-    return nav.crowd.CrowdRobot(start=start, goal=goal, law=law, robot=body, control_period=period)
+    return nav.Robot(body, start=start, goal=goal, law=law, control_period=period)
 
 
-def world(*robots: nav.crowd.CrowdRobot, people: int = 6) -> nav.crowd.World:
+def world(*robots: nav.Robot, people: int = 6) -> nav.World:
     places = np.random.default_rng(0).normal(size=(people, 2)) * 3.0
-    walkers = [nav.crowd.Person(start=tuple(place), route=[tuple(-place)]) for place in places]
-    return nav.crowd.World(people=walkers, robots=robots, walls=[[(-7, -6), (7, -6)]], time_limit=15.0)
+    walkers = [nav.Person(start=tuple(place), route=[tuple(-place)]) for place in places]
+    return nav.World(people=walkers, robots=robots, walls=[[(-7, -6), (7, -6)]], time_limit=15.0)
 
 
 class Scripted:
@@ -102,9 +102,9 @@ def test_the_worlds_of_all_robots_are_one(options: dict[str, Any]) -> None:
 
 
 def test_a_robot_that_has_arrived_or_touched_somebody_stands() -> None:
-    near = nav.crowd.CrowdRobot(start=(0.0, 0.0), goal=(1.0, 0.0), robot=nav.HolonomicRobot(radius=0.3, max_speed=1.0))
-    far = nav.crowd.CrowdRobot(start=(0.0, 3.0), goal=(9.0, 3.0), robot=nav.HolonomicRobot(radius=0.3, max_speed=1.0))
-    env = gym.parallel_env(nav.crowd.World(robots=[near, far], step=0.25, time_limit=5.0))
+    near = nav.Robot(nav.HolonomicRobot(radius=0.3, max_speed=1.0), start=(0.0, 0.0), goal=(1.0, 0.0))
+    far = nav.Robot(nav.HolonomicRobot(radius=0.3, max_speed=1.0), start=(0.0, 3.0), goal=(9.0, 3.0))
+    env = gym.parallel_env(nav.World(robots=[near, far], step=0.25, time_limit=5.0))
     env.reset(seed=0)
     outcomes = {}
     while env.agents:
@@ -180,10 +180,10 @@ def test_a_refused_seed_leaves_the_episode_as_it_was() -> None:
 
 def test_robots_whose_worlds_would_not_fit_into_memory_are_refused() -> None:
     ends = [((3.0 * k, 0.0), (3.0 * k, 9.0)) for k in range(220)]
-    robots = [nav.crowd.CrowdRobot(start=start, goal=goal) for start, goal in ends]
+    robots = [nav.Robot(start=start, goal=goal) for start, goal in ends]
     with pytest.raises(InvalidParameterError, match=r"world\.robots must be few: .* got 220 robots; 220 driven of 220"):
-        gym.parallel_env(nav.crowd.World(robots=robots))
+        gym.parallel_env(nav.World(robots=robots))
     # With laws of their own only what is driven has a world.
     law = nav.OptimalReciprocalCollisionAvoidance()
     mixed = [replace(each, law=law if k else None) for k, each in enumerate(robots[:30])]
-    assert gym.parallel_env(nav.crowd.World(robots=mixed)).possible_agents == ["robot_0"]
+    assert gym.parallel_env(nav.World(robots=mixed)).possible_agents == ["robot_0"]

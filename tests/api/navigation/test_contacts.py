@@ -287,15 +287,15 @@ def test_contacts_of_positions_are_those_of_fine_positions(seed: int) -> None:
 
 
 def test_an_environment_ends_where_its_robot_passes_a_wall() -> None:
-    robot = nav.crowd.CrowdRobot(
+    robot = nav.Robot(
         start=(0.0, 0.0),
         goal=(9.0, 0.0),
-        robot=nav.HolonomicRobot(radius=0.1, max_speed=2.5, max_acceleration=1000.0),
+        body=nav.HolonomicRobot(radius=0.1, max_speed=2.5, max_acceleration=1000.0),
         control_period=0.5,
     )
     ends = []
     for walls in ([], [[(3.0, -5.0), (3.0, 5.0)]]):
-        world = nav.crowd.World(robots=[robot], walls=walls, step=0.5, time_limit=3.0)
+        world = nav.World(robots=[robot], walls=walls, step=0.5, time_limit=3.0)
         environment = gym.CrowdVectorEnv(world, num_envs=1, autoreset_mode="Disabled")
         environment.reset(seed=0)
         steps = [environment.step(np.array([[1.0, 0.0]], dtype=np.float32)) for _ in range(3)]

@@ -88,7 +88,7 @@ def test_an_edge_where_the_world_repeats_is_no_way_through_it() -> None:
 def test_tables_and_suites_tell_of_it() -> None:
     law = nav.OptimalReciprocalCollisionAvoidance()
     worlds = [scenarios.circle_crossing(case, law=law) for case in (31, 32)]
-    for found in (nav.simulate_many(worlds, law), nav.crowd.crowd_batch(worlds)):
+    for found in (nav.simulate_many(worlds, law), nav.simulate_many(worlds)):
         assert [each.code for each in found.warnings] == [CONTACT_BETWEEN]
     result = benchmark("circle_crossing", ["orca"], cases=32)
     assert [each.code for each in result.warnings] == [CONTACT_BETWEEN]

@@ -22,12 +22,10 @@ SYMMETRIC = (
 
 def arrived(model: nav.crowd.Pedestrian, aside: float) -> bool:
     people = [
-        nav.crowd.Person(
-            start=(-4 * side, aside * side), route=[(4 * side, aside * side)], model=model, desired_speed=1.3
-        )
+        nav.Person(start=(-4 * side, aside * side), route=[(4 * side, aside * side)], model=model, desired_speed=1.3)
         for side in (1, -1)
     ]
-    run = nav.crowd.simulate_crowd(nav.crowd.World(people=people, time_limit=30.0))
+    run = nav.simulate(nav.World(people=people, time_limit=30.0))
     there = bool(np.isfinite(run.person_arrival_time).all())
     # Who steps back and forth before the other does not stand.
     stands = not there and not isinstance(model, nav.crowd.CollisionFreeSpeed)
@@ -46,8 +44,7 @@ def test_who_meets_exactly_head_on_does_not_pass_unless_a_model_has_a_side(model
 def test_a_circle_is_disturbed_enough_for_people_who_avoid_each_other(seed: int) -> None:
     model = nav.crowd.ReciprocalAvoidance()
     free, blocked = (
-        nav.crowd.simulate_crowd(scenarios.antipodal(20, model=model, seed=seed, **given))
-        for given in ({}, {"disturbance": 1e-3})
+        nav.simulate(scenarios.antipodal(20, model=model, seed=seed, **given)) for given in ({}, {"disturbance": 1e-3})
     )
     assert np.isfinite(free.person_arrival_time).all()
     assert np.isnan(blocked.person_arrival_time).any()

@@ -31,7 +31,7 @@ class Constant:
         return self.speed * way / max(float(np.hypot(*way)), 1.0)
 
 
-def assert_same(one: nav.crowd.CrowdTable, other: nav.crowd.CrowdTable) -> None:
+def assert_same(one: nav.RunTable, other: nav.RunTable) -> None:
     first, second = one.columns(), other.columns()
     assert list(first) == list(second)
     for name, column in first.items():
@@ -50,16 +50,16 @@ def test_rows_are_laws_worlds_and_seeds_with_the_bits_of_single_worlds() -> None
     for row in (1, 9):
         world = CIRCLES[str(table.scenario[row])]
         robots = [replace(world.robots[0], law=LAWS[str(table.law[row])])]
-        alone = nav.crowd.crowd_batch([replace(world, robots=robots, seed=int(table.seed[row]))])
+        alone = nav.simulate_many([replace(world, robots=robots, seed=int(table.seed[row]))])
         for name in nav.metrics.METRICS:
-            np.testing.assert_array_equal(table.values[name][row], getattr(alone, name)[0], err_msg=name)
+            np.testing.assert_array_equal(table.values[name][row], alone.values[name][0], err_msg=name)
 
 
 def test_every_robot_has_a_row_and_its_world_counts_once() -> None:
     world = scenarios.antipodal(6, law=RECIPROCAL, robots=2)
     table = nav.simulate_many([world], FIELD)
     assert table.robot.tolist() == [0, 1]
-    run = nav.crowd.simulate_crowd(replace(world, robots=[replace(each, law=FIELD) for each in world.robots]))
+    run = nav.simulate(replace(world, robots=[replace(each, law=FIELD) for each in world.robots]))
     assert table.arrival_time.tolist() == run.robot_arrival_time.tolist()
     whole = nav.crowd.world_metrics(run)
     assert table.throughput.tolist() == [whole.throughput] * 2
@@ -127,8 +127,8 @@ def test_progress_counts_the_runs_and_not_the_people_alone(monkeypatch: pytest.M
 
 
 def test_contacts_tell_who_moved() -> None:
-    stands = nav.crowd.Person(start=(2.0, 0.0))
-    walks = nav.crowd.Person(start=(2.0, 3.0), recording=([0.0, 4.0], [(2.0, 3.0), (2.0, -1.0)]))
+    stands = nav.Person(start=(2.0, 0.0))
+    walks = nav.Person(start=(2.0, 3.0), recording=([0.0, 4.0], [(2.0, 3.0), (2.0, -1.0)]))
 
     def ram(situation: Any) -> Any:
         return 8.0 * (situation.goal - situation.position) - 8.0 * situation.velocity
@@ -136,12 +136,12 @@ def test_contacts_tell_who_moved() -> None:
     def rest(situation: Any) -> Any:
         return -8.0 * situation.velocity
 
-    robot = nav.crowd.CrowdRobot(start=(0.0, 0.0), goal=(4.0, 0.0))
-    run_over = nav.simulate_many(nav.crowd.World(people=[stands], robots=[robot], time_limit=8.0), ram)
+    robot = nav.Robot(start=(0.0, 0.0), goal=(4.0, 0.0))
+    run_over = nav.simulate_many(nav.World(people=[stands], robots=[robot], time_limit=8.0), ram)
     assert run_over.outcome.tolist() == ["collided"]
     assert (run_over.contacts_moving[0], run_over.contacts_standing[0], run_over.contacts_at_fault[0]) == (1, 0, 1)
     waiting = replace(robot, start=(2.0, 0.0))
-    walked_into = nav.simulate_many(nav.crowd.World(people=[walks], robots=[waiting], time_limit=4.0), rest)
+    walked_into = nav.simulate_many(nav.World(people=[walks], robots=[waiting], time_limit=4.0), rest)
     assert walked_into.outcome.tolist() == ["collided"]
     found = walked_into.contacts_moving[0], walked_into.contacts_standing[0], walked_into.contacts_at_fault[0]
     assert found == (0, 1, 0)
@@ -158,43 +158,47 @@ def test_contacts_are_found_across_the_end_of_a_world_that_repeats_itself() -> N
 
 
 def test_a_wall_that_is_touched_is_a_contact_at_fault() -> None:
-    robot = nav.crowd.CrowdRobot(start=(0, 0), goal=(3, 0), law=RECIPROCAL)
-    world = nav.crowd.World(robots=[robot], walls=[[(1.0, -2.0), (1.0, 2.0)]], time_limit=4.0)
+    robot = nav.Robot(start=(0, 0), goal=(3, 0), law=RECIPROCAL)
+    world = nav.World(robots=[robot], walls=[[(1.0, -2.0), (1.0, 2.0)]], time_limit=4.0)
     found = nav.simulate_many(world, lambda situation: 4.0 * (situation.goal - situation.position))
     assert found.outcome.tolist() == ["collided"]
     assert found.wall_contacts[0] == found.contacts_at_fault[0] == 1
-    assert found.contacts_moving[0] == 0
+    # A wall stands: whoever touches it has moved toward it.
+    assert (found.contacts_toward[0], found.contacts_away[0], found.contacts_standing[0]) == (1, 0, 0)
+    run = nav.simulate(found.scenarios[0], found.laws[0])
+    assert run.wall_contacts == run.contacts_toward == 1
+    assert run.outcome == "collided"
+    assert run.position[np.searchsorted(run.time, run.map_contact_time), 0] > 0.8
 
 
 def test_a_world_that_diverges_is_an_outcome() -> None:
     model = nav.crowd.SocialForce2000(stiffness=1e308)
-    people = [nav.crowd.Person(start=(x, 5.0), route=[(9, 5)], model=model) for x in (0.0, 0.1)]
-    robot = nav.crowd.CrowdRobot(start=(0, 0), goal=(9, 0))
-    table = nav.simulate_many(nav.crowd.World(people=people, robots=[robot]), RECIPROCAL)
+    people = [nav.Person(start=(x, 5.0), route=[(9, 5)], model=model) for x in (0.0, 0.1)]
+    robot = nav.Robot(start=(0, 0), goal=(9, 0))
+    table = nav.simulate_many(nav.World(people=people, robots=[robot]), RECIPROCAL)
     assert table.outcome.tolist() == ["diverged"]
-    assert table.success_share.count == 0
-    fine = nav.crowd.World(robots=[replace(robot, law=RECIPROCAL)])
-    scored = nav.crowd.crowd_batch([fine, replace(fine, people=people)])
-    assert [each.code for each in scored.warnings] == ["unfinished"]
-    assert scored.warnings[0].message.startswith("worlds[1]: the world diverged at")
+    assert table.success.count == 0
+    fine = nav.World(robots=[replace(robot, law=RECIPROCAL)])
+    scored = nav.simulate_many([fine, replace(fine, people=people)])
+    assert (scored.law_names, scored.outcome.tolist()) == (("own",), ["arrived", "diverged"])
 
 
 @pytest.mark.parametrize(("goal", "outcome"), [(1.8, "collided"), (9.0, "diverged")])
 def test_a_contact_counts_although_the_world_diverges_later(goal: float, outcome: str) -> None:
     model = nav.crowd.SocialForce2000(stiffness=1e308)
     ways = ((-20.0, 20.0), (-8.0, -20.0))  # they meet after some seconds
-    far = [nav.crowd.Person(start=(x, 20.0), route=[(end, 20.0)], model=model) for x, end in ways]
-    stands = nav.crowd.Person(start=(1.0, 0.2), awareness=0.0)
-    robot = nav.crowd.CrowdRobot(start=(0.0, 0.0), goal=(goal, 0.0))
-    world = nav.crowd.World(people=[*far, stands], robots=[robot], time_limit=30.0)
+    far = [nav.Person(start=(x, 20.0), route=[(end, 20.0)], model=model) for x, end in ways]
+    stands = nav.Person(start=(1.0, 0.2), awareness=0.0)
+    robot = nav.Robot(start=(0.0, 0.0), goal=(goal, 0.0))
+    world = nav.World(people=[*far, stands], robots=[robot], time_limit=30.0)
     law = Constant(1.0)
     table = nav.simulate_many(world, law)
-    run = nav.crowd.simulate_crowd(replace(world, robots=[replace(robot, law=law)]))
+    run = nav.simulate(replace(world, robots=[replace(robot, law=law)]))
     assert run.diverged is not None
     assert f"warning: the world diverged at {run.diverged.time:g} s, person" in repr(run)
     assert table.outcome.tolist() == [outcome]
     assert table.touched.tolist() == [True]
-    assert (table.success_share.count, table.contact_share.count, int(table.contacts_at_fault[0])) == (0, 1, 1)
+    assert (table.success.count, table.contact.count, int(table.contacts_at_fault[0])) == (0, 1, 1)
     compared = nav.compare(world, {"blind": law, "rests": Constant(0.0)})
     standing = compared.standing("blind")
     assert (standing.success.count, standing.contact.count, standing.at_fault.count) == (0, 1, 1)
@@ -218,7 +222,7 @@ def test_doubts_of_the_shield_travel_with_the_table() -> None:
 
 def test_laws_are_compared_in_the_same_episodes() -> None:
     result = nav.compare(CIRCLES, LAWS, seeds=2, people_alone=True)
-    assert isinstance(result, nav.crowd.CrowdComparison)
+    assert isinstance(result, nav.Comparison)
     assert result.outcome.shape == (2, 6)
     assert result.seed.tolist() == [0, 1] * 3
     times = result.metric("arrival_time")
@@ -240,7 +244,7 @@ def test_laws_are_compared_in_the_same_episodes() -> None:
 
 MISTAKES: dict[str, tuple[dict[str, Any], str]] = {
     "a scenario among worlds": ({"scenarios": [CIRCLES["case 0"], 3]}, r"scenarios\[1\] must be a World"),
-    "nobody to drive": ({"scenarios": {"a": nav.crowd.World()}}, r"scenarios\['a'\].robots must hold a robot"),
+    "nobody to drive": ({"scenarios": {"a": nav.World()}}, r"scenarios\['a'\].robots must hold a robot"),
     "step": ({"step": 0.02}, "step must be left out for worlds"),
     "paths": ({"paths": True}, "paths must be left out for worlds"),
     "built": ({"built": nav.robots.AsBuilt()}, "built must be left out for worlds"),
@@ -271,10 +275,10 @@ def test_scenarios_have_no_people_that_react() -> None:
 
 def test_robots_that_touch_each_other_are_in_the_standing() -> None:
     robots = [
-        nav.crowd.CrowdRobot(start=(0.0, 0.0), goal=(6.0, 0.0)),
-        nav.crowd.CrowdRobot(start=(6.0, 0.1), goal=(0.0, 0.1)),
+        nav.Robot(start=(0.0, 0.0), goal=(6.0, 0.0)),
+        nav.Robot(start=(6.0, 0.1), goal=(0.0, 0.1)),
     ]
-    found = nav.compare(nav.crowd.World(robots=robots), {"blind": Constant(1.0)})
+    found = nav.compare(nav.World(robots=robots), {"blind": Constant(1.0)})
     standing = found.standing("blind")
     assert (standing.success.count, standing.contact.count, standing.robot_contact.count) == (2, 0, 2)
     told = [warning for warning in found.runs.warnings if warning.code == "robot_contacts"]

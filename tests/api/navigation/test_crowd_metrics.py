@@ -259,9 +259,9 @@ def test_doubts_of_what_an_episode_comes_from_reach_its_metrics() -> None:
 
 def test_doubts_of_a_world_reach_its_metrics() -> None:
     law = nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield(person_speed=0.1, margin=0.0125))
-    robot = nav.crowd.CrowdRobot(start=(0, 0), goal=(4, 0), law=law)
-    person = nav.crowd.Person(start=(4, 1), route=[(0, 1)], desired_speed=1.0)
-    run = nav.crowd.simulate_crowd(nav.crowd.World(people=[person], robots=[robot], time_limit=1.0))
+    robot = nav.Robot(start=(0, 0), goal=(4, 0), law=law)
+    person = nav.Person(start=(4, 1), route=[(0, 1)], desired_speed=1.0)
+    run = nav.simulate(nav.World(people=[person], robots=[robot], time_limit=1.0))
     assert len(run.warnings) == 1
     assert nav.crowd.world_metrics(run).warnings == run.warnings
     assert nav.metrics.evaluate(nav.crowd.episodes_of(run)[0]).warnings == run.warnings

@@ -11,6 +11,7 @@ import pytest
 from hrsafety import navigation as nav
 from hrsafety.benchmarks import benchmark
 from hrsafety.cli import exit_codes, main
+from hrsafety.navigation.crowd.simulation import simulated
 from hrsafety.plausibility import unsafe_doubts
 
 
@@ -18,13 +19,13 @@ def shielded(**shield: Any) -> nav.SafeNavigation:
     return nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield(**({"margin": 0.0125} | shield)))
 
 
-def world(law: Any, person: dict[str, Any] | None = None, **robot: Any) -> nav.crowd.World:
-    walker = nav.crowd.Person(**({"start": (4, 1), "route": [(0, 1)], "desired_speed": 1.0} | (person or {})))
-    driven = nav.crowd.CrowdRobot(start=(0, 0), goal=(4, 0), law=law, **robot)
-    return nav.crowd.World(people=[walker], robots=[driven], time_limit=1.0)
+def world(law: Any, person: dict[str, Any] | None = None, **robot: Any) -> nav.World:
+    walker = nav.Person(**({"start": (4, 1), "route": [(0, 1)], "desired_speed": 1.0} | (person or {})))
+    driven = nav.Robot(start=(0, 0), goal=(4, 0), law=law, **robot)
+    return nav.World(people=[walker], robots=[driven], time_limit=1.0)
 
 
-def subjects(place: nav.crowd.World) -> list[str]:
+def subjects(place: nav.World) -> list[str]:
     return [each.subject for each in place.warnings]
 
 
@@ -41,13 +42,13 @@ def test_enough_is_no_doubt() -> None:
         ({"recording": ([0.0, 0.4], [(4000.0, 1000.0), (3500.0, 1000.0)])}, {}, "people[0].recording"),
         ({"radius": 25.0}, {}, "people[0].radius"),
         ({}, {"measurement": nav.Measurement(latency=40.0)}, "robots[0].latency"),
-        ({}, {"robot": nav.HolonomicRobot(max_speed=700.0)}, "robots[0].robot_max_speed"),
+        ({}, {"body": nav.HolonomicRobot(max_speed=700.0)}, "robots[0].robot_max_speed"),
     ],
 )
 def test_numbers_in_other_units_are_told(person: dict[str, Any], robot: dict[str, Any], subject: str) -> None:
     place = world(nav.VirtualForceField(), {"start": (40.0, 40.0)} | person, **robot)
     assert [(each.code, each.subject) for each in place.warnings] == [("implausible", subject)]
-    assert nav.crowd.simulate_crowds([place])[0].warnings == place.warnings
+    assert simulated([place])[0].warnings == place.warnings
 
 
 @pytest.mark.parametrize(
@@ -118,26 +119,26 @@ def test_the_motion_step_of_runs_counts(step: float) -> None:
 
 
 def test_sources_and_other_robots_count() -> None:
-    fast = nav.crowd.Source(low=(8, 0), high=(9, 1), rate=1.0, route=[(0, 0)], desired_speed=2.0)
+    fast = nav.Source(low=(8, 0), high=(9, 1), rate=1.0, route=[(0, 0)], desired_speed=2.0)
     robots = [
-        nav.crowd.CrowdRobot(start=(0, 4 * index), goal=(4, 4 * index), law=shielded(person_speed=speed))
+        nav.Robot(start=(0, 4 * index), goal=(4, 4 * index), law=shielded(person_speed=speed))
         for index, speed in enumerate((0.5, 1.9))
     ]
-    place = nav.crowd.World(sources=[fast], robots=robots)
+    place = nav.World(sources=[fast], robots=robots)
     assert subjects(place) == [f"robots[{index}].law.shield.person_speed" for index in (0, 1)]
-    alone = nav.crowd.World(robots=robots)
+    alone = nav.World(robots=robots)
     assert subjects(alone) == ["robots[0].law.shield.person_speed"]
     assert "robots[1] moves" in alone.warnings[0].message
 
 
 def test_runs_and_tables_carry_the_doubts() -> None:
     place = world(shielded(person_speed=0.5))
-    run = nav.crowd.simulate_crowd(place)
+    run = nav.simulate(place)
     assert run.warnings == place.warnings
     assert place.warnings[0].message in repr(run)
-    table = nav.crowd.crowd_batch([place, place])
+    table = nav.simulate_many([place, place])
     assert [each.code for each in table.warnings] == ["shield_assumes_less"]
-    assert "1 more of this kind in these worlds" in repr(table)
+    assert "1 more of this kind in these scenarios" in repr(table)
     assert pickle.loads(pickle.dumps(table)).warnings == table.warnings
 
 
@@ -165,7 +166,7 @@ def test_a_benchmark_tells_what_its_shields_do_not_cover(capsys: pytest.CaptureF
 # ---- doubts of a world reach its tables ----------------------------------------------------------
 
 
-Person = nav.crowd.Person
+Person = nav.Person
 ROOM = [[(0.0, 0.0), (6.0, 0.0), (6.0, 6.0), (0.0, 6.0), (0.0, 0.0)]]
 PILLAR = nav.Disc(center=(3.0, 3.0), radius=0.5)
 DOUBTFUL: dict[str, tuple[dict[str, Any], str]] = {
@@ -188,13 +189,13 @@ DOUBTFUL: dict[str, tuple[dict[str, Any], str]] = {
 def test_doubts_of_a_world_reach_runs_tables_and_comparisons(name: str) -> None:
     given, code = DOUBTFUL[name]
     fields = dict(given)
-    robot = nav.crowd.CrowdRobot(start=(1.0, 5.0), goal=fields.pop("goal", (5.0, 5.0)))
-    world = nav.crowd.World(robots=[robot], time_limit=1.0, **fields)
+    robot = nav.Robot(start=(1.0, 5.0), goal=fields.pop("goal", (5.0, 5.0)))
+    world = nav.World(robots=[robot], time_limit=1.0, **fields)
     laws = [nav.Khatib(), nav.Masoud()]
     results = (
         world,
-        nav.crowd.simulate_crowd(world),
-        nav.crowd.crowd_batch([world]),
+        nav.simulate(world),
+        nav.simulate_many([world]),
         nav.simulate_many([world], laws),
         nav.compare([world], laws, seeds=2),
     )
@@ -204,4 +205,4 @@ def test_doubts_of_a_world_reach_runs_tables_and_comparisons(name: str) -> None:
 
 def test_recordings_beside_walls_are_no_doubt() -> None:
     walk = Person(start=(1.0, 1.0), recording=([0.0, 5.0], [(1.0, 1.0), (5.0, 5.0)]))
-    assert nav.crowd.World(people=[walk], walls=ROOM).warnings == ()
+    assert nav.World(people=[walk], walls=ROOM).warnings == ()

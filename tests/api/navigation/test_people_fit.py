@@ -88,11 +88,11 @@ def test_people_react_to_everybody_who_is_present() -> None:
 def test_a_fit_comes_near_the_parameter_that_made_the_recording() -> None:
     truth = nav.crowd.Moussaid(relaxation_time=1.6)
     people = [
-        nav.crowd.Person(start=(0, y), route=[(30, y)], velocity=(0.0, 1.3), desired_speed=1.3, model=truth)
+        nav.Person(start=(0, y), route=[(30, y)], velocity=(0.0, 1.3), desired_speed=1.3, model=truth)
         for y in (0.0, 4.0, 9.0)
     ]
-    run = nav.crowd.simulate_crowd(nav.crowd.World(people=people, time_limit=18.0))
-    recorded = recording_of({k: (0, run.position[::8, k]) for k in range(3)})
+    run = nav.simulate(nav.World(people=people, time_limit=18.0))
+    recorded = recording_of({k: (0, run.obstacle_position[::8, k]) for k in range(3)})
     given: dict[str, Any] = {"seen": 0.8, "foretold": 3.2, "evaluations": 60, "seed": 3}
     found = nav.crowd.fit_people(nav.crowd.Moussaid(), recorded, ["relaxation_time"], **given)
     assert found.fitted.average < 0.6 * found.start_fitted.average
@@ -176,17 +176,17 @@ def test_rows_by_person_have_the_windows_of_rows_by_time() -> None:
 # ---- the fundamental diagram ----------------------------------------------------------------
 
 
-def corridor(n: int, **changes: Any) -> nav.crowd.World:
+def corridor(n: int, **changes: Any) -> nav.World:
     return scenarios.corridor(n, **{"length": 20.0, "two_way": False, "radius": 0.2, "time_limit": 20.0, **changes})
 
 
-def single_file(n: int, end: float = 1e6) -> nav.crowd.World:
+def single_file(n: int, end: float = 1e6) -> nav.World:
     model = nav.crowd.CollisionFreeSpeed(time_gap=1.0)
     people = [
-        nav.crowd.Person(start=(20.0 * k / n, 0.0), route=[(end, 0)], radius=0.2, desired_speed=1.3, model=model)
+        nav.Person(start=(20.0 * k / n, 0.0), route=[(end, 0)], radius=0.2, desired_speed=1.3, model=model)
         for k in range(n)
     ]
-    return nav.crowd.World(people=people, period=(20.0, 0.0), time_limit=2.0)
+    return nav.World(people=people, period=(20.0, 0.0), time_limit=2.0)
 
 
 def test_the_reference_is_that_of_weidmann() -> None:
@@ -222,7 +222,7 @@ def test_worlds_without_a_diagram_are_refused() -> None:
         # Both ways the mean velocity is 0 at any density; half the width is twice the density.
         (corridor(40, two_way=True), r"worlds\[0\].people\[\d+\].route must lead to \+x"),
         (corridor(40, width=6.0), r"width must be the distance of the walls of worlds\[0\], 6 m"),
-        (replace(single_file(4), people=[nav.crowd.Person(start=(0, 0))]), r"people\[0\].route must lead to \+x"),
+        (replace(single_file(4), people=[nav.Person(start=(0, 0))]), r"people\[0\].route must lead to \+x"),
         (replace(single_file(4, end=21.0), time_limit=9.0), r"people\[3\].route must lead farther .*an arrival at"),
     ):
         with pytest.raises(InvalidParameterError, match=words):

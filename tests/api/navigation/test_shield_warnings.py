@@ -179,17 +179,17 @@ def test_a_shield_below_other_parts_is_told() -> None:
     run = nav.simulate(SCENE, SafeNavigation(inner, yielding=nav.Yielding()))
     assert [each.subject for each in run.warnings] == ["law", "shield.person_speed"]
     assert [each.subject for each in nav.simulate(SCENE, SafeNavigation(inner, shield=Shield())).warnings] == []
-    robot = nav.crowd.CrowdRobot(start=(0, 0), goal=(6, 0), law=SafeNavigation(inner, yielding=nav.Yielding()))
-    assert "robots[0].law" in {each.subject for each in nav.crowd.World(robots=[robot]).warnings}
+    robot = nav.Robot(start=(0, 0), goal=(6, 0), law=SafeNavigation(inner, yielding=nav.Yielding()))
+    assert "robots[0].law" in {each.subject for each in nav.World(robots=[robot]).warnings}
     controller = nav.Controller(robot.law, SCENE.robot, (5.0, 0.0))
     assert [each.subject for each in controller.warnings] == ["law", "shield.person_speed"]
 
 
 def test_people_who_decide_may_turn_at_once() -> None:
     shield = Shield(person_speed=2.0, velocity_error=0.1, person_acceleration=1.0)
-    robot = nav.crowd.CrowdRobot(start=(0, 0), goal=(6, 0), law=SafeNavigation(FIELD, shield=shield))
-    person = nav.crowd.Person(start=(6, 1), route=[(-1, 1)], desired_speed=1.0)
-    run = nav.crowd.simulate_crowd(nav.crowd.World(people=[person], robots=[robot], time_limit=1.0))
+    robot = nav.Robot(start=(0, 0), goal=(6, 0), law=SafeNavigation(FIELD, shield=shield))
+    person = nav.Person(start=(6, 1), route=[(-1, 1)], desired_speed=1.0)
+    run = nav.simulate(nav.World(people=[person], robots=[robot], time_limit=1.0))
     assert "robots[0].law.shield.velocity_error" in {each.subject for each in run.warnings}
 
 

@@ -16,7 +16,7 @@ from hrsafety import navigation as nav
 from hrsafety.benchmarks.results import read_rows
 
 NAN = math.nan
-WORLD = nav.crowd.World(robots=[nav.crowd.CrowdRobot(start=(0.0, 0.0), goal=(3.0, 0.0))])
+WORLD = nav.World(robots=[nav.Robot(start=(0.0, 0.0), goal=(3.0, 0.0))])
 URDF = arms.Arm.example().urdf
 SCENE = nav.Scenario(start=(3.9, 0.6), goal=(0.0, 0.6))
 RAGGED: Any = [[1.0], [2.0, 3.0]]

@@ -35,7 +35,7 @@ WALK = datasets.Recording(time_s=[0.0, 20.0], person=[7, 7], position=[[-10, 1],
 REFUSED: dict[str, tuple[Callable[[], object], str]] = {
     "episodes of a number": (lambda: nav.crowd.episodes_of(1.0), "run"),
     "episodes without a number": (
-        lambda: nav.crowd.episodes_of(nav.crowd.simulate_crowd(scenarios.circle_crossing(1)), 1.0),
+        lambda: nav.crowd.episodes_of(nav.simulate(scenarios.circle_crossing(1)), 1.0),
         "without",
     ),
     "metrics of a number": (lambda: nav.crowd.world_metrics(1.0), "run"),
@@ -66,7 +66,7 @@ REFUSED: dict[str, tuple[Callable[[], object], str]] = {
     "skirt that is none": (lambda: reactive.skirt.smallest_skirt(0.1, skirt=1.0), "skirt"),
     "motion that is none": (lambda: reactive.skirt.smallest_skirt(0.1, motion=1.0), "motion"),
     "unit that is none": (lambda: tables.unit_suffix(1.0), "unit"),
-    "progress that is none": (lambda: nav.crowd.simulate_crowds([], progress="x"), "progress"),
+    "progress that is none": (lambda: nav.simulate_many(SCENE, LAW, progress="x"), "progress"),
     "integrator of nothing": (
         lambda: nav.simulate(SCENE, LAW, built=nav.robots.AsBuilt(), integrator=np.array([])),
         "integrator",
@@ -160,6 +160,7 @@ def test_first_estimate_of_a_process_is_no_start_up_time() -> None:
     program = """
 import time
 from hrsafety import impact, sweep
+from hrsafety.navigation.crowd.simulation import simulated
 study = sweep.ImpactStudy(manipulator=impact.MANIPULATOR_1, foam=impact.FOAM_1, head=impact.Head.minimum())
 axes = [sweep.Axis(name="closing_speed", low=0.2, high=2.0), sweep.Axis(name="foam_stiffness", low=1e4, high=5e4)]
 found = [sweep.estimate(sweep.Sobol(axes, size=2**20), study) for _ in range(2)]

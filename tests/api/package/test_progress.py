@@ -20,7 +20,7 @@ Tell = Callable[[Callable[[int, int], object]], Any]
 # Calls that can take more than some seconds.
 LONG: tuple[Callable[..., Any], ...] = (
     *(nav.simulate_many, nav.simulate_batch, nav.compare, nav.optimize_gains, nav.gain_sensitivity),
-    *(nav.gains.pareto_front, nav.metrics.falsify, nav.metrics.evaluate_many, nav.crowd.simulate_crowds),
+    *(nav.gains.pareto_front, nav.metrics.falsify, nav.metrics.evaluate_many),
     *(nav.tracking.track_batch, nav.sensing.calibration_study, nav.robots.open_loop_tests),
     *(impact.metrics_batch, impact.identify_foam, contact.study),
     *(contact.Contact.simulate_many, contact.Contact.allowed_speeds, contact.Contact.probability),

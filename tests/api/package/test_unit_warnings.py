@@ -125,9 +125,9 @@ def test_what_is_made_of_doubtful_numbers_says_so(call: Callable[[], Any]) -> No
 
 def test_environments_say_what_is_doubtful_in_their_world() -> None:
     gym = pytest.importorskip("hrsafety.gym")
-    person = nav.crowd.Person(start=(900.0, 0.0), route=[(0.0, 0.0)], radius=250.0)
-    robot = nav.crowd.CrowdRobot(start=(0.0, 0.0), goal=(4.0, 3.0))
-    world = nav.crowd.World(people=[person], robots=[robot], time_limit=2.0)
+    person = nav.Person(start=(900.0, 0.0), route=[(0.0, 0.0)], radius=250.0)
+    robot = nav.Robot(start=(0.0, 0.0), goal=(4.0, 3.0))
+    world = nav.World(people=[person], robots=[robot], time_limit=2.0)
     for make in (
         lambda: gym.CrowdEnv(world),
         lambda: gym.CrowdEnv(world=world),

@@ -183,8 +183,8 @@ def test_a_single_clearance_has_a_picture(clearance: float) -> None:
 
 
 def test_directions_and_origins_that_are_no_places_are_refused() -> None:
-    person = nav.crowd.Person(start=(0, 0), route=[(3, 0)])
-    run = nav.crowd.simulate_crowd(nav.crowd.World(people=[person], time_limit=1.0))
+    person = nav.Person(start=(0, 0), route=[(3, 0)])
+    run = nav.simulate(nav.World(people=[person], time_limit=1.0))
     for more in ({"along": (INF, 0.0)}, {"along": (0.0, 0.0)}, {"origin": (1e308, -1e308)}, {"origin": (NAN, 0.0)}):
         with pytest.raises(InvalidParameterError, match=f"^{next(iter(more))}"):
             plotting.crowds.space_time(run, **more)

@@ -24,49 +24,43 @@ MODELS_OF_PEOPLE = [getattr(pedestrians, name) for name in pedestrians.__all__ i
 LAW = nav.OptimalReciprocalCollisionAvoidance()
 
 
-def crossed(case: int = 0, **options: Any) -> nav.crowd.CrowdTrajectories:
-    return nav.crowd.simulate_crowd(scenarios.circle_crossing(case, law=LAW, **options))
+def crossed(case: int = 0, **options: Any) -> nav.Trajectory:
+    return nav.simulate(scenarios.circle_crossing(case, law=LAW, **options))
 
 
-def corridor(**options: Any) -> nav.crowd.CrowdTrajectories:
-    robot = nav.crowd.CrowdRobot(start=(0.0, 1.5), goal=(9.0, 1.5), law=LAW)
-    return nav.crowd.simulate_crowd(scenarios.corridor(10, robots=[robot], time_limit=8.0, **options))
+def corridor(**options: Any) -> nav.Trajectory:
+    robot = nav.Robot(start=(0.0, 1.5), goal=(9.0, 1.5), law=LAW)
+    return nav.simulate(scenarios.corridor(10, robots=[robot], time_limit=8.0, **options))
 
 
-def groups() -> nav.crowd.CrowdTrajectories:
+def groups() -> nav.Trajectory:
     """Two groups and somebody alone, in front of a pillar, a box and a wall."""
     places = [(0.0, 0.0), (0.0, 0.6), (0.0, 2.0), (0.0, 2.6), (0.0, 4.0)]
     people = [
-        nav.crowd.Person(start=place, route=[(6.0, place[1])], model=nav.crowd.Moussaid(), group=group)
+        nav.Person(start=place, route=[(6.0, place[1])], model=nav.crowd.Moussaid(), group=group)
         for place, group in zip(places, (0, 0, 7, 7, None), strict=True)
     ]
     walls = [nav.Disc(center=(3.0, 1.2), radius=0.3), nav.Rectangle(center=(3.0, 3.4), length=1.0, width=0.4)]
-    return nav.crowd.simulate_crowd(
-        nav.crowd.World(people=people, walls=[*walls, [(-1.0, -1.0), (7.0, -1.0)]], time_limit=6.0)
-    )
+    return nav.simulate(nav.World(people=people, walls=[*walls, [(-1.0, -1.0), (7.0, -1.0)]], time_limit=6.0))
 
 
-def mixed() -> nav.crowd.CrowdTrajectories:
+def mixed() -> nav.Trajectory:
     """All models, a recorded person, and somebody from a source, among three robots."""
     models = [kind() for kind in MODELS_OF_PEOPLE]
-    people = [
-        nav.crowd.Person(start=(0.0, 1.2 * k), route=[(6.0, 1.2 * k)], model=each) for k, each in enumerate(models)
-    ]
+    people = [nav.Person(start=(0.0, 1.2 * k), route=[(6.0, 1.2 * k)], model=each) for k, each in enumerate(models)]
     path = ([0.0, 4.0], [(6.0, -1.0), (0.0, -1.0)])
-    people.append(nav.crowd.Person(start=(6.0, -1.0), recording=path))
-    source = nav.crowd.Source(low=(-1.0, -3.0), high=(0.0, -2.0), rate=0.5, route=[(6.0, -2.0)])
-    robots = [nav.crowd.CrowdRobot(start=(3.0, y), goal=(3.0, 5.0 - y), law=LAW) for y in (-3.0, 6.5, 0.6)]
-    return nav.crowd.simulate_crowd(
-        nav.crowd.World(people=people, robots=robots, sources=[source], time_limit=8.0, step=0.05)
-    )
+    people.append(nav.Person(start=(6.0, -1.0), recording=path))
+    source = nav.Source(low=(-1.0, -3.0), high=(0.0, -2.0), rate=0.5, route=[(6.0, -2.0)])
+    robots = [nav.Robot(start=(3.0, y), goal=(3.0, 5.0 - y), law=LAW) for y in (-3.0, 6.5, 0.6)]
+    return nav.simulate(nav.World(people=people, robots=robots, sources=[source], time_limit=8.0, step=0.05))
 
 
-def nobody() -> nav.crowd.CrowdTrajectories:
-    return nav.crowd.simulate_crowd(nav.crowd.World(time_limit=1.0))
+def nobody() -> nav.Trajectory:
+    return nav.simulate(nav.World(time_limit=1.0))
 
 
-def many_robots() -> nav.crowd.CrowdTrajectories:
-    return nav.crowd.simulate_crowd(scenarios.antipodal(8, robots=8, law=LAW, time_limit=6.0))
+def many_robots() -> nav.Trajectory:
+    return nav.simulate(scenarios.antipodal(8, robots=8, law=LAW, time_limit=6.0))
 
 
 def legend(figure: Any) -> list[str]:
@@ -78,9 +72,7 @@ PICTURES: dict[str, Callable[[], Any]] = {
     "corridor": lambda: plotting.crowds.crowd_paths(corridor()),
     "groups": lambda: plotting.crowds.crowd_paths(groups(), color_by="group", at=2.0),
     "mixed": lambda: plotting.crowds.crowd_paths(mixed()),
-    "bottleneck": lambda: plotting.crowds.crowd_paths(
-        nav.crowd.simulate_crowd(scenarios.bottleneck(30, time_limit=5.0))
-    ),
+    "bottleneck": lambda: plotting.crowds.crowd_paths(nav.simulate(scenarios.bottleneck(30, time_limit=5.0))),
     "many robots": lambda: plotting.crowds.crowd_paths(many_robots()),
     "nobody": lambda: plotting.crowds.crowd_paths(nobody()),
     "space and time": lambda: plotting.crowds.space_time(corridor(), title="Both ways"),
@@ -103,16 +95,16 @@ def test_everybody_is_where_he_is_at_the_instant() -> None:
     axes = plotting.crowds.crowd_paths(run, at=3.0).axes[0]
     drawn = [tuple(np.round(each.center, 9)) for each in axes.patches if isinstance(each, Circle)]
     row = int(np.abs(run.time - 3.0).argmin())
-    for place in (*run.position[row], run.robot_position[row, 0]):
+    for place in (*run.obstacle_position[row], run.robot_position[row, 0]):
         assert tuple(np.round(place, 9)) in drawn
     low, high = axes.get_xlim()
-    assert low < run.position[..., 0].min()
-    assert run.position[..., 0].max() < high
+    assert low < run.obstacle_position[..., 0].min()
+    assert run.obstacle_position[..., 0].max() < high
 
 
 def test_the_instant_is_the_nearest_one_unless_given() -> None:
     run = crossed()
-    gap = np.linalg.norm(run.position - run.robot_position, axis=2).min(axis=1)
+    gap = np.linalg.norm(run.obstacle_position - run.robot_position, axis=2).min(axis=1)
     nearest = run.time[gap.argmin()]
     assert plotting.crowds.crowd_paths(run).get_suptitle() == f"t = {nearest:.2f} s"
     assert plotting.crowds.crowd_paths(run, at=1.0, title="A").get_suptitle() == "A, t = 1.00 s"
@@ -153,12 +145,12 @@ def test_positions_over_time_have_the_colors_of_speeds() -> None:
     (lines,) = (each for each in axes.collections if isinstance(each, LineCollection))
     segments = np.array(lines.get_segments())
     values = np.asarray(lines.get_array())
-    speed = np.hypot(run.velocity[..., 0], run.velocity[..., 1])
+    speed = np.hypot(run.obstacle_velocity[..., 0], run.obstacle_velocity[..., 1])
     assert values.max() <= speed.max() == lines.get_clim()[1]
     assert segments[..., 1].min() >= 0.0
     assert segments[..., 1].max() <= 10.0
     first = segments[0, 0]
-    assert first.tolist() == [0.0, run.position[0, 0, 0] % 10.0]
+    assert first.tolist() == [0.0, run.obstacle_position[0, 0, 0] % 10.0]
     assert values[0] == speed[0, 0]
 
 
@@ -198,10 +190,10 @@ def test_an_animation_holds_every_frame(tmp_path: Path) -> None:
         (lambda run, _: plotting.crowds.crowd_paths(run, at=99.0), "at must be from 0 to the end of the run"),
         (lambda run, _: plotting.crowds.crowd_paths(run, color_by="grop"), "color_by must be"),
         (lambda run, _: plotting.crowds.crowd_paths(run, labels=["a", "b"]), "labels must be 1 strings"),
-        (lambda run, _: plotting.crowds.crowd_paths(run.world), "run must be a CrowdTrajectories"),
+        (lambda run, _: plotting.crowds.crowd_paths(run.scenario), "run must be the Trajectory of a World"),
         (lambda run, _: plotting.crowds.space_time(run, along=(0.0, 0.0)), "along must be a direction"),
         (lambda run, path: plotting.crowds.animate_crowd(run, path / "a.avi"), "path must end in"),
-        (lambda run, path: plotting.animate(run, path / "a.gif"), "trajectory must be a Trajectory.*crowds"),
+        (lambda run, path: plotting.animate(run, path / "a.gif"), "trajectory must be the run of a scenario.*crowds"),
     ],
 )
 def test_bad_input_is_named(call: Callable[..., Any], message: str, tmp_path: Path) -> None:

@@ -119,7 +119,7 @@ def test_doubts_of_a_recording_reach_runs_tables_and_worlds(doubtful: Recording)
         nav.simulate_many(scenes, [law]),
         nav.simulate(replace(scenes[0], seed=3), law),
         scenarios.with_recording(doubtful, 0.5),
-        nav.crowd.simulate_crowd(scenarios.with_recording(doubtful, 0.5, time_limit=1.0)),
+        nav.simulate(scenarios.with_recording(doubtful, 0.5, time_limit=1.0)),
     ]
     for result in results:
         assert "broken_tracks" in {each.code for each in unsafe_doubts(result.warnings)}
@@ -128,7 +128,7 @@ def test_doubts_of_a_recording_reach_runs_tables_and_worlds(doubtful: Recording)
 def test_doubts_that_are_none_are_refused() -> None:
     for make in (
         lambda given: nav.Scenario(start=(0, 0), goal=(3, 0), doubts=given),
-        lambda given: nav.crowd.World(doubts=given),
+        lambda given: nav.World(doubts=given),
     ):
         with pytest.raises(nav.InvalidParameterError, match=r"doubts\[0\] must be a ResultWarning"):
             make(["doubt"])

@@ -18,7 +18,7 @@ from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.sensing.measurement import Measurement
 
-__all__ = ["FASTEST_DRAWN", "AtEnd", "CrowdRobot", "Person", "Source", "Waypoint", "middle_of", "points_of"]
+__all__ = ["FASTEST_DRAWN", "AtEnd", "Person", "Robot", "Source", "Waypoint", "middle_of", "points_of"]
 
 AtEnd = Literal["stay", "leave", "repeat"]
 
@@ -135,7 +135,7 @@ class Person(Parameters):
     Examples
     --------
     >>> from hrsafety import navigation as nav
-    >>> nav.crowd.Person(start=(0, 0), route=[(5, 0)], desired_speed=1.2).at_end
+    >>> nav.Person(start=(0, 0), route=[(5, 0)], desired_speed=1.2).at_end
     'stay'
     """
 
@@ -192,7 +192,7 @@ class Source(Parameters):
     Examples
     --------
     >>> from hrsafety import navigation as nav
-    >>> nav.crowd.Source(low=(0, 0), high=(0, 3), rate=1.0, route=[(10, 1.5)]).at_end
+    >>> nav.Source(low=(0, 0), high=(0, 3), rate=1.0, route=[(10, 1.5)]).at_end
     'leave'
     """
 
@@ -222,17 +222,17 @@ class Source(Parameters):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class CrowdRobot(Parameters):
-    """A robot among people, under any law.
+class Robot(Parameters):
+    """A robot of a world, of any body under any law.
 
     Parameters
     ----------
+    body : HolonomicRobot or DifferentialDriveRobot
+        What it is; may be given by position.
     start, goal : tuple of float
         Positions (x, y) in m.
     law : Law, callable, object or None
-        What drives it; ``None``: it stands.
-    robot : HolonomicRobot or DifferentialDriveRobot
-        What it is.
+        What drives it unless a verb is given a law; ``None``: it stands.
     control_period : float or None
         Time between two commands in s, a multiple of the step of the world; ``None``: the step.
     arrival_tolerance : float
@@ -257,15 +257,18 @@ class CrowdRobot(Parameters):
     Examples
     --------
     >>> from hrsafety import navigation as nav
-    >>> robot = nav.crowd.CrowdRobot(start=(0, 0), goal=(8, 0), law=nav.OptimalReciprocalCollisionAvoidance())
+    >>> law = nav.OptimalReciprocalCollisionAvoidance()
+    >>> robot = nav.Robot(nav.DifferentialDriveRobot(), start=(0, 0), goal=(8, 0), law=law)
     >>> robot.sensing_range
     10.0
     """
 
+    body: HolonomicRobot | DifferentialDriveRobot = field(
+        default_factory=functools.cache(HolonomicRobot), kw_only=False
+    )
     start: Pair
     goal: Pair
     law: AnyLaw | None = None
-    robot: HolonomicRobot | DifferentialDriveRobot = field(default_factory=functools.cache(HolonomicRobot))
     control_period: float | None = None
     arrival_tolerance: float = 0.3
     heading: float = 0.0
@@ -276,7 +279,7 @@ class CrowdRobot(Parameters):
         """Check the values."""
         if self.law is not None:
             self._set(law=as_law(self.law))
-        instance("robot", self.robot, HolonomicRobot, DifferentialDriveRobot)
+        instance("body", self.body, HolonomicRobot, DifferentialDriveRobot)
         if self.measurement is not None:
             instance("measurement", self.measurement, Measurement)
         if self.control_period is not None:
@@ -288,7 +291,7 @@ class CrowdRobot(Parameters):
     def _at_step(self, step: float) -> _hrsafety.CrowdRobot:
         """Return the native robot for a world with a step in s."""
         return _hrsafety.CrowdRobot(
-            self.robot._native,
+            self.body._native,
             None if self.law is None else self.law._native,  # type: ignore[union-attr]  # made a Law above
             None if self.measurement is None else self.measurement._native,
             start=self.start,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +13,7 @@ from hrsafety.navigation.metrics.between import PASSED, paths_of, until_arrival
 from hrsafety.navigation.metrics.episode import Episode
 from hrsafety.navigation.trajectory import CONTACT_SPEED, DECIDED_OVERLAP
 
-__all__ = ["APPEARING", "Contacts", "contacts_of"]
+__all__ = ["APPEARING", "Contacts", "Touches", "contacts_of", "touches_of"]
 
 APPEARING = 0.2
 """A contact so soon after somebody appears in the scene is counted apart, in s."""
@@ -51,6 +50,77 @@ class Contacts(NamedTuple):
         return self.toward + self.away
 
 
+class Touches(NamedTuple):
+    """First touches of a robot and each of m people, up to its arrival.
+
+    Attributes
+    ----------
+    time, speed : ndarray, shape (m,)
+        When, in s, and how fast the robot was, in m/s: 0 where they overlapped by 0.1 m from the start. NaN without.
+    toward, at_fault, apart : ndarray of bool, shape (m,)
+        As of `Contacts`.
+    """
+
+    time: Array
+    speed: Array
+    toward: npt.NDArray[np.bool_]
+    at_fault: npt.NDArray[np.bool_]
+    apart: npt.NDArray[np.bool_]
+
+    @property
+    def counted(self) -> bool:
+        """Whether there is a touch other than by somebody who appeared where the robot was."""
+        return bool(np.isfinite(self.time).any())
+
+
+class _Touch(NamedTuple):
+    """A first touch of one person, as of `Touches`."""
+
+    time: float = math.nan
+    speed: float = math.nan
+    toward: bool = False
+    at_fault: bool = False
+    apart: bool = False
+
+
+def touches_of(episode: Episode, arrival_time: float) -> Touches:
+    """Return the first touches of a robot and people, from positions alone.
+
+    Parameters
+    ----------
+    episode : Episode
+        The robot and the people.
+    arrival_time : float
+        When the robot arrived, in s; NaN if it did not.
+
+    Returns
+    -------
+    Touches
+        Of every person.
+    """
+    own, people = until_arrival(episode, arrival_time)
+    found = [_Touch()] * (people.shape[1] if people.ndim == 3 else 0)
+    if people.size and len(own) > 1:
+        start, way, nearest = paths_of(episode, own, people)
+        reach = episode.robot_radius + np.asarray(episode.person_radius)
+        with np.errstate(invalid="ignore"):
+            touching = np.linalg.norm(start, axis=2) < reach
+            near = (nearest < reach - PASSED) | touching[:-1] | touching[1:]
+        # Steps in which somebody comes or goes have no way.
+        near &= np.isfinite(nearest)
+        velocity = np.diff(own, axis=0) / episode.step
+        radii = np.broadcast_to(reach, people.shape[1])
+        for person in np.flatnonzero(near.any(axis=0)).tolist():
+            appears = _appears(people[:, person], episode.step)
+            paths, steps = (start[:-1, person], way[:, person]), np.flatnonzero(near[:, person])
+            found[person] = _followed(steps, paths, velocity, float(radii[person]), appears, episode.step)
+        # Whoever is there at single instants only has appeared.
+        for person in np.flatnonzero(touching.any(axis=0) & ~near.any(axis=0)).tolist():
+            found[person] = _Touch(apart=True)
+    rows = np.array(found, dtype=np.float64).reshape(-1, len(_Touch._fields)).T
+    return Touches(rows[0], rows[1], *(row > 0.0 for row in rows[2:]))
+
+
 def contacts_of(episode: Episode, arrival_time: float) -> Contacts:
     """Return whom a robot touched, from positions alone.
 
@@ -66,28 +136,10 @@ def contacts_of(episode: Episode, arrival_time: float) -> Contacts:
     Contacts
         Numbers of people.
     """
-    own, people = until_arrival(episode, arrival_time)
-    if people.size == 0 or len(own) < 2:
-        return Contacts(0, 0, 0, 0, 0)
-    start, way, nearest = paths_of(episode, own, people)
-    reach = episode.robot_radius + np.asarray(episode.person_radius)
-    with np.errstate(invalid="ignore"):
-        touching = np.linalg.norm(start, axis=2) < reach
-        near = (nearest < reach - PASSED) | touching[:-1] | touching[1:]
-    # Steps in which somebody comes or goes have no way.
-    near &= np.isfinite(nearest)
-    velocity = np.diff(own, axis=0) / episode.step
-    radii = np.broadcast_to(reach, people.shape[1])
-    found = [
-        _followed(steps, (start[:-1, person], way[:, person]), velocity, float(radii[person]), appears)
-        for person in np.flatnonzero(near.any(axis=0))
-        for steps in [np.flatnonzero(near[:, person])]
-        for appears in [_appears(people[:, person], episode.step)]
-    ]
-    kinds = [kind for each in found for kind in each]
-    # Whoever is there at single instants only has appeared.
-    kinds += ["apart"] * int((touching.any(axis=0) & ~near.any(axis=0)).sum())
-    return Contacts(*(kinds.count(kind) for kind in Contacts._fields))
+    found = touches_of(episode, arrival_time)
+    moving = found.speed > CONTACT_SPEED
+    kinds = (found.toward, moving & ~found.toward, found.speed <= CONTACT_SPEED, found.at_fault, found.apart)
+    return Contacts(*(int(kind.sum()) for kind in kinds))
 
 
 def _appears(path: Array, step: float) -> float:
@@ -97,33 +149,36 @@ def _appears(path: Array, step: float) -> float:
 
 
 def _followed(
-    steps: npt.NDArray[np.intp], paths: tuple[Array, Array], velocity: Array, reach: float, appears: float
-) -> Iterator[str]:
-    """Yield what the steps in which a person touches the robot make of it."""
-    first, faulty, told = True, False, False
+    steps: npt.NDArray[np.intp],
+    paths: tuple[Array, Array],
+    velocity: Array,
+    reach: float,
+    appears: float,
+    length: float,
+) -> _Touch:
+    """Return what the steps in which a person touches the robot make of it; they are of one length in s."""
+    touch = _Touch()
     # The step after one that ended in a contact of somebody who appeared.
     lasts = -1
     for step in steps.tolist():
         start, way = paths[0][step], paths[1][step]
         begin, end, decided = _within(start, way, reach)
+        first = math.isnan(touch.time)
         if first and (step == lasts or step + begin <= appears):
-            if not told:
-                yield "apart"
-            told, lasts = True, step + 1 if np.linalg.norm(start + way) < reach else -1
+            touch = touch._replace(apart=True)
+            lasts = step + 1 if np.linalg.norm(start + way) < reach else -1
             continue
-        speed = velocity[step]
-        moving = bool(np.hypot(*speed) > CONTACT_SPEED)
-        toward = [bool(speed @ (start + share * way) > 0.0) for share in (begin, end)]
+        speed = float(np.hypot(*velocity[step]))
         if first and np.linalg.norm(start + begin * way) <= reach - DECIDED_OVERLAP:
-            moving = False  # at the start they overlapped: nobody came
+            speed = 0.0  # at the start they overlapped: nobody came
+        moving = speed > CONTACT_SPEED
+        toward = [moving and bool(velocity[step] @ (start + share * way) > 0.0) for share in (begin, end)]
         if first:
-            yield ("toward" if toward[0] else "away") if moving else "standing"
-            first = False
-        faulty |= moving and any(toward)
+            touch = touch._replace(time=(step + begin) * length, speed=speed, toward=toward[0])
+        touch = touch._replace(at_fault=touch.at_fault or any(toward))
         if decided:
             break
-    if faulty:
-        yield "at_fault"
+    return touch
 
 
 def _within(start: Array, way: Array, reach: float) -> tuple[float, float, bool]:

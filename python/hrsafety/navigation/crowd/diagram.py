@@ -13,9 +13,9 @@ from hrsafety._arguments import Array, instance, numbers, positive, sequence
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown, SimulationError
 from hrsafety.navigation.crowd.agents import points_of
-from hrsafety.navigation.crowd.simulation import simulate_crowds
-from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
+from hrsafety.navigation.crowd.simulation import simulated
 from hrsafety.navigation.crowd.world import World
+from hrsafety.navigation.crowd.world_run import WorldRun
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.tables import Columns, Table
 
@@ -146,7 +146,7 @@ def fundamental_diagram(
     wide = positive("width", width)
     density = np.array([_density(f"worlds[{index}]", world, wide) for index, world in enumerate(given)])
     reference = weidmann_speed(density)
-    runs = simulate_crowds(given, threads=threads, progress=progress)
+    runs = simulated(given, threads=threads, progress=progress)
     speed = np.array([_speed(index, run) for index, run in enumerate(runs)])
     return FundamentalDiagram(density=density, speed=speed, reference=reference)
 
@@ -180,7 +180,7 @@ def _between_walls(world: World) -> float | None:
     return min(above) - max(below) if below and above else None
 
 
-def _speed(index: int, run: CrowdTrajectories) -> float:
+def _speed(index: int, run: WorldRun) -> float:
     """Return the mean velocity along x over the second half of the time."""
     if run.diverged is not None:
         raise SimulationError(f"worlds[{index}] diverged at {run.diverged.time:g} s", index)
@@ -190,5 +190,5 @@ def _speed(index: int, run: CrowdTrajectories) -> float:
         rule = "lead farther than the person walks within the time limit"
         raise InvalidParameterError(f"worlds[{index}].people[{arrived[0]}].route", rule, found)
     first = len(run.time) // 2
-    way = run.position[-1, :, 0] - run.position[first, :, 0]
+    way = run.obstacle_position[-1, :, 0] - run.obstacle_position[first, :, 0]
     return float(way.mean() / (run.time[-1] - run.time[first]))

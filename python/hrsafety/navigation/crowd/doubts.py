@@ -10,7 +10,7 @@ import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair
-from hrsafety.navigation.crowd.agents import FASTEST_DRAWN, CrowdRobot, Person, Source, middle_of
+from hrsafety.navigation.crowd.agents import FASTEST_DRAWN, Person, Robot, Source, middle_of
 from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.robots.bodies import NUMBERS
 from hrsafety.navigation.warnings.shields import SEES_LESS, Motion, Mover, of_order, of_surroundings, shield_of
@@ -23,13 +23,13 @@ KEPT = 0.1
 
 
 def of_numbers(
-    people: Sequence[Person], sources: Sequence[Source], robots: Sequence[CrowdRobot], time_limit: float
+    people: Sequence[Person], sources: Sequence[Source], robots: Sequence[Robot], time_limit: float
 ) -> tuple[ResultWarning, ...]:
     """Return a warning about numbers of a world outside the ranges of their quantities, if there are any.
 
     Parameters
     ----------
-    people, sources, robots : sequence of Person, Source, CrowdRobot
+    people, sources, robots : sequence of Person, Source, Robot
         Who is in the world.
     time_limit : float
         In s.
@@ -46,7 +46,7 @@ def of_numbers(
     found += [(f"sources[{index}]", implausible(_body(each), _QUANTITIES)) for index, each in enumerate(sources)]
     for index, robot in enumerate(robots):
         values = {"start": robot.start, "goal": robot.goal}
-        values |= {f"robot_{name}": getattr(robot.robot, name, None) for name in NUMBERS}
+        values |= {f"robot_{name}": getattr(robot.body, name, None) for name in NUMBERS}
         if robot.measurement is not None:
             values |= {"measurement_scale": robot.measurement.scale, "latency": robot.measurement.latency}
         found.append((f"robots[{index}]", implausible(values, _QUANTITIES)))
@@ -102,7 +102,7 @@ _PUSHED = 1.3
 def of_walls(
     people: Sequence[Person],
     sources: Sequence[Source],
-    robots: Sequence[CrowdRobot],
+    robots: Sequence[Robot],
     native: _hrsafety.CrowdWorld,
     walls: Sequence[object],
 ) -> tuple[ResultWarning, ...]:
@@ -110,7 +110,7 @@ def of_walls(
 
     Parameters
     ----------
-    people, sources, robots : sequence of Person, Source, CrowdRobot
+    people, sources, robots : sequence of Person, Source, Robot
         Who is in the world.
     native : CrowdWorld
         The world as the core has it.
@@ -134,7 +134,7 @@ def of_walls(
     ]
     # A robot has arrived as soon as it is within the tolerance.
     goals += [
-        (f"robots[{index}]", "goal", robot.goal, max(0.0, robot.robot.radius - robot.arrival_tolerance))
+        (f"robots[{index}]", "goal", robot.goal, max(0.0, robot.body.radius - robot.arrival_tolerance))
         for index, robot in enumerate(robots)
     ]
     inside = [
@@ -212,13 +212,13 @@ def _body(owner: Person | Source) -> dict[str, object]:
 
 
 def of_robots(
-    people: Sequence[Person], sources: Sequence[Source], robots: Sequence[CrowdRobot], step: float, *, walls: bool
+    people: Sequence[Person], sources: Sequence[Source], robots: Sequence[Robot], step: float, *, walls: bool
 ) -> tuple[ResultWarning, ...]:
     """Return the warnings of shields in a world, for each bound of a robot the one that is exceeded most.
 
     Parameters
     ----------
-    people, sources, robots : sequence of Person, Source, CrowdRobot
+    people, sources, robots : sequence of Person, Source, Robot
         Who is in the world.
     step : float
         Its step in s, the control period of robots without one.
@@ -238,7 +238,7 @@ def of_robots(
         found += of_order(robot.law, f"robots[{index}].law")
         others = [each for each in _speeds(people, sources, robots) if each[0] != f"robots[{index}]"]
         fastest = max(others, key=lambda each: each[1], default=None)
-        motion = Motion(robot.robot, step if robot.control_period is None else robot.control_period, step)
+        motion = Motion(robot.body, step if robot.control_period is None else robot.control_period, step)
         found += of_surroundings(
             shield,
             # Everybody decides anew at each step, for any velocity up to the largest speed.
@@ -254,7 +254,7 @@ def of_robots(
 
 
 def _speeds(
-    people: Iterable[Person], sources: Iterable[Source], robots: Iterable[CrowdRobot]
+    people: Iterable[Person], sources: Iterable[Source], robots: Iterable[Robot]
 ) -> Iterator[tuple[str, float]]:
     """Yield who is in a world, and the largest speed in m/s."""
     for index, person in enumerate(people):
@@ -263,25 +263,23 @@ def _speeds(
     for index, source in enumerate(sources):
         yield f"sources[{index}]", _largest_speed(source)
     for index, robot in enumerate(robots):
-        yield f"robots[{index}]", robot.robot.max_speed
+        yield f"robots[{index}]", robot.body.max_speed
 
 
-def _radii(
-    people: Iterable[Person], sources: Iterable[Source], robots: Iterable[CrowdRobot]
-) -> Iterator[tuple[str, float]]:
+def _radii(people: Iterable[Person], sources: Iterable[Source], robots: Iterable[Robot]) -> Iterator[tuple[str, float]]:
     """Yield who is in a world, and the radius in m."""
     yield from ((f"people[{index}]", person.radius) for index, person in enumerate(people))
     yield from ((f"sources[{index}]", source.radius) for index, source in enumerate(sources))
-    yield from ((f"robots[{index}]", robot.robot.radius) for index, robot in enumerate(robots))
+    yield from ((f"robots[{index}]", robot.body.radius) for index, robot in enumerate(robots))
 
 
-def _of_range(owner: str, robot: CrowdRobot, motion: Motion, shield: Shield, radius: float) -> Iterator[ResultWarning]:
+def _of_range(owner: str, robot: Robot, motion: Motion, shield: Shield, radius: float) -> Iterator[ResultWarning]:
     """Warn of a range within which somebody may stand whom the robot does not see, and cannot stop for."""
     if shield.person_speed is None or radius == 0.0:
         return
     plan = motion.plan_duration
-    touch = robot.robot.radius + radius + shield.margin + shield.position_error
-    least = touch + shield.person_speed * (shield.latency + plan) + robot.robot.max_speed * plan
+    touch = robot.body.radius + radius + shield.margin + shield.position_error
+    least = touch + shield.person_speed * (shield.latency + plan) + robot.body.max_speed * plan
     if robot.sensing_range < least:
         yield ResultWarning(
             SEES_LESS,

@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Any
 
 from hrsafety._arguments import Array
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.metrics.episode import Episode
-from hrsafety.navigation.outcomes import OUTCOMES
+from hrsafety.navigation.metrics.sources import fields_in
 
-__all__ = ["WORLD_OUTCOMES", "episodes_in", "outcome_of"]
-
-WORLD_OUTCOMES: Mapping[str, str] = MappingProxyType(
-    {word: said for word, said in OUTCOMES.items() if word != "stopped"}
-    | {"diverged": "a state of the world was no longer finite"}
-)
-"""What each outcome of a robot in a world says, by its word: those of other runs, and ``"diverged"``."""
+__all__ = ["episodes_in", "outcome_of"]
 
 
 def episodes_in(world: World, robot_position: Array, position: Array, radius: Array, **beside: Any) -> list[Episode]:
@@ -41,26 +33,9 @@ def episodes_in(world: World, robot_position: Array, position: Array, radius: Ar
     list of Episode
         One for each robot. Other robots are no people.
     """
-    groups = [-1 if person.group is None else person.group for person in world.people]
-    groups += [-1] * (len(radius) - len(groups))
-    grouped = any(group >= 0 for group in groups)
     return [
-        Episode(
-            position=robot_position[:, index],
-            step=world.step,
-            goal=robot.goal,
-            robot_radius=robot.robot.radius,
-            people=position,
-            person_radius=radius,
-            groups=groups if grouped else (),
-            walls=world.walls,
-            arrival_tolerance=robot.arrival_tolerance,
-            max_speed=robot.robot.max_speed,
-            period=world.period,
-            simulated=True,
-            **beside,
-        )
-        for index, robot in enumerate(world.robots)
+        Episode(**fields_in(world, index, (robot_position, position, radius)), simulated=True, **beside)
+        for index in range(len(world.robots))
     ]
 
 
@@ -77,7 +52,7 @@ def outcome_of(*, touched: bool, arrived: bool, diverged: bool) -> str:
     Returns
     -------
     str
-        A word of `WORLD_OUTCOMES`.
+        A word of `OUTCOMES`.
     """
     # Who had arrived before the world diverged did so with the contacts that it had.
     if diverged and not arrived:

@@ -16,9 +16,9 @@ from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.crowd.agents import Person
 from hrsafety.navigation.crowd.pedestrians import Pedestrian
-from hrsafety.navigation.crowd.simulation import simulate_crowds
-from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
+from hrsafety.navigation.crowd.simulation import simulated
 from hrsafety.navigation.crowd.world import World
+from hrsafety.navigation.crowd.world_run import WorldRun
 from hrsafety.navigation.metrics.episode import Recorded
 from hrsafety.plausibility import ResultWarning, telling
 
@@ -219,7 +219,7 @@ def errors_of(
     """Return the errors of some models in the same windows, simulated side by side."""
     instants = list(windows.scored)
     worlds = [_world(windows, instant, model, radius) for model in models for instant in instants]
-    runs = simulate_crowds(worlds, threads=threads)
+    runs = simulated(worlds, threads=threads)
     found = []
     for index in range(len(models)):
         own = runs[index * len(instants) : (index + 1) * len(instants)]
@@ -228,12 +228,12 @@ def errors_of(
     return found
 
 
-def _distances(windows: Windows, instant: int, run: CrowdTrajectories) -> Array:
+def _distances(windows: Windows, instant: int, run: WorldRun) -> Array:
     """Return the errors of everybody who is scored, instant by instant; infinite where the world diverged."""
-    parts = round(windows.interval / run.world.step)
+    parts = round(windows.interval / run.scenario.step)
     rows = parts * np.arange(1, windows.foretold + 1)
     numbers = {who: index for index, who in enumerate(windows.present(instant))}
-    place = run.position[np.minimum(rows, len(run.time) - 1)]
+    place = run.obstacle_position[np.minimum(rows, len(run.time) - 1)]
     apart = [np.hypot(*(place[:, numbers[who]] - windows.recorded(instant, who)).T) for who in windows.scored[instant]]
     # Who has arrived stands there; a world that diverged says nothing from then on.
     over = rows >= len(run.time) if run.diverged is not None else np.zeros(len(rows), dtype=bool)

@@ -16,18 +16,18 @@ from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.crowd.contacts import Contacts, contacts_of
 from hrsafety.navigation.crowd.episodes import outcome_of
 from hrsafety.navigation.crowd.scores import episodes_of, world_metrics
-from hrsafety.navigation.crowd.simulation import simulate_crowds
-from hrsafety.navigation.crowd.table import CONTACTS, CrowdTable
-from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
+from hrsafety.navigation.crowd.simulation import driven, simulated
 from hrsafety.navigation.crowd.world import World
+from hrsafety.navigation.crowd.world_run import WorldRun
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.metrics.between import doubts_between
 from hrsafety.navigation.metrics.declared import METRICS, WORLD_METRICS
 from hrsafety.navigation.metrics.scores import MetricTable, table_of
 from hrsafety.navigation.run_arguments import Progress
+from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.plausibility import ResultWarning, gathered
 
-__all__ = ["CrowdStudy"]
+__all__ = ["WorldStudy"]
 
 NUMBERS_AT_ONCE = 2e7
 """Numbers of trajectories that are kept at a time: 160 MB. The metrics stay, the trajectories do not."""
@@ -43,7 +43,7 @@ class Job(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class CrowdStudy:
+class WorldStudy:
     """What runs where.
 
     Parameters
@@ -85,7 +85,7 @@ class CrowdStudy:
             rule = f"hold at most {MOST_TABLE_ROWS} runs with their scenarios, seeds and gain sets"
             raise InvalidParameterError("laws", rule, Shown(f"{rows} runs"), "split the call")
 
-    def run(self, threads: int | None, progress: Progress | None) -> CrowdTable:
+    def run(self, threads: int | None, progress: Progress | None) -> RunTable:
         """Run everything.
 
         Parameters
@@ -97,7 +97,7 @@ class CrowdStudy:
 
         Returns
         -------
-        CrowdTable
+        RunTable
             A row for each robot of each run.
 
         Raises
@@ -140,7 +140,7 @@ class CrowdStudy:
         first = {(job.scenario, job.seed): world for job, world in zip(part, worlds, strict=True)}
         try:
             given = [*worlds, *(replace(first[each], robots=()) for each in alone)]
-            runs = simulate_crowds(given, threads=threads, progress=progress)
+            runs = simulated(given, threads=threads, progress=progress)
         except InvalidParameterError as error:
             raise self._renamed(error, part) from None
         without = dict(zip(alone, runs[len(part) :], strict=True))
@@ -151,9 +151,8 @@ class CrowdStudy:
         world, law = self._places[job.scenario], self._drivers[job.law]
         if law.GAIN_NAMES:
             law = law.replaced(**dict(zip(law.GAIN_NAMES, self.sets[job.law][job.gains].tolist(), strict=True)))
-        robots = [replace(robot, law=law) for robot in world.robots]
         seed = world.seed if self.seeds is None else self.seeds[job.seed]
-        return replace(world, robots=robots, seed=seed)
+        return replace(driven(world, law), seed=seed)
 
     def _renamed(self, error: InvalidParameterError, part: Sequence[Job]) -> InvalidParameterError:
         """Return an error that names the scenario instead of the run in its part."""
@@ -164,12 +163,12 @@ class CrowdStudy:
 
     def _warnings(self) -> tuple[ResultWarning, ...]:
         """Return the doubts about every world under every law, the first of each kind."""
-        driven = (
-            (name, _doubts(world, law))
+        doubts = (
+            (name, driven(world, law).warnings)
             for law in self._drivers
             for name, world in zip(self._names, self._places, strict=True)
         )
-        return gathered(driven, "scenarios")
+        return gathered(doubts, "scenarios")
 
     def _between(self, parts: Sequence[_Rows]) -> tuple[ResultWarning, ...]:
         """Return the doubts about what happened: contacts that no instant shows, people set back at walls."""
@@ -178,7 +177,7 @@ class CrowdStudy:
         )
         return gathered(runs, "runs")
 
-    def _table(self, parts: Sequence[_Rows]) -> CrowdTable:
+    def _table(self, parts: Sequence[_Rows]) -> RunTable:
         """Return the rows in the order of laws, scenarios, seeds, gains and robots."""
         jobs = np.concatenate([part.jobs for part in parts])
         order = np.lexsort((jobs[:, 4], jobs[:, 3], jobs[:, 1], jobs[:, 0], jobs[:, 2]))
@@ -197,7 +196,7 @@ class CrowdStudy:
             seeds = np.array([world.seed for world in self._places], dtype=np.uint64)[scenario]
         else:
             seeds = np.array(self.seeds, dtype=np.uint64)[seed]
-        return CrowdTable(
+        return RunTable(
             law_names=tuple(self.laws),
             scenario_names=tuple(self.worlds),
             laws=self._drivers,
@@ -211,15 +210,19 @@ class CrowdStudy:
             gains=gains,
             outcome=np.concatenate([part.outcome for part in parts])[order],
             end_time=np.concatenate([part.end_time for part in parts])[order],
-            **{f"contacts_{name}": column for name, column in zip(CONTACTS, contacts.T, strict=True)},
+            contacts_toward=contacts[:, 0],
+            contacts_away=contacts[:, 1],
+            contacts_standing=contacts[:, 2],
+            contacts_at_fault=contacts[:, 3],
+            contacts_apart=contacts[:, 4],
+            contacts_moving=contacts[:, 0] + contacts[:, 1],
+            arrival_time=values["arrival_time"],
+            path_length=values["path_length"],
+            min_clearance=values["min_clearance"],
+            wall_contacts=values["wall_contacts"],
             values=values,
-            warnings=(*self._warnings(), *self._between(parts), *_of_robots(values["robot_contacts"][robot == 0])),
+            doubts=(*self._warnings(), *self._between(parts), *_of_robots(values["robot_contacts"][robot == 0])),
         )
-
-
-def _doubts(world: World, law: Law) -> tuple[ResultWarning, ...]:
-    """Return the doubts about a world whose robots are under a law."""
-    return replace(world, robots=[replace(robot, law=law) for robot in world.robots]).warnings
 
 
 def _of_robots(pairs: np.ndarray[Any, np.dtype[Any]]) -> Iterator[ResultWarning]:
@@ -261,12 +264,12 @@ class _Rows:
     def of(
         cls,
         part: Sequence[Job],
-        runs: Sequence[CrowdTrajectories],
-        without: Mapping[tuple[int, int], CrowdTrajectories],
+        runs: Sequence[WorldRun],
+        without: Mapping[tuple[int, int], WorldRun],
         threads: int | None,
     ) -> _Rows:
         """Return the rows of runs."""
-        robots = [(index, robot) for index, run in enumerate(runs) for robot in range(len(run.world.robots))]
+        robots = [(index, robot) for index, run in enumerate(runs) for robot in range(len(run.scenario.robots))]
         episodes = [
             each
             for job, run in zip(part, runs, strict=True)
@@ -299,19 +302,20 @@ class _Rows:
 
 
 def _with_walls(contacts: Sequence[Contacts], table: MetricTable) -> np.ndarray[Any, np.dtype[np.int64]]:
-    """Return the numbers of contacts; every one with a wall is at fault."""
-    found = np.array(contacts, dtype=np.int64).reshape(-1, len(CONTACTS))
-    found[:, CONTACTS.index("at_fault")] += table.wall_contacts
+    """Return the numbers of contacts: a wall stands, so a robot that touches it has moved toward it, at fault."""
+    found = np.array(contacts, dtype=np.int64).reshape(-1, len(Contacts._fields))
+    for name in ("toward", "at_fault"):
+        found[:, Contacts._fields.index(name)] += table.wall_contacts
     return found
 
 
-def _outcome(contacts: Contacts, walls: int, run: CrowdTrajectories, robot: int) -> str:
+def _outcome(contacts: Contacts, walls: int, run: WorldRun, robot: int) -> str:
     arrived = not np.isnan(run.robot_arrival_time[robot])
     touched = contacts.moving + contacts.standing + walls > 0
     return outcome_of(touched=touched, arrived=arrived, diverged=run.diverged is not None)
 
 
-def _of_people(run: CrowdTrajectories) -> tuple[ResultWarning, ...]:
+def _of_people(run: WorldRun) -> tuple[ResultWarning, ...]:
     """Return the doubts of a run but those of its world, which are told once, and its end, which is a column."""
-    known = {*run.world.warnings}
+    known = {*run.scenario.warnings}
     return tuple(doubt for doubt in run.warnings if doubt not in known and doubt.code != "unfinished")

@@ -11,7 +11,7 @@ from hrsafety._arguments import Pair, Parameters, checked_seed, instance, pair, 
 from hrsafety._doubts import checked_doubts
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.crowd.agents import CrowdRobot, Person, Source
+from hrsafety.navigation.crowd.agents import Person, Robot, Source
 from hrsafety.navigation.crowd.doubts import of_numbers, of_robots, of_walls
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.plausibility import ResultWarning
@@ -63,7 +63,7 @@ class World(Parameters):
     ----------
     people : sequence of Person
         Who is there at the start; people may overlap.
-    robots : sequence of CrowdRobot
+    robots : sequence of Robot
         The robots. None may start in contact.
     walls : sequence of Disc, Rectangle or sequence of points
         What stands. Points are joined by segments. Every wall acts once, through its nearest point.
@@ -95,17 +95,17 @@ class World(Parameters):
     >>> from hrsafety import navigation as nav
     >>> walls = [[(-1, 0), (11, 0)], [(-1, 3), (11, 3)]]
     >>> people = [
-    ...     nav.crowd.Person(start=(0, 1.4), route=[(10, 1.5)], desired_speed=1.3),
-    ...     nav.crowd.Person(start=(10, 1.6), route=[(0, 1.5)], desired_speed=1.3),
+    ...     nav.Person(start=(0, 1.4), route=[(10, 1.5)], desired_speed=1.3),
+    ...     nav.Person(start=(10, 1.6), route=[(0, 1.5)], desired_speed=1.3),
     ... ]
-    >>> world = nav.crowd.World(people=people, walls=walls, time_limit=20)
-    >>> run = nav.crowd.simulate_crowd(world)
+    >>> world = nav.World(people=people, walls=walls, time_limit=20)
+    >>> run = nav.simulate(world)
     >>> bool((run.person_arrival_time < 10).all())
     True
     """
 
     people: tuple[Person, ...] | Sequence[Person] = ()
-    robots: tuple[CrowdRobot, ...] | Sequence[CrowdRobot] = ()
+    robots: tuple[Robot, ...] | Sequence[Robot] = ()
     walls: tuple[WallShape, ...] | Sequence[WallShape | Sequence[Pair]] = ()
     sources: tuple[Source, ...] | Sequence[Source] = ()
     period: Pair = (0.0, 0.0)
@@ -122,7 +122,7 @@ class World(Parameters):
         given = sequence("walls", "be a sequence of walls", self.walls)
         self._set(
             people=_all("people", Person, self.people),
-            robots=_all("robots", CrowdRobot, self.robots),
+            robots=_all("robots", Robot, self.robots),
             sources=_all("sources", Source, self.sources),
             walls=tuple(_wall(f"walls[{index}]", wall) for index, wall in enumerate(given)),
             period=pair("period", self.period),
@@ -154,3 +154,8 @@ class World(Parameters):
             found = (*self.doubts, *of_numbers(*own, self.time_limit), *in_walls, *of_shields)
             self._set(_warnings=found)
         return found
+
+    @property
+    def unit_doubts(self) -> tuple[ResultWarning, ...]:
+        """Those of the warnings that are about numbers which are hardly meant in their unit."""
+        return tuple(each for each in self.warnings if each.code == "implausible")

@@ -5,6 +5,7 @@ They are counted as contacts; what is doubtful is that everybody moves straight 
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -21,6 +22,7 @@ __all__ = [
     "PASSED",
     "Between",
     "doubts_between",
+    "first_wall_contact",
     "paths_of",
     "touched_between",
     "until_arrival",
@@ -156,6 +158,35 @@ def walls_between(episode: Episode, arrival_time: float, wall_clearance: float) 
     gap = np.array([walls.segment_clearance(*way) for way in zip(begin, end, strict=True)]) - episode.robot_radius
     hidden = (gap < 0.0) & (at_ends >= episode.robot_radius)
     return Between(int(hidden.sum()), float(gap[hidden].min(initial=np.inf)))
+
+
+def first_wall_contact(episode: Episode, arrival_time: float) -> tuple[float, float]:
+    """Return when a robot that touches a wall does so first, in s, and how fast it is in that step, in m/s.
+
+    Parameters
+    ----------
+    episode : Episode
+        The robot and the walls.
+    arrival_time : float
+        When the robot arrived, in s; NaN if it did not.
+
+    Returns
+    -------
+    tuple of float
+        Time of the instant that shows it, or of the end of the step within which it happens.
+    """
+    own, _ = until_arrival(episode, arrival_time)
+    walls = _map_of(episode.walls)
+    shown = np.flatnonzero(walls.clearance(own) < episode.robot_radius).tolist()
+    rows = shown or [len(own)]
+    # Only a step before that one may pass a wall and show it at neither end.
+    for row, way in enumerate(itertools.pairwise(own[: rows[0]]), start=1):
+        if walls.segment_clearance(*way) < episode.robot_radius:
+            rows = [row]
+            break
+    row = min(rows[0], len(own) - 1)
+    speed = float(np.hypot(*(own[max(row, 1)] - own[max(row, 1) - 1]))) / episode.step
+    return row * episode.step, speed
 
 
 def _map_of(walls: Sequence[Wall]) -> StaticMap:

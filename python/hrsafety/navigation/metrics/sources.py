@@ -13,6 +13,7 @@ from hrsafety._arguments import Array, count, numbers, whole_steps
 from hrsafety._bounds import MOST_PATH_NUMBERS
 from hrsafety._tracks import Ways
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
+from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.free_space import distance
 from hrsafety.navigation.metrics.sights import LOST
 from hrsafety.navigation.obstacles.moving import Human
@@ -20,7 +21,7 @@ from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["at_instants", "doubts_of_run", "steps_of_run", "track_doubts"]
+__all__ = ["at_instants", "doubts_of_run", "fields_in", "steps_of_run", "track_doubts"]
 
 # Instants of a run that differ by less are the same, relative to the step.
 _ROUNDING = 1e-9
@@ -35,6 +36,8 @@ def steps_of_run(run: Trajectory) -> dict[str, Any]:
         raise InvalidParameterError("trajectory", "be a run in a scenario", Shown("a run after a reference"), remedy)
     if len(run.time) < 2:
         raise InvalidParameterError("trajectory", "have two instants or more", Shown(f"{len(run.time)}"))
+    if isinstance(run.scenario, World):
+        return fields_in(run.scenario, run.robot, (run.robot_position, run.obstacle_position, run.obstacle_radius))
     scene, step = run.scenario, float(run.time[1] - run.time[0])
     obstacles = scene.obstacles
     people = [index for index, each in enumerate(obstacles) if isinstance(each, Human)]
@@ -52,11 +55,48 @@ def steps_of_run(run: Trajectory) -> dict[str, Any]:
     }
 
 
+def fields_in(world: World, robot: int, places: tuple[Array, Array, Array]) -> dict[str, Any]:
+    """Return the fields of an episode of a robot of a world.
+
+    Parameters
+    ----------
+    world : World
+        The world.
+    robot : int
+        Which of its robots.
+    places : (ndarray of shape (n, k, 2), ndarray of shape (n, m, 2), ndarray of shape (m,))
+        Positions of the robots and of the people in m, and radii of the people in m.
+
+    Returns
+    -------
+    dict of str to object
+        Fields of `Episode`. Other robots are no people.
+    """
+    groups = [-1 if person.group is None else person.group for person in world.people]
+    groups += [-1] * (len(places[2]) - len(groups))
+    own = world.robots[robot]
+    return {
+        "position": places[0][:, robot],
+        "people": places[1],
+        "person_radius": places[2],
+        "groups": groups if any(group >= 0 for group in groups) else (),
+        "walls": world.walls,
+        "step": world.step,
+        "goal": own.goal,
+        "robot_radius": own.body.radius,
+        "arrival_tolerance": own.arrival_tolerance,
+        "max_speed": own.body.max_speed,
+        "period": world.period,
+    }
+
+
 def doubts_of_run(run: Trajectory, *, walls: bool, people: bool) -> Iterator[ResultWarning]:
     """Yield warnings of what an episode from a run leaves out: maps, and what moves and is nobody.
 
     ``walls`` and ``people``: whether those of the episode are those of the scenario.
     """
+    if isinstance(run.scenario, World):
+        return
     if walls and math.isfinite(run.map_clearance):
         touched = "" if math.isnan(run.map_contact_time) else f" and touched it at {run.map_contact_time:.2f} s"
         message = (

@@ -1,48 +1,27 @@
-"""What comparisons of laws share, whatever the runs are of."""
+"""Runs of several laws side by side, episode by episode."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, word
 from hrsafety._statistics import Mean, Paired, compare_paired, mean_interval
+from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.plausibility import ResultWarning
-from hrsafety.tables import Columns, Table
+from hrsafety.tables import Table
 
 __all__ = ["PairedRuns"]
 
 
-class _Runs(Protocol):
-    """Runs of several laws in the same episodes, one a row, the laws slowest."""
-
-    @property
-    def law_names(self) -> tuple[str, ...]: ...
-    @property
-    def scenario_names(self) -> Sequence[str]: ...
-    @property
-    def scenario_index(self) -> npt.NDArray[np.int64]: ...
-    @property
-    def seed(self) -> npt.NDArray[np.uint64]: ...
-    @property
-    def outcome(self) -> npt.NDArray[np.str_]: ...
-    @property
-    def warnings(self) -> tuple[ResultWarning, ...]: ...
-    def columns(self) -> Columns:
-        """Return the columns."""
-
-
-R = TypeVar("R", bound=_Runs)
-
-
-class PairedRuns(Table, Generic[R]):
+class PairedRuns(Table):
     """Runs of several laws in the same episodes: rows are laws, columns episodes."""
 
     __slots__ = ()
-    runs: R
+    runs: RunTable
 
     @property
     def laws(self) -> tuple[str, ...]:
@@ -102,8 +81,7 @@ class PairedRuns(Table, Generic[R]):
 
     def _touched(self) -> npt.NDArray[np.bool_]:
         """Return which runs had a contact."""
-        found: npt.NDArray[np.bool_] = self.outcome == "collided"
-        return found
+        return self._by_law(self.runs.touched)
 
     def _difference(self, first: str, second: str, values: Array, *, successful: bool) -> Mean:
         """Return the mean difference of two laws where both values are finite, or both arrived without a contact."""

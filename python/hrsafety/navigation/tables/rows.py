@@ -56,8 +56,8 @@ class RunRows(Table, ABC):
 
         Returns
         -------
-        RunTable or CrowdTable
-            These runs in the same order, a table of the same kind.
+        RunTable
+            These runs in the same order.
 
         Raises
         ------
@@ -92,11 +92,9 @@ class RunRows(Table, ABC):
     def _kept(self, kept: npt.NDArray[np.bool_]) -> dict[str, Any]:
         """Return the fields that have a row for each run, for some of the runs."""
         table: Any = self
-        return {
-            field.name: values[kept]
-            for field in fields(table)
-            if isinstance(values := getattr(self, field.name), np.ndarray)
-        }
+        found = {field.name: getattr(self, field.name) for field in fields(table)}
+        columns = {name: values[kept] for name, values in found.items() if isinstance(values, np.ndarray)}
+        return columns | {"values": {name: column[kept] for name, column in found["values"].items()}}
 
     def _head(self) -> tuple[Columns, int]:
         return self._columns(slice(SHOWN_ROWS)), len(self)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated
+from dataclasses import field
+from typing import Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +15,7 @@ from hrsafety._statistics import Share, wilson
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.bands import Band, along_the_way, over_time
 from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.metrics.declared import METRICS, WORLD_METRICS
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.scenario_arrays import Numbers, Scenarios
@@ -56,41 +58,47 @@ class RunTable(RunRows):
     """Many runs, one a row: n runs, g gains, m obstacles, k instants.
 
     `simulate_many` orders the rows by law, scenario, seed and gains, the gains fastest;
-    `simulate_batch` by gains and scenario, the scenarios fastest.
+    `simulate_batch` by gains and scenario, the scenarios fastest. Runs of worlds have a row for each robot, the robots
+    fastest, and the social metrics: every one of ``nav.metrics.METRICS`` (of the robot) and of ``WORLD_METRICS`` (of
+    its world) is an attribute and a column. What they do not have, such as energy and performance, is ``None``.
 
     Attributes
     ----------
     law_names, scenario_names : sequence of str
         Names of the laws and of the scenarios.
     laws, scenarios : sequence
-        The laws and the scenarios by these names.
+        The laws and the scenarios or worlds by these names.
     gain_names : tuple of str
         Names of the gains; of several kinds of laws, those of all of them.
     law_index, scenario_index, gain_index : ndarray of int, shape (n,)
         Which law, which scenario and which gain set.
+    robot : ndarray of int, shape (n,), or None
+        Which robot of the world.
     seed : ndarray of int, shape (n,)
         Seed of each run.
     gains : ndarray, shape (n, g)
         Gains of each run; NaN where its law has no such gain.
     outcome : ndarray of str, shape (n,)
-        ``"arrived"``, ``"collided"``, ``"timed_out"``, ``"stopped"``.
+        ``"arrived"``, ``"collided"``, ``"timed_out"``, ``"stopped"``, and ``"diverged"`` where the state of a world was
+        no longer finite before the robot arrived; such a run may have had a contact, too (``touched``). Contacts
+        between robots change no outcome; they are counted for the whole world in ``robot_contacts``.
     end_time : ndarray, shape (n,)
-        When the run ended, in s.
+        When the run or the world ended, in s.
     arrival_time : ndarray, shape (n,)
         In s; NaN without arrival.
     energy, path_length : ndarray, shape (n,)
         In J and m.
-    min_distance : ndarray, shape (n, m)
+    min_distance : ndarray of shape (n, m), or None
         Least distance to each obstacle in m; infinite if it was never present, NaN beyond the
         obstacles of the row's scenario.
     min_clearance : ndarray, shape (n,)
         Least distance of the surfaces over all obstacles and the maps that law or sensors know, in m; infinite
-        without any.
+        without any. In a world from people; from walls in ``wall_clearance``.
     entered_active : ndarray of int, shape (n,)
         Number of obstacles whose active region the robot entered.
     contacts_moving, contacts_standing : ndarray of int, shape (n,)
         Number of obstacles touched while the robot was moving (faster than 0.05 m/s at first
-        contact), and while it stood; the maps count as one.
+        contact), and while it stood; the maps count as one. In a world people and walls, up to the arrival.
     contacts_toward, contacts_away : ndarray of int, shape (n,)
         How many of those while moving it moved toward at the first touch, V.(o - P) > 0, and how many touched it
         from behind or from the side; their sum is ``contacts_moving``. See ``contact_toward`` of a `Trajectory`.
@@ -100,7 +108,8 @@ class RunTable(RunRows):
     contacts_apart : ndarray of int, shape (n,)
         Number of obstacles that appeared in the scene where the robot was, in none of the other numbers.
     wall_contacts : ndarray of int, shape (n,)
-        Number of contacts with the maps, 1 or 0, which the others but ``contacts_apart`` hold, too.
+        Number of contacts with the maps, 1 or 0, or with the walls of a world, which the others but
+        ``contacts_apart`` hold, too.
     performance_total : ndarray, shape (n,)
         H; 0 after a contact or without arrival.
     performance_arrival_time, performance_avoidance, performance_energy_saving : ndarray, shape (n,)
@@ -123,6 +132,10 @@ class RunTable(RunRows):
         How the robots are built.
     motion_step : float
         Motion step of the runs in s.
+    values : mapping of str to ndarray, shape (n,)
+        The social metrics by name; empty for scenarios.
+    doubts : tuple of ResultWarning or None
+        Warnings that were found when the runs of worlds ended.
 
     See Also
     --------
@@ -134,7 +147,7 @@ class RunTable(RunRows):
     law_names: tuple[str, ...]
     scenario_names: Sequence[str]
     laws: tuple[Law, ...]
-    scenarios: Sequence[Scenario]
+    scenarios: Sequence[Any]
     gain_names: tuple[str, ...]
     law_index: npt.NDArray[np.int64]
     scenario_index: npt.NDArray[np.int64]
@@ -144,11 +157,8 @@ class RunTable(RunRows):
     outcome: npt.NDArray[np.str_]
     end_time: Annotated[Array, "s"]
     arrival_time: Annotated[Array, "s"]
-    energy: Annotated[Array, "J"]
     path_length: Annotated[Array, "m"]
-    min_distance: Annotated[Array, "m"]
     min_clearance: Annotated[Array, "m"]
-    entered_active: npt.NDArray[np.int64]
     contacts_moving: npt.NDArray[np.int64]
     contacts_toward: npt.NDArray[np.int64]
     contacts_away: npt.NDArray[np.int64]
@@ -156,12 +166,16 @@ class RunTable(RunRows):
     contacts_at_fault: npt.NDArray[np.int64]
     contacts_apart: npt.NDArray[np.int64]
     wall_contacts: npt.NDArray[np.int64]
-    performance_total: Array
-    performance_arrival_time: Array
-    performance_avoidance: Array
-    performance_energy_saving: Array
-    descent_share: Array
-    force_evaluations: npt.NDArray[np.int64]
+    # `X | Any`: None for worlds only.
+    energy: Annotated[Array | Any, "J"] = None
+    min_distance: Annotated[Array | Any, "m"] = None
+    entered_active: npt.NDArray[np.int64] | Any = None
+    performance_total: Array | Any = None
+    performance_arrival_time: Array | Any = None
+    performance_avoidance: Array | Any = None
+    performance_energy_saving: Array | Any = None
+    descent_share: Array | Any = None
+    force_evaluations: npt.NDArray[np.int64] | Any = None
     contact_time: Annotated[Array | None, "s"] = None
     contact_speed: Array | None = None
     time: Annotated[Array | None, "s"] = None
@@ -169,10 +183,24 @@ class RunTable(RunRows):
     distance: Annotated[Array | None, "m"] = None
     motion_step: Annotated[float, "s"] = 0.01
     built: AsBuilt | None = None
+    robot: npt.NDArray[np.int64] | Any = None
+    values: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)
+    doubts: tuple[ResultWarning, ...] | None = None
+
+    def __getattr__(self, name: str) -> Any:
+        """Return the column of a social metric."""
+        # Pickling asks before there are values.
+        if name in METRICS or name in WORLD_METRICS:
+            found = object.__getattribute__(self, "values")
+            if name in found:
+                return found[name]
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}", name=name, obj=self)
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why rows may not mean what they seem to: the first warning of each kind, and how many follow."""
+        if self.doubts is not None:
+            return self.doubts
         if isinstance(self.scenarios, Scenarios):
             # What a sensor or a map leaves out is the same in all of them.
             rows = sorted({0, *self.scenarios.doubtful()})
@@ -191,8 +219,16 @@ class RunTable(RunRows):
 
     @property
     def contact(self) -> Share:
-        """Share of the runs with a contact, with its 95 % Wilson interval."""
-        return wilson(int((self.outcome == "collided").sum()), len(self))
+        """Share of the runs with a contact, those that diverged later included, with its 95 % Wilson interval."""
+        return wilson(int(self.touched.sum()), len(self))
+
+    @property
+    def touched(self) -> npt.NDArray[np.bool_]:
+        """Whether each run had a contact with an obstacle, a person or a wall, however it ended."""
+        found: npt.NDArray[np.bool_] = (self.outcome == "collided") | (
+            self.contacts_moving + self.contacts_standing > 0
+        )
+        return found
 
     def columns(self) -> Columns:
         """Return one-dimensional columns by name, ready for a data frame.
@@ -218,9 +254,12 @@ class RunTable(RunRows):
         return ("law", "scenario", "seed", *varied, *found)
 
     def _columns(self, rows: slice) -> Columns:
-        found = self._of_law(rows) | self._of_gains(rows)
+        found = self._of_law(rows) | ({} if self.robot is None else {"robot": self.robot[rows]}) | self._of_gains(rows)
         for name, unit in _UNITS.items():
-            found[name + unit_suffix(unit)] = getattr(self, name)[rows]
+            if getattr(self, name) is not None:
+                found[name + unit_suffix(unit)] = getattr(self, name)[rows]
+        for metric in (*METRICS.values(), *WORLD_METRICS.values()) if self.values else ():
+            found.setdefault(metric.name + unit_suffix(metric.unit), self.values[metric.name][rows])
         for name, unit in _OF_OBSTACLES.items():
             values = getattr(self, name)
             found |= {} if values is None else each(f"{name}_{{}}", values[rows], unit)

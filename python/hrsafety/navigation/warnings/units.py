@@ -5,13 +5,12 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable, Iterator, Mapping
 
-from hrsafety.navigation.scenario import Scenario
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["of_scenarios"]
 
 MOST_SCENES = 100
-"""So many scenarios are looked at when runs end; the warnings of a table look at all."""
+"""So many scenarios or worlds are looked at when runs end; the warnings of a table look at all."""
 
 
 def of_scenarios(*positional: object, **named: object) -> Iterator[ResultWarning]:
@@ -24,12 +23,11 @@ def of_scenarios(*positional: object, **named: object) -> Iterator[ResultWarning
     """
     scenarios = positional[0] if positional else named.get("scenario", named.get("scenarios"))
     given: Iterable[object] = ()
-    if isinstance(scenarios, Scenario):
+    if hasattr(scenarios, "unit_doubts"):
         given = (scenarios,)
     elif isinstance(scenarios, Mapping):
         given = scenarios.values()
     elif isinstance(scenarios, Iterable) and not isinstance(scenarios, Iterator):
         given = scenarios
     for each in itertools.islice(given, MOST_SCENES):
-        if isinstance(each, Scenario):
-            yield from each.unit_doubts
+        yield from getattr(each, "unit_doubts", ())

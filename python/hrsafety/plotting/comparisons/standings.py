@@ -9,7 +9,6 @@ import numpy as np
 
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.comparison import Comparison
-from hrsafety.navigation.crowd.comparison import CrowdComparison
 from hrsafety.plotting import notes, style
 from hrsafety.plotting.comparisons.studies import OUTCOME_COLORS
 from hrsafety.plotting.floor import handle
@@ -26,7 +25,7 @@ ROW_HEIGHT = 0.42
 
 
 @notes.picture
-def comparison_standings(result: Comparison | CrowdComparison, *, title: str | None = None) -> Figure:
+def comparison_standings(result: Comparison, *, title: str | None = None) -> Figure:
     """Draw the shares of success and of contact of each law with their 95 % intervals.
 
     Below the share of the episodes with a contact, a hollow circle is the share of those in which the robot moved
@@ -35,7 +34,7 @@ def comparison_standings(result: Comparison | CrowdComparison, *, title: str | N
 
     Parameters
     ----------
-    result : Comparison or CrowdComparison
+    result : Comparison
         What `hrsafety.navigation.compare` returned.
     title : str or None
         Title of the figure.
@@ -61,8 +60,8 @@ def comparison_standings(result: Comparison | CrowdComparison, *, title: str | N
     >>> [tick.get_text() for tick in figure.axes[0].get_yticklabels()]
     ['field', 'Masoud']
     """
-    if not isinstance(result, Comparison | CrowdComparison):
-        raise InvalidParameterError("result", "be a Comparison or a CrowdComparison", Shown(type(result).__name__))
+    if not isinstance(result, Comparison):
+        raise InvalidParameterError("result", "be a Comparison", Shown(type(result).__name__))
     standings = result.standings()
     figure = style.new_figure(1.35 + ROW_HEIGHT * len(standings) + (0.4 if title is not None else 0.0), title=title)
     left, right = figure.subplots(1, 2, sharey=True)

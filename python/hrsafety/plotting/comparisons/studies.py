@@ -31,6 +31,7 @@ OUTCOME_COLORS = {
     "arrived": "#0072B2",
     "timed out": "#9CC9E3",
     "stopped": "#BDBDBD",
+    "diverged": "#666666",
     "contact, robot standing": "#E69F00",
     "contact, robot moving away": "#E0A0A0",
     "contact, robot moving": "#C00000",

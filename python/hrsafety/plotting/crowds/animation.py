@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
+    from hrsafety.navigation.trajectory import Trajectory
 
 __all__ = ["animate_crowd"]
 
@@ -27,7 +27,7 @@ DPI = 85
 
 @notes.picture
 def animate_crowd(
-    run: CrowdTrajectories,
+    run: Trajectory,
     path: str | os.PathLike[str],
     *,
     frames_per_second: float = 20,
@@ -43,7 +43,7 @@ def animate_crowd(
 
     Parameters
     ----------
-    run : CrowdTrajectories
+    run : Trajectory
         What happened.
     path : str or path-like
         Where to write; ``.gif`` needs Pillow, ``.mp4`` the program ffmpeg.
@@ -77,7 +77,7 @@ def animate_crowd(
     --------
     >>> import pathlib, tempfile
     >>> from hrsafety import navigation as nav, plotting, scenarios
-    >>> run = nav.crowd.simulate_crowd(scenarios.bottleneck(10, time_limit=4))
+    >>> run = nav.simulate(scenarios.bottleneck(10, time_limit=4))
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = plotting.crowds.animate_crowd(run, pathlib.Path(folder) / "door.gif", frames_per_second=4)
     ...     file.name
@@ -96,16 +96,18 @@ def animate_crowd(
 class _Stage:
     """What moves in the picture of a world: its artists, and how they show one row."""
 
-    def __init__(self, axes: Axes, run: CrowdTrajectories, place: world_scenes.Floor, kinds: Sequence[str]) -> None:
+    def __init__(self, axes: Axes, run: Trajectory, place: world_scenes.Floor, kinds: Sequence[str]) -> None:
         self.run, self.place = run, place
         colors = world_scenes.color_of(kinds)
         self.people = [
-            _circle(axes, radius, colors[kind], 3.2) for kind, radius in zip(kinds, run.radius.tolist(), strict=True)
+            _circle(axes, radius, colors[kind], 3.2)
+            for kind, radius in zip(kinds, run.obstacle_radius.tolist(), strict=True)
         ]
-        looks = [str(look["color"]) for look in world_scenes.robot_looks(len(run.world.robots))]
+        looks = [str(look["color"]) for look in world_scenes.robot_looks(len(run.scenario.robots))]
         self.trails = [axes.plot([], [], color=color, linewidth=2.0, zorder=4.0, animated=True)[0] for color in looks]
         self.robots = [
-            _circle(axes, robot.robot.radius, color, 5.0) for robot, color in zip(run.world.robots, looks, strict=True)
+            _circle(axes, robot.body.radius, color, 5.0)
+            for robot, color in zip(run.scenario.robots, looks, strict=True)
         ]
         self.touched = world_scenes.contacts(run)
         self.contacts = axes.plot([], [], zorder=7.0, animated=True, **floor.CONTACT)[0]
@@ -120,7 +122,7 @@ class _Stage:
     def show(self, row: int) -> None:
         """Put everything where it is at one row of the run."""
         run = self.run
-        for body, where in zip(self.people, self.place.wrapped(run.position[row]), strict=True):
+        for body, where in zip(self.people, self.place.wrapped(run.obstacle_position[row]), strict=True):
             present = bool(np.isfinite(where).all())
             body.set_visible(present)
             if present:
@@ -142,7 +144,7 @@ def _circle(axes: Axes, radius: float, color: str, zorder: float) -> Any:
 
 
 def _background(
-    run: CrowdTrajectories, place: world_scenes.Floor, kinds: Sequence[str], *, title: str | None
+    run: Trajectory, place: world_scenes.Floor, kinds: Sequence[str], *, title: str | None
 ) -> tuple[Figure, Axes]:
     """Return a figure with everything that does not move."""
     handles = _handles(run, kinds)
@@ -150,28 +152,26 @@ def _background(
     figure = style.new_figure(height, title=title, dpi=DPI, compressed=True)
     axes = figure.subplots()
     style.frame_scene(axes, place.limits)
-    world_scenes.add_walls(axes, run.world, place)
-    world_scenes.add_goals(axes, run.world)
+    world_scenes.add_walls(axes, run.scenario, place)
+    world_scenes.add_goals(axes, run.scenario)
     style.legend_below(figure, handles, columns=3)
     notes.add_warnings(figure, run)
     return figure, axes
 
 
-def _handles(run: CrowdTrajectories, kinds: Sequence[str]) -> list[Artist]:
+def _handles(run: Trajectory, kinds: Sequence[str]) -> list[Artist]:
     """Return the legend."""
     handles: list[Artist] = []
-    if run.world.robots:
+    if run.scenario.robots:
         look: style.Properties = {"marker": "o", "markersize": 9, "linestyle": "-", "linewidth": 2.0}
         handles.append(floor.handle("robot, path so far", color=style.RUN_COLORS[0], **look))
-    handles += world_scenes.people_handles(kinds) + world_scenes.scene_handles(run.world)
+    handles += world_scenes.people_handles(kinds) + world_scenes.scene_handles(run.scenario)
     if world_scenes.contacts(run):
         handles.append(floor.handle("first contact", **floor.CONTACT))
     return handles
 
 
-def _frames(
-    run: CrowdTrajectories, rows: Sequence[int], kinds: Sequence[str], *, title: str | None
-) -> Iterator[movies.Frame]:
+def _frames(run: Trajectory, rows: Sequence[int], kinds: Sequence[str], *, title: str | None) -> Iterator[movies.Frame]:
     """Return the pictures: only what moves is drawn again."""
     place = world_scenes.Floor.of(run)
     figure, axes = _background(run, place, kinds, title=title)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
+    from hrsafety.navigation.trajectory import Trajectory
 
 __all__ = ["crowd_paths"]
 
@@ -27,7 +27,7 @@ SO_FAR, TO_COME = "-", (0, (1.0, 1.6))
 
 @notes.picture
 def crowd_paths(
-    run: CrowdTrajectories,
+    run: Trajectory,
     *,
     at: float | None = None,
     color_by: str = "model",
@@ -40,7 +40,7 @@ def crowd_paths(
 
     Parameters
     ----------
-    run : CrowdTrajectories
+    run : Trajectory
         What happened.
     at : float or None
         The instant in s; ``None``: when a robot was nearest to a person, half of the time without robots.
@@ -67,13 +67,13 @@ def crowd_paths(
     --------
     >>> from hrsafety import navigation as nav, plotting, scenarios
     >>> law = nav.OptimalReciprocalCollisionAvoidance()
-    >>> run = nav.crowd.simulate_crowd(scenarios.circle_crossing(3, law=law))
+    >>> run = nav.simulate(scenarios.circle_crossing(3, law=law))
     >>> figure = plotting.crowds.crowd_paths(run, at=5.0)
     >>> figure.get_suptitle()
     't = 5.00 s'
     """
     run = world_scenes.checked_crowd(run)
-    names = inputs.checked_labels(labels, len(run.world.robots), stem="robot")
+    names = inputs.checked_labels(labels, len(run.scenario.robots), stem="robot")
     row = _row(run, at)
     place = world_scenes.Floor.of(run)
     kinds = world_scenes.kinds_of_people(run, color_by)
@@ -81,16 +81,16 @@ def crowd_paths(
     handles = _handles(run, names, kinds, touched=bool(touched))
     words = f"t = {run.time[row]:.2f} s" if title is None else f"{title}, t = {run.time[row]:.2f} s"
     figure, (axes,) = floor.panels(place.limits, entries=len(handles), legend_columns=3, title=words)
-    world_scenes.add_walls(axes, run.world, place)
+    world_scenes.add_walls(axes, run.scenario, place)
     _draw_people(axes, run, row, place, kinds)
     _draw_robots(axes, run, row, place)
-    world_scenes.add_goals(axes, run.world)
+    world_scenes.add_goals(axes, run.scenario)
     for instant, robot in touched:
         axes.plot(*run.robot_position[instant, robot], zorder=7.0, **floor.CONTACT)
     return floor.finish(figure, handles, columns=3, runs=[run])
 
 
-def _row(run: CrowdTrajectories, at: float | None) -> int:
+def _row(run: Trajectory, at: float | None) -> int:
     """Return the row of the instant that is shown."""
     end = float(run.time[-1])
     if at is not None:
@@ -98,37 +98,42 @@ def _row(run: CrowdTrajectories, at: float | None) -> int:
         if not 0.0 <= instant <= end:
             raise InvalidParameterError("at", f"be from 0 to the end of the run at {end:g} s", at)
         return int(np.abs(run.time - instant).argmin())
-    if not run.world.robots or not run.position.shape[1]:
+    if not run.scenario.robots or not run.obstacle_position.shape[1]:
         return len(run.time) // 2
-    gap = [world_scenes.gaps(run, robot).min(axis=1) for robot in range(len(run.world.robots))]
+    gap = [world_scenes.gaps(run, robot).min(axis=1) for robot in range(len(run.scenario.robots))]
     return int(np.min(gap, axis=0).argmin())
 
 
-def _draw_people(axes: Axes, run: CrowdTrajectories, row: int, place: world_scenes.Floor, kinds: Sequence[str]) -> None:
+def _draw_people(axes: Axes, run: Trajectory, row: int, place: world_scenes.Floor, kinds: Sequence[str]) -> None:
     """Draw people and their paths; of many people fainter ones."""
     colors = world_scenes.color_of(kinds)
     strength = 0.9 if len(kinds) <= FEW else 0.35
     for person, kind in enumerate(kinds):
         color = colors[kind]
-        for part, dashes in ((run.position[: row + 1, person], SO_FAR), (run.position[row:, person], TO_COME)):
+        for part, dashes in (
+            (run.obstacle_position[: row + 1, person], SO_FAR),
+            (run.obstacle_position[row:, person], TO_COME),
+        ):
             look: style.Properties = {"color": color, "linewidth": 1.1, "alpha": strength, "linestyle": dashes}
             floor.line(axes, place.path(part), zorder=2.5, **look)
         body: style.Properties = {"facecolor": color, "edgecolor": "white", "linewidth": 0.8, "zorder": 3.2}
-        world_scenes.draw_body(axes, place, run.position[row, person], float(run.radius[person]), alpha=0.85, **body)
+        world_scenes.draw_body(
+            axes, place, run.obstacle_position[row, person], float(run.obstacle_radius[person]), alpha=0.85, **body
+        )
 
 
-def _draw_robots(axes: Axes, run: CrowdTrajectories, row: int, place: world_scenes.Floor) -> None:
+def _draw_robots(axes: Axes, run: Trajectory, row: int, place: world_scenes.Floor) -> None:
     """Draw robots and their paths, which do not begin again where the floor repeats itself: goals do not either."""
-    for index, look in enumerate(world_scenes.robot_looks(len(run.world.robots))):
-        robot = run.world.robots[index]
+    for index, look in enumerate(world_scenes.robot_looks(len(run.scenario.robots))):
+        robot = run.scenario.robots[index]
         path, color = run.robot_position[:, index], str(look["color"])
         floor.line(axes, path[: row + 1], zorder=5.0, color=color, linewidth=2.0)
         floor.line(axes, path[row:], zorder=4.9, color=color, linewidth=1.6, linestyle=TO_COME)
         body: style.Properties = {"facecolor": color, "edgecolor": "white", "linewidth": 0.8, "zorder": 4.5}
-        world_scenes.draw_body(axes, place, path[row], robot.robot.radius, **body)
+        world_scenes.draw_body(axes, place, path[row], robot.body.radius, **body)
 
 
-def _handles(run: CrowdTrajectories, names: Sequence[str], kinds: Sequence[str], *, touched: bool) -> list[Artist]:
+def _handles(run: Trajectory, names: Sequence[str], kinds: Sequence[str], *, touched: bool) -> list[Artist]:
     """Return the legend."""
     robots = len(names)
     looks = world_scenes.robot_looks(robots)
@@ -141,7 +146,7 @@ def _handles(run: CrowdTrajectories, names: Sequence[str], kinds: Sequence[str],
     if robots or kinds:
         handles.append(floor.handle("path so far", linestyle=SO_FAR, linewidth=1.4))
         handles.append(floor.handle("path to come", linestyle=TO_COME, linewidth=1.4))
-    handles += world_scenes.scene_handles(run.world)
+    handles += world_scenes.scene_handles(run.scenario)
     if touched:
         handles.append(floor.handle("first contact", **floor.CONTACT))
     return handles

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
+    from hrsafety.navigation.trajectory import Trajectory
 
 __all__ = ["space_time"]
 
@@ -29,7 +29,7 @@ OTHER_WAY = "position along the direction (m)"
 
 @notes.picture
 def space_time(
-    run: CrowdTrajectories,
+    run: Trajectory,
     *,
     along: Sequence[float] = (1.0, 0.0),
     origin: Sequence[float] = (0.0, 0.0),
@@ -40,7 +40,7 @@ def space_time(
 
     Parameters
     ----------
-    run : CrowdTrajectories
+    run : Trajectory
         What happened.
     along : sequence of float
         The direction; its length does not matter. Along an axis in which the world repeats itself the
@@ -67,12 +67,12 @@ def space_time(
     Examples
     --------
     >>> from hrsafety import navigation as nav, plotting, scenarios
-    >>> run = nav.crowd.simulate_crowd(scenarios.corridor(12, width=0.6, two_way=False, time_limit=10))
+    >>> run = nav.simulate(scenarios.corridor(12, width=0.6, two_way=False, time_limit=10))
     >>> [axes.get_ylabel() for axes in plotting.crowds.space_time(run).axes]
     ['x (m)', 'speed (m/s)']
     """
     run = world_scenes.checked_crowd(run)
-    names = inputs.checked_labels(labels, len(run.world.robots), stem="robot")
+    names = inputs.checked_labels(labels, len(run.scenario.robots), stem="robot")
     given = np.array([shown_number("along", each) for each in pair("along", along)])
     length = float(np.hypot(*given))
     if length == 0.0:
@@ -83,8 +83,8 @@ def space_time(
     figure = style.new_figure(HEIGHT + 0.3 * bool(names), title=title)
     axes = figure.subplots()
     rows = np.unique(np.linspace(0, len(run.time) - 1, MOST_ROWS).astype(int))
-    speed = np.hypot(run.velocity[..., 0], run.velocity[..., 1])
-    lines = _draw_people(axes, run.time[rows], (run.position[rows] - start) @ direction, speed[rows], period)
+    speed = np.hypot(run.obstacle_velocity[..., 0], run.obstacle_velocity[..., 1])
+    lines = _draw_people(axes, run.time[rows], (run.obstacle_position[rows] - start) @ direction, speed[rows], period)
     if lines is not None:
         figure.colorbar(lines, ax=axes, label="speed (m/s)", pad=0.01)
     handles = []
@@ -99,7 +99,7 @@ def space_time(
             handles.append(floor.handle(one, linewidth=2.4, **look))
     axes.set_xlabel("time (s)")
     axes.set_ylabel(OTHER_WAY if start.any() else AXES.get(tuple(direction.tolist()), OTHER_WAY))
-    axes.set_xlim(float(run.time[0]), max(float(run.time[-1]), float(run.time[0]) + run.world.step))
+    axes.set_xlim(float(run.time[0]), max(float(run.time[-1]), float(run.time[0]) + run.scenario.step))
     if period is not None:
         axes.set_ylim(0.0, period)
     if handles:
@@ -107,9 +107,9 @@ def space_time(
     return figure
 
 
-def _period(run: CrowdTrajectories, direction: inputs.Array) -> float | None:
+def _period(run: Trajectory, direction: inputs.Array) -> float | None:
     """Return the length in m after which positions along a direction repeat themselves."""
-    for size, part in zip(run.world.period, direction, strict=True):
+    for size, part in zip(run.scenario.period, direction, strict=True):
         if size > 0.0 and abs(part) == 1.0:
             return float(size)
     return None

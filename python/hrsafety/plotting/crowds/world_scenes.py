@@ -10,8 +10,9 @@ import numpy as np
 
 from hrsafety._arguments import Pair, word
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
+from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
+from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plotting import floor, inputs, shapes, style
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from hrsafety.navigation.crowd.agents import Person, Source
-    from hrsafety.navigation.crowd.world import WallShape, World
+    from hrsafety.navigation.crowd.world import WallShape
 
 __all__ = [
     "Floor",
@@ -50,26 +51,27 @@ NEAR = 3.0  # m around everybody's places; what stands beyond is not asked to be
 TOUCH = 1e-6  # m by which surfaces in contact overlap, as environments have it
 
 
-def checked_crowd(value: object) -> CrowdTrajectories:
-    """Return ``value`` if it is what happened in a world."""
-    if not isinstance(value, CrowdTrajectories):
-        remedy = "`nav.crowd.simulate_crowd` returns one"
-        raise InvalidParameterError("run", "be a CrowdTrajectories", Shown(type(value).__name__), remedy)
+def checked_crowd(value: object) -> Trajectory:
+    """Return ``value`` if it is the run of a world."""
+    if not isinstance(value, Trajectory) or not isinstance(value.scenario, World):
+        remedy = "`nav.simulate` returns one"
+        kind = "the run of a scenario" if isinstance(value, Trajectory) else type(value).__name__
+        raise InvalidParameterError("run", "be the Trajectory of a World", Shown(kind), remedy)
     return value
 
 
 # ---- who has which color --------------------------------------------------------------------
 
 
-def kinds_of_people(run: CrowdTrajectories, color_by: str) -> list[str]:
+def kinds_of_people(run: Trajectory, color_by: str) -> list[str]:
     """Return for each person of a run the words of the legend: model or group."""
     grouped = word("color_by", color_by, COLORINGS) == "group"
-    world = run.world
+    world = run.scenario
     kinds = [_group(person) if grouped else _model(person) for person in world.people]
     later = "no group" if grouped else "person from a source"
     if not grouped and len({_model(source) for source in world.sources}) == 1:
         later = _model(world.sources[0])  # which source a person came from is not recorded
-    return kinds + [later] * (run.position.shape[1] - len(kinds))
+    return kinds + [later] * (run.obstacle_position.shape[1] - len(kinds))
 
 
 def _group(person: Person) -> str:
@@ -125,11 +127,11 @@ class Floor:
     period: Array
 
     @classmethod
-    def of(cls, run: CrowdTrajectories) -> Floor:
+    def of(cls, run: Trajectory) -> Floor:
         """Return the floor of a run: everywhere that anybody was, and the walls near it."""
-        cell = cls.cell(run.world)
-        places = [cell.wrapped(run.position).reshape(-1, 2), run.robot_position.reshape(-1, 2)]
-        return cell.showing(run.world, np.concatenate(places))
+        cell = cls.cell(run.scenario)
+        places = [cell.wrapped(run.obstacle_position).reshape(-1, 2), run.robot_position.reshape(-1, 2)]
+        return cell.showing(run.scenario, np.concatenate(places))
 
     @classmethod
     def cell(cls, world: World) -> Floor:
@@ -247,21 +249,21 @@ def scene_handles(world: World) -> list[Artist]:
     return (shapes.start_and_goal_handles() if world.robots else []) + wall_handles(world)
 
 
-def gaps(run: CrowdTrajectories, robot: int) -> Array:
+def gaps(run: Trajectory, robot: int) -> Array:
     """Return the distance of the surfaces of a robot and of each person over time, in m; infinite while absent."""
-    period = np.array([size if size > 0.0 else np.inf for size in run.world.period])
-    away = run.position - run.robot_position[:, robot, np.newaxis]
+    period = np.array([size if size > 0.0 else np.inf for size in run.scenario.period])
+    away = run.obstacle_position - run.robot_position[:, robot, np.newaxis]
     with np.errstate(invalid="ignore"):
         away = away - np.where(np.isfinite(period), period * np.round(away / period), 0.0)
-    gap: Array = np.hypot(away[..., 0], away[..., 1]) - run.world.robots[robot].robot.radius - run.radius
+    gap: Array = np.hypot(away[..., 0], away[..., 1]) - run.scenario.robots[robot].body.radius - run.obstacle_radius
     gap[np.isnan(gap)] = np.inf
     return gap
 
 
-def contacts(run: CrowdTrajectories) -> list[tuple[int, int]]:
+def contacts(run: Trajectory) -> list[tuple[int, int]]:
     """Return row and robot of the first contact of each robot with each person, in order of time."""
     found = []
-    for robot in range(len(run.world.robots)):
+    for robot in range(len(run.scenario.robots)):
         touching = gaps(run, robot) < -TOUCH
         found += [(int(touching[:, person].argmax()), robot) for person in np.flatnonzero(touching.any(axis=0))]
     return sorted(found)
