@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from hypothesis import settings
+from hypothesis.internal.conjecture import providers
 
 # Pictures are drawn without a display, here and in every process that a test starts.
 os.environ["MPLBACKEND"] = "Agg"
@@ -21,6 +22,9 @@ atexit.register(shutil.rmtree, _MATPLOTLIB, ignore_errors=True)
 # The same examples on every machine and in every run; a slow machine is not a failure.
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.load_profile("repeatable")
+# Constants of whatever modules are loaded by then would be tried, too: examples would depend on the tests before.
+if hasattr(providers, "_get_local_constants"):
+    providers._get_local_constants = lambda: providers._local_constants
 
 TESTS = Path(__file__).resolve().parent
 REPOSITORY = TESTS.parent

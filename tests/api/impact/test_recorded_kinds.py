@@ -125,6 +125,8 @@ def test_a_right_record_has_no_doubt(
 ) -> None:
     # A head that gains 10 m/s was hit by a car.
     assume(peak * duration < 1.4)
+    # Coarser digits cannot tell a round top from a flat one, and are told.
+    assume(10.0**-digits <= 0.01 * peak)
     time = grid(duration, rate)
     signal = pulse(shape, time, peak, duration) + np.random.default_rng(seed).normal(0.0, noise * peak, len(time))
     found = judged(time, signal.round(digits))

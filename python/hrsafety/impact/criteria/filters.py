@@ -145,8 +145,7 @@ def filtered_pulse(
 
 
 def _filtered(instants: Array, samples: Array, channel_class: int) -> Array:
-    """Return a signal through the filter of a channel class."""
-    corner = channel_corner(channel_class)
+    """Return a signal through the filter of a channel class, which its samples allow."""
     if len(instants) < 4:
         raise InvalidParameterError("time", "have at least 4 samples", len(instants))
     for name, values in (("time", instants), ("signal", samples)):
@@ -162,6 +161,12 @@ def _filtered(instants: Array, samples: Array, channel_class: int) -> Array:
             Shown(f"{rate:g} Hz"),
             f"class {usable[-1]} can be used at this rate" if usable else "no class can be used at this rate",
         )
+    return through_class(samples, rate, channel_class)
+
+
+def through_class(samples: Array, rate: float, channel_class: int) -> Array:
+    """Return a signal of even samples, so many per second, through the filter of a channel class."""
+    corner = channel_corner(channel_class)
     scipy_signal = _scipy_signal()
     # The bilinear transform with the frequency bent back, as the tangent of the standard's formula does.
     numerator, denominator = scipy_signal.butter(2, corner / (0.5 * rate))

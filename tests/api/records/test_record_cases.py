@@ -1,0 +1,89 @@
+"""Loads of measured signals against numbers that were computed two ways."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hrsafety import records
+
+_SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[4] / "shared"))
+CASES: dict[str, Any] = json.loads((_SHARED / "spec" / "program_cases.json").read_text(encoding="utf-8"))
+
+
+def signal(about: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the times and values of a described signal."""
+    start, step = about.get("start", 0.0), about["step"]
+    time = start + step * np.arange(round((about["duration"] - start) / step) + 1)
+    values = np.zeros_like(time)
+    for shape, begin, end, size in about["pulses"]:
+        share = (time - begin) / (end - begin)
+        inside = (share >= -1e-9) & (share <= 1.0 + 1e-9)
+        form = {
+            "half_sine": np.sin(np.pi * share),
+            "square": np.ones_like(share),
+            "triangle": 1.0 - np.abs(2.0 * share - 1.0),
+            "ramp": share,
+        }[shape]
+        values += np.where(inside, size * form, 0.0)
+    for size, frequency, phase in about.get("ripple", []):
+        values += size * np.sin(2.0 * np.pi * frequency * time + phase)
+    if "clip" in about:
+        values = np.clip(values, -about["clip"], about["clip"])
+    return time, about.get("sign", 1) * values + about.get("offset", 0.0)
+
+
+@pytest.mark.parametrize("case", CASES["acceleration"], ids=lambda case: case["name"])
+def test_accelerations(case: dict[str, Any]) -> None:
+    time, values = signal(case["signal"])
+    if "direction" in case:
+        values = np.outer(values, np.array(case["direction"]) / 3.0) + np.array(case["axis_offsets"])
+    found = records.acceleration(time, values, unit=case["unit"], filter_class=case.get("filter_class"))
+    assert sorted(each.code for each in found.warnings) == case["codes"]
+    close = {"rel": case["tolerance"], "abs": 1e-9}
+    for name in ("peak_g", "peak_time", "start", "end", "hic15", "hic36", "clip_3ms_g", "velocity_change"):
+        expected = case[name]
+        assert getattr(found, name) == (None if expected is None else pytest.approx(expected, **close)), name
+    assert found.offsets_g.tolist() == pytest.approx(case["offsets"], **close)
+    assert [list(hit) for hit in found.hits] == [pytest.approx(hit, **close) for hit in case["hits"]]
+
+
+@pytest.mark.parametrize("case", CASES["force"], ids=lambda case: case["name"])
+def test_forces(case: dict[str, Any]) -> None:
+    found = records.force(*signal(case["signal"]), unit=case["unit"])
+    assert sorted(each.code for each in found.warnings) == case["codes"]
+    close = {"rel": case["tolerance"], "abs": 1e-9}
+    assert (found.peak, found.transient, found.offset) == pytest.approx(
+        (case["peak"], case["transient"], case["offset"]), **close
+    )
+    expected = case["quasi_static"]
+    assert found.quasi_static == (None if expected is None else pytest.approx(expected, **close))
+    assert len(found.contacts) == len(case["contacts"])
+    for contact, told in zip(found.contacts, case["contacts"], strict=True):
+        assert contact.ends == told["ends"]
+        for name in ("start", "end", "transient", "quasi_static"):
+            value = told[name]
+            assert getattr(contact, name) == (None if value is None else pytest.approx(value, **close)), name
+
+
+@pytest.mark.parametrize("case", CASES["patch"])
+def test_pressures(case: dict[str, Any]) -> None:
+    about = case["gaussian"]
+    rows, columns = np.mgrid[0 : case["rows"], 0 : case["columns"]]
+    away = (rows - about["center"][0]) ** 2 + (columns - about["center"][1]) ** 2
+    foil = about["peak"] * np.exp(-away / (2.0 * about["sigma_cells"] ** 2))
+    found = records.pressure(foil, pitch=case["pitch"])
+    assert (found.cell, found.patch) == pytest.approx((case["cell"], case["patch"]), rel=1e-9)
+
+
+@pytest.mark.parametrize("case", CASES["acceptance"])
+def test_repetitions(case: dict[str, Any]) -> None:
+    found = records.repetitions(case["values"], case["limit"], device_uncertainty=case["device_uncertainty"])
+    expected = [case["mean"], case["largest"], case["expanded_uncertainty"]]
+    assert [found.mean, found.largest, found.expanded_uncertainty] == pytest.approx(expected, rel=1e-9)
+    assert ":".join(filter(None, (found.verdict, found.reason))) == case["verdict"]
