@@ -9,6 +9,7 @@ from hrsafety.scenarios.recorded_people import Crossing, crossings
 from hrsafety.scenarios.recorded_worlds import with_recording
 from hrsafety.scenarios.streams import bottleneck, corridor, cross_torus, crossing
 from hrsafety.scenarios.traffic import random_traffic, random_traffic_batch
+from hrsafety.scenarios.world_files import load_world
 
 __all__ = [
     "CONFIGURATIONS",
@@ -23,6 +24,7 @@ __all__ = [
     "crossing",
     "crossings",
     "load",
+    "load_world",
     "random_crowd",
     "random_crowd_batch",
     "random_traffic",

@@ -20,7 +20,7 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.obstacles.moving_rectangle import Mobile
 from hrsafety.scenarios.laws import law_of, safe_of
 
-__all__ = ["ScenarioFile", "load"]
+__all__ = ["TOP", "ScenarioFile", "load", "read_scenario"]
 
 
 @displayed
@@ -39,7 +39,7 @@ class ScenarioFile(NamedTuple):
     law: nav.Law
 
 
-_TOP: Keys = MappingProxyType(
+TOP: Keys = MappingProxyType(
     {
         "start": kind.pair,
         "goal": kind.pair,
@@ -106,7 +106,7 @@ _BOX: dict[str, kind.Kind] = {
 _RECTANGLE: Keys = MappingProxyType({**_BOX, "center": kind.pair})
 
 
-@kind.top_level(_TOP)
+@kind.top_level(TOP)
 def load(path: str | PathLike[str]) -> ScenarioFile:
     r"""Read a scenario file.
 
@@ -158,7 +158,25 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
     if not isinstance(path, (str, PathLike)):
         raise InvalidParameterError("path", "be a path", path)
     place = Path(path)
-    fields = checked("", parsed(place), _TOP, required=("start", "goal"))
+    return read_scenario(parsed(place), place.parent)
+
+
+def read_scenario(described: Mapping[str, Any], folder: Path) -> ScenarioFile:
+    """Return what the tables of a scenario file describe.
+
+    Parameters
+    ----------
+    described : mapping
+        The tables as read.
+    folder : Path
+        Where recordings lie that it names.
+
+    Returns
+    -------
+    ScenarioFile
+        Scenario and law.
+    """
+    fields = checked("", described, TOP, required=("start", "goal"))
     law = law_of(fields.pop("law", {"type": "virtual_force_field"}))
     if "safe" in fields:
         law = safe_of(law, fields.pop("safe"))
@@ -168,9 +186,9 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
         given = checked("measurement", fields["measurement"], _MEASUREMENT)
         with located("measurement"):
             fields["measurement"] = nav.Measurement(**given)
-    described = fields.pop("obstacles", [])
-    recorded = [isinstance(table, dict) and "path" in table for table in described]
-    obstacles = [_obstacle(f"obstacles[{index}]", table, place.parent) for index, table in enumerate(described)]
+    listed = fields.pop("obstacles", [])
+    recorded = [isinstance(table, dict) and "path" in table for table in listed]
+    obstacles = [_obstacle(f"obstacles[{index}]", table, folder) for index, table in enumerate(listed)]
     doubts = [
         doubt
         for index, (each, read) in enumerate(zip(obstacles, recorded, strict=True))

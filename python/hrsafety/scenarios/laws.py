@@ -85,8 +85,9 @@ def safe_of(law: nav.Law, table: dict[str, Any]) -> nav.laws.SafeNavigation:
     given = checked("safe", table, _SAFE)
     for name, part in _PARTS.items():
         if name in given:
-            numbers = MappingProxyType({each.name: kind.number for each in fields(part) if each.init})
-            values = checked(f"safe.{name}", given[name], numbers)
+            pairs = [each.name for each in fields(part) if isinstance(each.default, tuple)]
+            keys = {each.name: kind.pair if each.name in pairs else kind.number for each in fields(part) if each.init}
+            values = checked(f"safe.{name}", given[name], keys)
             with located(f"safe.{name}"):
                 given[name] = part(**values)
     with located("safe"):
