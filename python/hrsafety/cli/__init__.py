@@ -147,6 +147,7 @@ _COMMANDS: dict[str, str | Callable[[argparse.Namespace], None]] = {
     "arm": _arm,
     "contact": "cell.command:report_cell",
     "benchmark": "benchmark:run_suite",
+    "ros": "ros:serve_world",
     "init": "init:write_starter",
     "validate": "validate:validate_files",
     "info": "info:print_info",

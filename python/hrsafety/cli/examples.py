@@ -11,6 +11,7 @@ __all__ = [
     "INIT",
     "OPTIMIZE",
     "REPRODUCE",
+    "ROS",
     "SIMULATE",
     "SWEEP",
     "VALIDATE",
@@ -68,6 +69,15 @@ BENCHMARK = """examples:
 
 Episodes are kept in the folder as they come; the same command resumes there. Shares stand with their
 95 % Wilson intervals. A contact is at fault where the robot moves toward whom it touches.
+"""
+
+ROS = """examples:
+  hrsafety ros world.toml --wait --out run
+  hrsafety ros world.toml --lockstep --out run
+  hrsafety ros world.toml --lockstep --drive --complete
+
+It publishes /clock, /tf, /odom, /scan, /map, /people and /hrsafety/verdict, and moves the robot by cmd_vel. Ctrl-C
+ends the run and scores it. rclpy comes with ROS 2: source its setup file first.
 """
 
 INIT = """examples:

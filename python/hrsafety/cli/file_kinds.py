@@ -54,6 +54,10 @@ def _scenario(path: str) -> Warnings:
     return tuple(dict.fromkeys((*scenario.warnings, *run_warnings.of_run(scenario, law))))
 
 
+def _world(path: str) -> Warnings:
+    return scenarios.load_world(path).warnings
+
+
 def _foam(path: str) -> Warnings:
     foam_file.load(path)
     return ()
@@ -81,6 +85,7 @@ KINDS = {
     "sweep": FileKind("sweep", "sweep", ("axes", "design"), _sweep),
     "foam": FileKind("foam design", "foam", ("foams", "closing_speed"), _foam, "plausibility of the foams"),
     "gains": FileKind("gain study", "optimize", ("scenarios", "search"), _gains, "ranges of the search"),
+    "world": FileKind("world", "ros", ("people", "sources", "walls"), _world),
     "scenario": FileKind("scenario", "simulate", ("start", "goal", "obstacles"), _scenario),
 }
 """Kinds by the word that ``hrsafety init`` takes, in the order in which they are recognized."""

@@ -41,6 +41,7 @@ STARTERS = {
     "gains": "gain_study.toml",
     "sweep": "impact_sweep.toml",
     "contact": "cell.toml",
+    "world": "people_in_a_hall.toml",
 }
 """Files to start from, by the word that ``hrsafety init`` takes."""
 
@@ -122,6 +123,7 @@ def parser() -> argparse.ArgumentParser:
     _add_arm(commands)
     _add_contact(commands)
     _add_benchmark(commands)
+    _add_ros(commands)
     _add_init(commands)
     _add_validate(commands)
     _add_command(
@@ -374,9 +376,56 @@ def _add_benchmark(commands: Any) -> None:
     parser.add_argument("--threads", type=_count, metavar="N", help="number of threads [all cores]")
 
 
+def _add_ros(commands: Any) -> None:
+    parser = _add_command(
+        commands,
+        "ros",
+        summary="put people around a robot that is driven over ROS 2, and score it",
+        example=examples.ROS,
+    )
+    parser.add_argument("world", metavar="WORLD.toml", help="scenario file, which may have people who react")
+    parser.add_argument("--drive", action="store_true", help="be the robot's controller, under the law of the file")
+    parser.add_argument(
+        "--complete", action="store_true", help="with --drive: whoever is no longer among the people has left"
+    )
+    parser.add_argument("--out", metavar="DIR", help="folder for a page and pictures")
+    _add_shared(parser)
+    parser.add_argument("--fail-on", metavar="WORDS", help="exit with code 3 after these, as of hrsafety simulate")
+    parser.add_argument("--seed", type=_count, metavar="N", help="seed of the people [of the file]")
+    time = parser.add_argument_group("time")
+    time.add_argument("--lockstep", action="store_true", help="every step waits for its velocity command")
+    time.add_argument(
+        "--period",
+        type=_number,
+        default=0.05,
+        metavar="S",
+        help="step of lock-step in s, that of the controller [%(default)s]",
+    )
+    time.add_argument("--speed", type=_number, default=1.0, metavar="X", help="times real time, else [%(default)s]")
+    time.add_argument(
+        "--delay", type=_number, default=0.0, metavar="S", help="time until a command is executed, in s [%(default)s]"
+    )
+    time.add_argument("--wait", action="store_true", help="people stand until the first velocity command comes")
+    time.add_argument("--stay", action="store_true", help="go on to the time limit when the robot rests at its goal")
+    topics = parser.add_argument_group("topics")
+    topics.add_argument("--topic", default="cmd_vel", metavar="NAME", help="of velocity commands [%(default)s]")
+    topics.add_argument(
+        "--commands",
+        choices=("auto", "twist", "stamped"),
+        default="auto",
+        help="Twist, TwistStamped, or as their publisher sends them [%(default)s]",
+    )
+    topics.add_argument("--beams", type=_count, default=720, metavar="N", help="of the lidar [%(default)s]")
+    topics.add_argument("--range", type=_number, default=12.0, metavar="M", help="of the lidar in m [%(default)s]")
+    topics.add_argument(
+        "--field-of-view", type=_number, default=360.0, metavar="DEG", help="of the lidar in degrees [%(default)s]"
+    )
+    topics.add_argument("--resolution", type=_number, default=0.05, metavar="M", help="of the map in m [%(default)s]")
+
+
 def _starter(word: str) -> str:
     """Return the kind of file that a command reads, for those who name the command."""
-    return {"simulate": "scenario", "optimize": "gains"}.get(word, word)
+    return {"simulate": "scenario", "optimize": "gains", "ros": "world"}.get(word, word)
 
 
 def _add_init(commands: Any) -> None:

@@ -260,9 +260,10 @@ def test_importing_the_package_loads_no_optional_dependency() -> None:
         "shtab",
         "gymnasium",
         "pettingzoo",
+        "rclpy",
     }
     parts = ("navigation", "impact", "reactive", "scenarios", "datasets", "plotting", "sweep", "cli")
-    parts += ("arms", "contact", "standards", "benchmarks", "io", "zones")
+    parts += ("arms", "contact", "standards", "benchmarks", "io", "zones", "ros")
     modules = ", ".join(["hrsafety", *(f"hrsafety.{part}" for part in parts)])
     code = f"import sys, {modules}; print(*sorted({optional} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -1,0 +1,117 @@
+"""``hrsafety ros WORLD.toml``: people for a robot that is driven over ROS 2."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from hrsafety import navigation as nav
+from hrsafety import scenarios
+from hrsafety.cli import output, terminal, verdict
+from hrsafety.ros.bridge import Bridge, Settings
+from hrsafety.ros.rcl import connected
+from hrsafety.ros.record import Record
+from hrsafety.ros.score import report_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["serve_world"]
+
+
+def serve_world(options: argparse.Namespace) -> None:
+    """Publish a world until it ends or Ctrl-C is pressed, and report.
+
+    Parameters
+    ----------
+    options : argparse.Namespace
+        Of ``hrsafety ros``.
+    """
+    verdict.failures_of(options.fail_on)  # a wrong word is told before the run
+    output.check_json(options)
+    if options.out is not None:
+        output.planned_folder(options.out)
+        output.require_page("--out")
+    with output.located(options.world):
+        world = scenarios.load_world(options.world)
+    if options.seed is not None:
+        world = replace(world, seed=options.seed)
+    settings = settings_of(options)
+    if options.drive:
+        from hrsafety.ros.drive import Drive
+
+        with connected("hrsafety_drive") as bus:
+            Drive(
+                world,
+                bus,
+                lockstep=settings.lockstep,
+                commands=settings.commands,
+                topic=settings.topic,
+                complete=options.complete,
+            ).run()
+        return
+    with connected("hrsafety") as bus:
+        bridge = Bridge(world, bus, settings)
+        try:
+            bridge.run()
+        except KeyboardInterrupt:
+            if not len(bridge.record.legs[0]):
+                raise
+            print("stopped by Ctrl-C: the run so far is scored\n")
+    _report(bridge.record, settings, options)
+
+
+def settings_of(options: argparse.Namespace) -> Settings:
+    """Return how the bridge is to run."""
+    lidar = nav.Lidar(beams=options.beams, range_max=options.range, field_of_view=math.radians(options.field_of_view))
+    return Settings(
+        lockstep=options.lockstep,
+        period=options.period,
+        delay=options.delay,
+        speed=options.speed,
+        lidar=lidar,
+        resolution=options.resolution,
+        commands=options.commands,
+        topic=options.topic,
+        wait=options.wait,
+        stay=options.stay,
+    )
+
+
+def _report(record: Record, settings: Settings, options: argparse.Namespace) -> None:
+    """Print and write the score of a run, and leave with the code that the options ask for."""
+    report = report_of(record, settings, options.world)
+    print(terminal.told(report))
+    written = []
+    if options.out is not None:
+        written = output.write_report(report, output.folder(options.out), _draw(record), [])
+    output.say_written(written, report, options)
+    contacts = record.contacts
+    touched = (
+        contacts.moving
+        + contacts.standing
+        + contacts.apart
+        + sum(int(leg.metrics.wall_contacts) for leg in record.legs)
+    )
+    arrived = math.isfinite(record.legs[-1].trajectory.robot_arrival_time[0])
+    happened = {
+        "contact": bool(touched),
+        "moving_contact": bool(contacts.moving),
+        "timed_out": not arrived and not touched,
+        "stopped": False,
+        "not_arrived": not arrived,
+        "any": bool(touched) or not arrived,
+    }
+    counts = {word: int(happened[word]) for word in verdict.FAILURES}
+    verdict.end(report.said, counts, report.warnings, options, 1)
+
+
+def _draw(record: Record) -> Iterator[tuple[str, Figure, str]]:
+    from hrsafety import plotting
+
+    for index, leg in enumerate(record.legs):
+        name = "paths" if len(record.legs) == 1 else f"paths_{index}"
+        yield name, plotting.crowds.crowd_paths(leg.trajectory), f"Paths of robot and people, leg {index}."

@@ -1,0 +1,167 @@
+"""A controller as a node: it drives among people on a bus, and brakes where it is not told what it needs."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from api.ros.fake_bus import FakeBus, pose, told
+from api.ros.worlds import Wire, empty, hall, served
+from hrsafety import navigation as nav
+from hrsafety.errors import InvalidParameterError
+from hrsafety.ros import messages
+from hrsafety.ros.drive import Drive
+from hrsafety.ros.messages import Pose, Seen
+
+
+def sent(drive: FakeBus) -> list[tuple[float, float]]:
+    twists = [each["twist"] for each in drive.sent["cmd_vel"]]
+    return [(each["linear"]["x"], each["angular"]["z"]) for each in twists]
+
+
+@pytest.mark.parametrize("types", [("tf2_msgs/msg/TFMessage", "people_msgs/msg/People"), ()])
+def test_a_shielded_law_drives_among_people_who_react(types: tuple[str, ...]) -> None:
+    world, bus = hall(time_limit=40.0), FakeBus(types=types)
+    wire = Wire(world, bus, lockstep=True)
+    record, _ = served(world, wire, bus=bus)
+    assert record.counts["lockstep_timeout"] == 0
+    assert record.contacts == (0, 0, 0, 0, 0)
+    assert record.arrived
+    assert not wire.drive.counts
+
+
+def test_whoever_is_not_listed_has_left_where_lists_are_complete() -> None:
+    seen = Seen("a", 2.0, 0.0, 0.0, 0.0, 0.25)
+    for complete in (False, True):
+        bus = FakeBus()
+        drive = Drive(hall(), bus, complete=complete)
+        for step in range(20):
+            told_of(bus, 0.05 * step, *([seen] if step < 10 else []), speed=0.0)
+        assert drive.last is not None
+        assert (drive.last.oldest > 0.4) == (not complete)
+        assert sent(bus)[-1][0] > 0.05 or not complete
+
+
+def test_it_drives_twice_with_the_same_bits() -> None:
+    def bits() -> bytes:
+        world, bus = hall(), FakeBus()
+        record, _ = served(world, Wire(world, bus, lockstep=True), bus=bus)
+        return bytes(record.legs[0].trajectory.robot_position.tobytes())
+
+    assert bits() == bits()
+
+
+def test_it_drives_in_real_time_as_well() -> None:
+    world, bus = hall(time_limit=30.0), FakeBus()
+    record, _ = served(world, Wire(world, bus), bus=bus, lockstep=False)
+    assert record.contacts.moving == 0
+    assert record.legs[0].moved > 5.0
+    assert record.counts["command_late"] == record.counts["command_timeout"] == 0
+
+
+def test_holonomic_robots_are_told_in_their_own_frame() -> None:
+    law = nav.VirtualForceField()
+    robot = nav.crowd.CrowdRobot(start=(0, 0), goal=(4, 3), robot=nav.HolonomicRobot(), law=law, heading=1.0)
+    world, bus = nav.crowd.World(robots=[robot], time_limit=30.0), FakeBus()
+    record, _ = served(world, Wire(world, bus, lockstep=True), bus=bus)
+    run = record.legs[0].trajectory
+    assert record.arrived
+    away = run.robot_position[:, 0] @ (-0.6, 0.8)
+    assert abs(away).max() < 0.05
+
+
+def told_of(drive: FakeBus, now: float, *people: Seen, x: float = 0.0, speed: float = 0.3) -> None:
+    drive.say("/people", told(messages.people(now, people)))
+    drive.say("/odom", told(messages.odometry(now, Pose(x, 0.0, 0.0), (speed, 0.0, 0.0))))
+
+
+def test_it_stands_until_it_has_heard_of_people() -> None:
+    bus = FakeBus()
+    Drive(hall(), bus)
+    for step in range(10):
+        bus.say("/odom", told(messages.odometry(0.05 * step, Pose(0.0, 0.0, 0.0), (0.0, 0.0, 0.0))))
+    assert sent(bus) == [(0.0, 0.0)] * 10
+    told_of(bus, 0.6)
+    assert sent(bus)[-1][0] > 0.0
+
+
+def test_it_brakes_without_people_and_without_odometry() -> None:
+    bus = FakeBus()
+    drive = Drive(hall(), bus)
+    x = 0.0
+    for step in range(40):
+        x += 0.3 * 0.05
+        told_of(bus, 0.05 * step, x=x)
+    assert sent(bus)[-1][0] > 0.1
+    for step in range(40, 80):
+        bus.say("/odom", told(messages.odometry(0.05 * step, Pose(x, 0.0, 0.0), (0.0, 0.0, 0.0))))
+    assert drive.counts["people_silent"] > 0
+    assert sent(bus)[-1] == (0.0, 0.0)
+    before = len(sent(bus))
+    bus.spin(0.6)
+    drive.watch()
+    assert drive.counts["odometry_silent"] == 1
+    assert sent(bus)[before:] == [(0.0, 0.0)]
+
+
+def test_what_is_not_finite_is_not_measured() -> None:
+    bus = FakeBus()
+    drive = Drive(hall(), bus)
+    told_of(bus, 0.0, Seen("a", math.nan, 0.0, 0.0, 0.0, 0.3), Seen("b", 3.0, 0.0, 0.0, 0.0, 0.3))
+    assert drive.counts["people_not_finite"] == 1
+    bus.say("/odom", told(messages.odometry(0.1, Pose(math.nan, 0.0, 0.0), (0.0, 0.0, 0.0))))
+    assert drive.counts["odometry_not_finite"] == 1
+    assert len(sent(bus)) == 1
+    bus.say(
+        "/people", told({**messages.people(0.2, []), "header": {"frame_id": "camera", "stamp": messages.stamp(0.2)}})
+    )
+    assert drive.counts["people_frame"] == 1
+
+
+def test_a_person_in_the_way_is_not_driven_into() -> None:
+    bus = FakeBus()
+    drive = Drive(hall(), bus)
+    told_of(bus, 0.0, Seen("a", 0.9, 0.0, 0.0, 0.0, 0.25), speed=0.0)
+    assert drive.last is not None
+    assert drive.last.speed is not None
+    assert drive.last.speed < 0.05
+
+
+@pytest.mark.parametrize("given", [pose(math.nan, 0.0), pose(1.0, 0.0, frame="odom")])
+def test_goals_that_are_none_are_refused(given: Any) -> None:
+    bus = FakeBus()
+    drive = Drive(hall(), bus)
+    bus.say("/goal_pose", given)
+    assert drive.counts["goal_pose_refused"] == 1
+
+
+def test_another_goal_is_driven_to() -> None:
+    bus = FakeBus()
+    drive = Drive(empty(), bus)
+    told_of(bus, 0.0, speed=0.0)
+    assert sent(bus)[-1][0] > 0.0
+    bus.say("/goal_pose", pose(-6.0, 0.0))
+    told_of(bus, 0.1, speed=0.0)
+    assert not drive.counts
+    assert sent(bus)[-1][0] <= 0.0 or abs(sent(bus)[-1][1]) > 0.1
+
+
+def test_a_clock_that_is_set_back_does_not_stop_it_for_good() -> None:
+    bus = FakeBus()
+    drive = Drive(empty(), bus)
+    for step in range(20):
+        told_of(bus, 100.0 + 0.05 * step, speed=0.0)
+    before = len(sent(bus))
+    for step in range(200):
+        told_of(bus, 0.05 * step, speed=0.0)
+    assert len(sent(bus)) >= before + 190
+    assert drive.last is not None
+    assert sent(bus)[-1][0] > 0.0
+
+
+def test_a_world_needs_a_law() -> None:
+    world = nav.crowd.World(robots=[nav.crowd.CrowdRobot(start=(0, 0), goal=(1, 0))])
+    with pytest.raises(InvalidParameterError, match="one robot with a law"):
+        Drive(world, FakeBus())
