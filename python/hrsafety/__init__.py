@@ -4,7 +4,8 @@
 scores how well and how safely they reach their goal. `impact` gives the loads of a foam-covered
 manipulator that hits a head, and designs the foam; `reactive` follows a sound and avoids what
 ultrasonic sensors see. `arms` reads arms from URDF and gives the masses of their points, `standards` holds
-limits of contact and separation distances. `io` reads and writes the files of others,
+limits of contact and separation distances, `records` judges measured contacts. `io` reads and writes the files of
+others,
 `zones` designs and attacks the zones of a collision monitor. Sub-modules load on
 first use, so importing the package costs little more than importing numpy.
 """
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
         plausibility,
         plotting,
         reactive,
+        records,
         reproduce,
         scenarios,
         standards,
@@ -64,6 +66,7 @@ __all__ = [
     "plausibility",
     "plotting",
     "reactive",
+    "records",
     "reproduce",
     "scenarios",
     "standards",

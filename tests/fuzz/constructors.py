@@ -15,6 +15,7 @@ import hrsafety
 from hrsafety import arms, contact, datasets, impact, plausibility, reactive, scenarios, standards, sweep
 from hrsafety import gym as environments
 from hrsafety import navigation as nav
+from hrsafety.navigation.trajectory import Divergence
 
 __all__ = ["NO_CONSTRUCTORS", "constructors", "public_classes"]
 
@@ -25,7 +26,7 @@ NO_CONSTRUCTORS: dict[type, str] = {
     **dict.fromkeys(
         (arms.EffectiveMass, arms.MassHistory, arms.PointMasses, arms.Workspace), "made by functions of arms"
     ),
-    **dict.fromkeys((nav.Trajectory, nav.crowd.Divergence), "made by a run of a world"),
+    **dict.fromkeys((nav.Trajectory, Divergence), "made by a run of a world"),
     **dict.fromkeys((nav.metrics.Falsification, nav.metrics.Pursuit), "made by falsify"),
     **dict.fromkeys((nav.metrics.SafetyDecision, nav.metrics.SafetyRecord), "made by record_safety"),
     nav.laws.ShieldDecision: "made by a shield",

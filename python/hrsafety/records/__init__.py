@@ -15,7 +15,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.records.pressures import pressure as pressure
     from hrsafety.records.record import Record as Record
     from hrsafety.records.record import load as load
-    from hrsafety.records.repetitions import Repetitions as Repetitions
-    from hrsafety.records.repetitions import repetitions as repetitions
+    from hrsafety.records.repeated import Repetitions as Repetitions
+    from hrsafety.records.repeated import repetitions as repetitions
 else:
     __all__, __getattr__, __dir__ = names_of(__name__)

@@ -8,12 +8,12 @@ from typing import Annotated, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety import _hrsafety
 from hrsafety._arguments import Array, numbers, positive, vector
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.impact.criteria.filters import channel_corner, through_class
+from hrsafety.impact.criteria.loads import whole_loads
 from hrsafety.plausibility import ResultWarning, telling
 from hrsafety.records import traces
 from hrsafety.records.units import STANDARD_GRAVITY, in_unit
@@ -27,8 +27,6 @@ BRIDGED = 0.001
 """Longest dip within a contact in s."""
 _HIT = 0.3
 _PER_CLASS = 8.0
-_WINDOWS = (0.015, 0.036)
-_HELD = 0.003
 _CRITERIA = ("peak_g", "hic15", "hic36", "clip_3ms_g")
 _RESTS = ((9.80665, "m/s2"), (1.0, "g"))
 
@@ -59,8 +57,10 @@ class AccelerationRecord:
         In s.
     signal_g : ndarray, shape (n,)
         Without offset, filtered, turned so that its peak is positive, or resultant of three axes, in g.
-    peak_g, peak_time : float
-        Largest value in g, and when in s.
+    peak_g : float
+        Largest value in g.
+    peak_time : float
+        When it is reached, in s.
     hic15, hic36 : float
         Head injury criteria over the whole record.
     clip_3ms_g : float
@@ -82,16 +82,16 @@ class AccelerationRecord:
 
     time: Annotated[Array, "s"]
     signal_g: Annotated[Array, "g"]
-    peak_g: float
-    peak_time: float
+    peak_g: Annotated[float, "g"]
+    peak_time: Annotated[float, "s"]
     hic15: float
     hic36: float
-    clip_3ms_g: float
-    start: float | None
-    end: float | None
-    velocity_change: float
+    clip_3ms_g: Annotated[float, "g"]
+    start: Annotated[float | None, "s"]
+    end: Annotated[float | None, "s"]
+    velocity_change: Annotated[float, "m/s"]
     offsets_g: Annotated[Array, "g"]
-    noise_g: float
+    noise_g: Annotated[float, "g"]
     hits: tuple[Hit, ...]
     warnings: tuple[ResultWarning, ...]
 
@@ -215,21 +215,20 @@ def acceleration(
     hits = tuple(Hit(float(instants[top]), size) for top, size in tops if size >= _HIT * peak)
     limit = None if full_scale is None else positive("full_scale", full_scale)
     flat = [traces.full(instants, raw[:, axis], limit) for axis in range(raw.shape[1])]
-    short = instants[-1] - instants[0] < _HELD
+    loads = whole_loads(instants, signal)
     doubts = [
         *traces.rest_doubts(resting, peak, "g", QUIET, _likely_unit(resting.offset)),
         *_doubts(around, hits, peak, (turned, any(flat))),
         *_coarse(step, filter_class),
     ]
-    hic15, hic36 = (_hrsafety.hic(instants, signal, max(width, 1.5 * step), False)[0] for width in _WINDOWS)
     return AccelerationRecord(
         time=instants,
         signal_g=signal,
         peak_g=peak,
         peak_time=float(instants[place]),
-        hic15=max(hic15, 0.0),
-        hic36=max(hic36, 0.0),
-        clip_3ms_g=np.nan if short else _hrsafety.contiguous_level(instants, signal, _HELD)[0],
+        hic15=loads.hic15,
+        hic36=loads.hic36,
+        clip_3ms_g=loads.clip_3ms_g,
         start=around.start if around else None,
         end=around.end if around else None,
         velocity_change=STANDARD_GRAVITY * traces.integral(instants, signal, around, level) if around else 0.0,

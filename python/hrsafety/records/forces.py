@@ -68,6 +68,7 @@ class ForceDevice:
             not_negative("uncertainty", self.uncertainty)
 
 
+@displayed
 class MeasuredContact(NamedTuple):
     """A contact of a force record.
 
@@ -83,10 +84,10 @@ class MeasuredContact(NamedTuple):
         How it ends.
     """
 
-    start: float | None
-    end: float | None
-    transient: float
-    quasi_static: float | None
+    start: Annotated[float | None, "s"]
+    end: Annotated[float | None, "s"]
+    transient: Annotated[float, "N"]
+    quasi_static: Annotated[float | None, "N"]
     ends: Literal["released", "clamped", "too_short"]
 
 
@@ -101,8 +102,10 @@ class ForceRecord:
         In s.
     force : ndarray, shape (n,)
         Without offset, turned so that a push is positive, in N; for a wrong spring corrected to the careful side.
-    peak, peak_time : float
-        Largest force in N, and when in s.
+    peak : float
+        Largest force in N.
+    peak_time : float
+        When it is reached, in s.
     transient : float
         Largest one of all transient parts, in N.
     quasi_static : float or None

@@ -404,6 +404,22 @@ def _moving_level(
     return found
 
 
+class WholeLoads(NamedTuple):
+    """Criteria over a whole record: head injury over 15 and 36 ms, and the level held for 3 ms in g."""
+
+    hic15: float
+    hic36: float
+    clip_3ms_g: float
+
+
+def whole_loads(time: Array, signal_g: Array) -> WholeLoads:
+    """Return the criteria of a checked signal over all of it, without doubts; NaN for a level of less than 3 ms."""
+    step = 1.5 * float(np.diff(time).max())
+    fifteen, thirty_six = (_hrsafety.hic(time, signal_g, max(width, step), False)[0] for width in (0.015, 0.036))
+    held = np.nan if time[-1] - time[0] < 0.003 else _hrsafety.contiguous_level(time, signal_g, 0.003)[0]
+    return WholeLoads(max(fifteen, 0.0), max(thirty_six, 0.0), held)
+
+
 def signal_doubts(time: Array, shape: SignalShape) -> Doubts:
     """Return what is doubtful about a sampled acceleration: its units, and how it was measured."""
     measured = tuple(measurement_doubts("acceleration_g", "g", shape))
