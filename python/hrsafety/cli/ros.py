@@ -101,11 +101,11 @@ def _report(record: Record, settings: Settings, options: argparse.Namespace) -> 
         "contact": bool(touched),
         "moving_contact": bool(contacts.moving),
         "timed_out": not arrived and not touched,
-        "stopped": False,
+        "diverged": record.legs[-1].outcome == "diverged",
         "not_arrived": not arrived,
         "any": bool(touched) or not arrived,
     }
-    counts = {word: int(happened[word]) for word in verdict.FAILURES}
+    counts = {word: int(happened.get(word, False)) for word in verdict.FAILURES}
     verdict.end(report.said, counts, report.warnings, options, 1)
 
 

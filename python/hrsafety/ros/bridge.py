@@ -150,14 +150,16 @@ class Bridge:
         self._bus = bus
         self.settings = Settings() if settings is None else instance("settings", settings, Settings)
         (robot,) = world.robots
-        self._radius = robot.robot.radius
-        self._base = MovingBase(limits_of(robot.robot), Pose(*robot.start, robot.heading))
+        self._radius = robot.body.radius
+        self._base = MovingBase(limits_of(robot.body), Pose(*robot.start, robot.heading))
         self._commands = Commands(self._base.limits, self.settings.delay, self._warn)
         self._map = map_of(world)
         self._lidar = replace(self.settings.lidar, map=self._map)
         self._step = self.settings.period if self.settings.lockstep else _SCAN
         self._part = largest_step(world, self._step, at_most=_SCAN)
-        self.record = Record(world, self._part, self._map)
+        # What is scored has the step of the bridge, and is under no law.
+        scored = replace(world, step=self._part, robots=[replace(robot, law=None, control_period=None)])
+        self.record = Record(scored, self._map)
         self._time, self._offset = 0.0, 0.0
         self._origin = Pose(0.0, 0.0, 0.0)
         self._due = dict.fromkeys(("odometry", "people", "verdict"), 0.0)
@@ -273,7 +275,7 @@ class Bridge:
         """
         self._steering.look()
         try:
-            walk(self._world, self._part, self._meet)
+            self.record.legs[-1].diverged = walk(self._world, self._part, self._meet)
         finally:
             self.record.end(self._commands.counts, late=self._late, several=self._steering.several)
         return self.record

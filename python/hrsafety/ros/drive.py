@@ -119,7 +119,7 @@ class Drive:
         sizes = [*(each.radius for each in self._world.people), *(each.radius for each in self._world.sources)]
         return Controller(
             robot.law,  # type: ignore[arg-type]  # looked at when this was made
-            robot.robot,
+            robot.body,
             self._goal,
             walls if walls.bounds is not None else None,
             start=start,

@@ -12,11 +12,12 @@ import numpy.typing as npt
 from hrsafety._arguments import Array, Pair
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.crowd.agents import CrowdRobot
-from hrsafety.navigation.crowd.simulation import simulate_crowd
+from hrsafety.navigation.crowd.agents import Robot
+from hrsafety.navigation.crowd.simulation import simulated
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.laws.situation import Situation
 from hrsafety.navigation.robots.bodies import HolonomicRobot
+from hrsafety.navigation.trajectory import Divergence
 
 __all__ = ["Crowd", "largest_step", "walk"]
 
@@ -56,7 +57,7 @@ def largest_step(world: World, period: float, *, at_most: float) -> float:
     return period / math.ceil(period / step - 1e-9)
 
 
-def walk(world: World, step: float, meet: Callable[[float, Crowd], Pair | None]) -> None:
+def walk(world: World, step: float, meet: Callable[[float, Crowd], Pair | None]) -> Divergence | None:
     """Let the people of a world walk, and put the robot among them where it is told to be.
 
     Parameters
@@ -69,6 +70,11 @@ def walk(world: World, step: float, meet: Callable[[float, Crowd], Pair | None])
         Called at every instant with the time in s and who is there; returns where the robot is a step later, in m, or
         ``None`` to end.
 
+    Returns
+    -------
+    Divergence or None
+        Whose state was no longer finite, which ended the world.
+
     Raises
     ------
     InvalidParameterError
@@ -79,20 +85,20 @@ def walk(world: World, step: float, meet: Callable[[float, Crowd], Pair | None])
     if world.period != (0.0, 0.0):
         raise InvalidParameterError("world.period", "be (0, 0): a map does not repeat itself", world.period)
     (given,) = world.robots
-    body = HolonomicRobot(mass=1.0, radius=given.robot.radius, max_speed=_FASTEST, max_acceleration=_FASTEST)
-    robot = CrowdRobot(
+    body = HolonomicRobot(mass=1.0, radius=given.body.radius, max_speed=_FASTEST, max_acceleration=_FASTEST)
+    robot = Robot(
+        body,
         start=given.start,
         goal=(given.start[0] + _FAR, given.start[1]),
         law=_Put(world, step, meet),
-        robot=body,
         sensing_range=_SIGHT,
     )
     # One step more than the longest time: the last instant is met, too.
     put = replace(world, robots=[robot], step=step, time_limit=world.time_limit + 2.0 * step)
     try:
-        simulate_crowd(put)
+        return simulated([put], threads=1)[0].diverged
     except _Ended:
-        return
+        return None
 
 
 class _Ended(Exception):  # noqa: N818  # not an error

@@ -7,17 +7,19 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from hrsafety._arguments import Pair
 from hrsafety.navigation.crowd.contacts import Contacts, contacts_of
 from hrsafety.navigation.crowd.episodes import episodes_in
-from hrsafety.navigation.crowd.trajectories import CrowdTrajectories
 from hrsafety.navigation.crowd.world import World
+from hrsafety.navigation.crowd.world_run import WorldRun
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.metrics.episode import Episode
 from hrsafety.navigation.metrics.scores import EpisodeMetrics, evaluate
+from hrsafety.navigation.trajectory import Divergence
 from hrsafety.plausibility import ResultWarning
 from hrsafety.ros.base import MovingBase
 from hrsafety.ros.floor import Crowd
@@ -36,16 +38,15 @@ class Leg:
     Parameters
     ----------
     world : World
-        The world, whose robot has the goal of the leg.
-    step : float
-        Time between two instants in s.
+        The world, whose robot has the goal of the leg; its step is the time between two instants.
     reason : str
         Why it began: ``"start"``, ``"initialpose"`` or ``"goal_pose"``.
     """
 
-    def __init__(self, world: World, step: float, reason: str) -> None:
-        self.world, self.step, self.reason = world, step, reason
+    def __init__(self, world: World, reason: str) -> None:
+        self.world, self.step, self.reason = world, world.step, reason
         self.superseded = False
+        self.diverged: Divergence | None = None
         self._time: list[float] = []
         self._robot: list[tuple[float, ...]] = []
         self._crowd: list[Crowd] = []
@@ -79,7 +80,7 @@ class Leg:
         return math.dist(self._robot[0][:2], self._robot[-1][:2]) if self._robot else 0.0
 
     @cached_property
-    def trajectory(self) -> CrowdTrajectories:
+    def trajectory(self) -> WorldRun:
         """Robot and people at all instants, those who were there at any."""
         numbers = np.unique(np.concatenate([each.number for each in self._crowd]))
         shape = (len(self), len(numbers), 2)
@@ -94,15 +95,14 @@ class Leg:
         time = self.step * np.arange(len(self), dtype=np.float64)
         speeds = np.hypot(velocity[..., 0], velocity[..., 1])
         nobody = np.full(len(numbers), np.nan)
-        return CrowdTrajectories(
-            world=self.world,
+        recorded: dict[str, Any] = dict(
             time=time,
-            position=position,
-            velocity=velocity,
+            obstacle_position=position,
+            obstacle_velocity=velocity,
             robot_position=robot[:, None, :2],
             robot_velocity=robot[:, None, 3:],
             robot_heading=robot[:, None, 2],
-            radius=radius,
+            obstacle_radius=radius,
             desired_speed=nobody,
             awareness=nobody,
             person_arrival_time=nobody,
@@ -110,7 +110,9 @@ class Leg:
             robot_arrival_time=np.array([time[there[0]] if len(there) else np.nan]),
             wall_rescues=0,
             max_person_speed=float(np.nanmax(speeds)) if np.isfinite(speeds).any() else 0.0,
+            diverged=self.diverged and (self.diverged.time, self.diverged.kind, self.diverged.index),
         )
+        return WorldRun(self.world, recorded)
 
     @cached_property
     def metrics(self) -> EpisodeMetrics:
@@ -120,7 +122,7 @@ class Leg:
     @cached_property
     def _episode(self) -> Episode:
         run = self.trajectory
-        return episodes_in(self.world, run.robot_position, run.position, run.radius)[0]
+        return episodes_in(self.world, run.robot_position, run.obstacle_position, run.obstacle_radius)[0]
 
     @cached_property
     def contacts(self) -> Contacts:
@@ -133,6 +135,8 @@ class Leg:
         touched = sum((self.contacts.moving, self.contacts.standing, self.contacts.apart, self.metrics.wall_contacts))
         if touched:
             return "collided"
+        if self.diverged is not None and not self.arrived:
+            return "diverged"
         if math.isfinite(self.trajectory.robot_arrival_time[0]):
             return "arrived"
         return "superseded" if self.superseded else "timed_out"
@@ -146,17 +150,15 @@ class Record:
     Parameters
     ----------
     world : World
-        The world.
-    step : float
-        Time between two instants in s.
+        The world; its step is the time between two instants.
     walls : StaticMap
         What stands.
     """
 
-    def __init__(self, world: World, step: float, walls: StaticMap) -> None:
-        self.world, self.step = world, step
+    def __init__(self, world: World, walls: StaticMap) -> None:
+        self.world, self.step = world, world.step
         self._walls = walls
-        self.legs = [Leg(world, step, "start")]
+        self.legs = [Leg(world, "start")]
         self.counts: Counter[str] = Counter()
         self.touched: set[int] = set()
         self.touched_wall = False
@@ -171,7 +173,7 @@ class Record:
     def note(self, time: float, base: MovingBase, crowd: Crowd, *, silent: bool) -> None:
         """Keep an instant of the present leg."""
         self.legs[-1].note(time, base, crowd, silent=silent)
-        radius, place = self.world.robots[0].robot.radius, base.pose[:2]
+        radius, place = self.world.robots[0].body.radius, base.pose[:2]
         gaps = np.hypot(*(crowd.position - place).T) - crowd.radius - radius
         self.touched.update(crowd.number[gaps < 0.0].tolist())
         wall = float(self._walls.clearance(place)) - radius
@@ -181,7 +183,7 @@ class Record:
     def begin(self, reason: str) -> None:
         """Begin another leg, with the next instant that is noted."""
         self.legs[-1].superseded = True
-        self.legs.append(Leg(self.legs[-1].world, self.step, reason))
+        self.legs.append(Leg(self.legs[-1].world, reason))
 
     def aim(self, goal: Pair) -> None:
         """Take another goal, with a leg of its own if the robot has gone somewhere."""

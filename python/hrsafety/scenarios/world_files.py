@@ -66,7 +66,7 @@ _OWN: Keys = MappingProxyType({"people": kind.tables, "sources": kind.tables, "w
 
 
 @kind.top_level({**TOP, **_OWN})
-def load_world(path: str | PathLike[str]) -> nav.crowd.World:
+def load_world(path: str | PathLike[str]) -> nav.World:
     r"""Read a scenario file as a world in which people react to the robot.
 
     Every file of `load` is one: what stands becomes walls, what moves becomes people who walk as the file says and
@@ -120,8 +120,8 @@ def load_world(path: str | PathLike[str]) -> nav.crowd.World:
     own = checked("", {key: whole.pop(key) for key in _OWN if key in whole}, _OWN)
     timed, tolerance = whole.get("control_period"), whole.get("arrival_tolerance")
     scenario, law = read_scenario(whole, place.parent)
-    people = [_agent(f"people[{index}]", table, nav.crowd.Person) for index, table in enumerate(own.get("people", []))]
-    sources = [_agent(f"sources[{index}]", each, nav.crowd.Source) for index, each in enumerate(own.get("sources", []))]
+    people = [_agent(f"people[{index}]", table, nav.Person) for index, table in enumerate(own.get("people", []))]
+    sources = [_agent(f"sources[{index}]", each, nav.Source) for index, each in enumerate(own.get("sources", []))]
     walls: list[Any] = list(own.get("walls", []))
     for index, obstacle in enumerate(scenario.obstacles):
         if isinstance(obstacle, (nav.Disc, nav.Rectangle)):
@@ -130,17 +130,17 @@ def load_world(path: str | PathLike[str]) -> nav.crowd.World:
             people.append(_as_told(f"obstacles[{index}]", obstacle, scenario.time_limit))
     step = own.get("step", _STEP if timed is None else timed / max(1, math.ceil(timed / _STEP - 1e-9)))
     with located(""):
-        robot = nav.crowd.CrowdRobot(
+        robot = nav.Robot(
+            scenario.robot,
             start=scenario.start,
             goal=scenario.goal,
             law=law,
-            robot=scenario.robot,
             heading=scenario.heading,
             control_period=timed,
             arrival_tolerance=_TOLERANCE if tolerance is None else tolerance,
             measurement=scenario.measurement,
         )
-        return nav.crowd.World(
+        return nav.World(
             people=people,
             robots=[robot],
             sources=sources,
@@ -162,7 +162,7 @@ def _unused(given: Mapping[str, Any]) -> list[ResultWarning]:
 
 def _agent(path: str, table: dict[str, Any], of: type[Any]) -> Any:
     """Return a person or a source from its table."""
-    person = of is nav.crowd.Person
+    person = of is nav.Person
     given = checked(
         path,
         table,
@@ -175,14 +175,14 @@ def _agent(path: str, table: dict[str, Any], of: type[Any]) -> Any:
         return of(**given)
 
 
-def _as_told(path: str, obstacle: nav.Obstacle, time_limit: float) -> nav.crowd.Person:
+def _as_told(path: str, obstacle: nav.Obstacle, time_limit: float) -> nav.Person:
     """Return somebody who moves as an obstacle of a scenario does."""
     if isinstance(obstacle, MovingRectangle):
         remedy = 'describe it by a "moving_disc", or run the file with hrsafety simulate'
         raise InvalidParameterError(f"{path}.type", "be round if it moves among people", "moving_rectangle", remedy)
     radius: float = obstacle.radius  # type: ignore[attr-defined]  # what is left is round
     track = getattr(obstacle, "path", None) or _track(obstacle, time_limit)
-    return nav.crowd.Person(start=track[1][0], radius=radius, recording=track)
+    return nav.Person(start=track[1][0], radius=radius, recording=track)
 
 
 def _track(obstacle: nav.Obstacle, time_limit: float) -> tuple[list[float], list[tuple[float, float]]]:

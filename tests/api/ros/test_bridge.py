@@ -169,8 +169,8 @@ def test_scans_are_those_of_the_lidar_with_nothing_as_infinite(served_hall: tupl
     lidar = nav.Lidar(map=walls, beams=720, range_max=12.0)
     for row in (0, 37, 150):
         message = bus.sent["/scan"][row]
-        there = np.isfinite(run.position[row, :, 0])
-        discs = np.column_stack([run.position[row, there], run.radius[there]])
+        there = np.isfinite(run.obstacle_position[row, :, 0])
+        discs = np.column_stack([run.obstacle_position[row, there], run.obstacle_radius[there]])
         expected = lidar.scan(run.robot_position[row, 0], run.robot_heading[row, 0], people=discs)
         expected[expected >= 12.0] = np.inf
         np.testing.assert_allclose(message["ranges"], expected, rtol=1e-6)
@@ -213,7 +213,7 @@ def test_people_keep_their_names_also_those_who_come_later(served_hall: tuple[An
 
 def test_people_react_to_the_robot() -> None:
     def nearest(awareness: float) -> float:
-        person = nav.crowd.Person(start=(6.0, 0.05), route=[(-1.0, 0.05)], desired_speed=1.2, awareness=awareness)
+        person = nav.Person(start=(6.0, 0.05), route=[(-1.0, 0.05)], desired_speed=1.2, awareness=awareness)
         record, _ = served(hall(people=[person], sources=[]), ahead)
         return record.clearance
 
@@ -231,7 +231,7 @@ def test_a_thousand_commands_twice_give_the_same_bits() -> None:
         record, bus = served(hall(time_limit=50.0), ahead, stay=True)
         assert record.counts["commands"] == 1000
         run = record.legs[0].trajectory
-        arrays = (run.robot_position, run.robot_heading, run.position, run.velocity)
+        arrays = (run.robot_position, run.robot_heading, run.obstacle_position, run.obstacle_velocity)
         return (*(each.tobytes() for each in arrays), repr(bus.sent["/scan"]), repr(bus.sent["/people"]))
 
     assert bits() == bits()
@@ -239,8 +239,10 @@ def test_a_thousand_commands_twice_give_the_same_bits() -> None:
 
 def test_another_seed_gives_other_people() -> None:
     (first, _), (second, _) = (served(hall(seed=seed), ahead) for seed in (1, 2))
-    assert first.legs[0].trajectory.position.shape != second.legs[0].trajectory.position.shape or not np.array_equal(
-        first.legs[0].trajectory.position, second.legs[0].trajectory.position, equal_nan=True
+    assert first.legs[0].trajectory.obstacle_position.shape != second.legs[
+        0
+    ].trajectory.obstacle_position.shape or not np.array_equal(
+        first.legs[0].trajectory.obstacle_position, second.legs[0].trajectory.obstacle_position, equal_nan=True
     )
 
 
@@ -273,7 +275,7 @@ def test_somebody_else_may_take_over_with_other_messages() -> None:
 
 @pytest.mark.parametrize("model", [nav.crowd.SocialForce1995(), nav.crowd.Moussaid(), nav.crowd.ReciprocalAvoidance()])
 def test_models_with_a_smaller_step_get_it(model: nav.crowd.Pedestrian) -> None:
-    person = nav.crowd.Person(start=(6.0, 0.5), route=[(-1.0, 0.5)], desired_speed=1.2, model=model)
+    person = nav.Person(start=(6.0, 0.5), route=[(-1.0, 0.5)], desired_speed=1.2, model=model)
     world = hall(people=[person], sources=[], time_limit=4.0)
     record, bus = served(world, ahead)
     assert record.step <= min(0.05, model.largest_step)
@@ -283,9 +285,25 @@ def test_models_with_a_smaller_step_get_it(model: nav.crowd.Pedestrian) -> None:
     np.testing.assert_allclose(shown, run.robot_position[:: round(0.05 / record.step), 0][: len(shown)], atol=1e-9)
 
 
+@pytest.mark.parametrize("settings", [{"period": 0.1}, {"period": 0.05}, {"lockstep": False}])
+def test_scores_have_the_time_of_the_bridge_whatever_the_step_of_the_world(settings: dict[str, Any]) -> None:
+    def answer(bus: FakeBus) -> None:
+        if bus.sent["/clock"]:
+            bus.say("cmd_vel", stamped(bus.now, 0.5))
+
+    near = nav.Robot(ROBOT, start=(0, 0), goal=(2, 0), control_period=0.03)
+    world = nav.World(robots=[near], step=0.03, time_limit=6.0)
+    record, _ = served(world, answer, stay=True, **settings)
+    (leg,) = record.legs
+    assert leg.trajectory.time[-1] == pytest.approx(6.0)
+    assert leg.trajectory.motion_step == record.step == 0.05
+    assert leg.metrics.arrival_time == leg.trajectory.robot_arrival_time[0] == pytest.approx(3.5, abs=0.1)
+    assert leg.metrics.path_length == pytest.approx(1.7, abs=0.05)
+
+
 def test_holonomic_robots_go_sideways() -> None:
-    robot = nav.crowd.CrowdRobot(start=(0, 0), goal=(8, 0), robot=nav.HolonomicRobot(), heading=0.5)
-    world = nav.crowd.World(robots=[robot], time_limit=2.0)
+    robot = nav.Robot(start=(0, 0), goal=(8, 0), body=nav.HolonomicRobot(), heading=0.5)
+    world = nav.World(robots=[robot], time_limit=2.0)
     record, _ = served(world, lambda bus: bus.say("cmd_vel", stamped(bus.now, 0.0, 0.3)))
     velocity = record.legs[0].trajectory.robot_velocity[-1, 0]
     np.testing.assert_allclose(velocity, [-0.3 * math.sin(0.5), 0.3 * math.cos(0.5)], atol=1e-9)
@@ -295,11 +313,11 @@ def test_holonomic_robots_go_sideways() -> None:
 def test_two_hundred_people_and_720_beams_at_20_hz_on_one_core() -> None:
     generator = np.random.default_rng(1)
     people = [
-        nav.crowd.Person(start=tuple(start), route=[tuple(end), tuple(start)], at_end="repeat", desired_speed=1.2)
+        nav.Person(start=tuple(start), route=[tuple(end), tuple(start)], at_end="repeat", desired_speed=1.2)
         for start, end in generator.uniform(-9.0, 9.0, (200, 2, 2))
     ]
-    robot = nav.crowd.CrowdRobot(start=(-11.0, 0.0), goal=(11.0, 0.0), robot=ROBOT)
-    world = nav.crowd.World(people=people, robots=[robot], time_limit=10.0)
+    robot = nav.Robot(start=(-11.0, 0.0), goal=(11.0, 0.0), body=ROBOT)
+    world = nav.World(people=people, robots=[robot], time_limit=10.0)
     begin = time.process_time()
     record, bus = served(world, ahead)
     taken = time.process_time() - begin
@@ -313,7 +331,7 @@ def test_settings_are_checked() -> None:
         Settings(period=3.0)
     with pytest.raises(InvalidParameterError, match="commands must"):
         Settings(commands="stampd")
-    world = nav.crowd.World(people=[nav.crowd.Person(start=(0, 0))])
+    world = nav.World(people=[nav.Person(start=(0, 0))])
     with pytest.raises(InvalidParameterError, match=r"world\.robots must be one robot, got 0"):
         Bridge(world, FakeBus())
     round_world = hall(period=(20.0, 0.0))

@@ -63,8 +63,8 @@ def test_it_drives_in_real_time_as_well() -> None:
 
 def test_holonomic_robots_are_told_in_their_own_frame() -> None:
     law = nav.VirtualForceField()
-    robot = nav.crowd.CrowdRobot(start=(0, 0), goal=(4, 3), robot=nav.HolonomicRobot(), law=law, heading=1.0)
-    world, bus = nav.crowd.World(robots=[robot], time_limit=30.0), FakeBus()
+    robot = nav.Robot(start=(0, 0), goal=(4, 3), body=nav.HolonomicRobot(), law=law, heading=1.0)
+    world, bus = nav.World(robots=[robot], time_limit=30.0), FakeBus()
     record, _ = served(world, Wire(world, bus, lockstep=True), bus=bus)
     run = record.legs[0].trajectory
     assert record.arrived
@@ -162,6 +162,6 @@ def test_a_clock_that_is_set_back_does_not_stop_it_for_good() -> None:
 
 
 def test_a_world_needs_a_law() -> None:
-    world = nav.crowd.World(robots=[nav.crowd.CrowdRobot(start=(0, 0), goal=(1, 0))])
+    world = nav.World(robots=[nav.Robot(start=(0, 0), goal=(1, 0))])
     with pytest.raises(InvalidParameterError, match="one robot with a law"):
         Drive(world, FakeBus())

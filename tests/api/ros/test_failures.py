@@ -178,7 +178,7 @@ def test_places_that_cannot_be_are_refused(given: Any, why: str) -> None:
 
 
 def test_a_place_on_somebody_is_refused() -> None:
-    person = nav.crowd.Person(start=(5.0, 1.0))
+    person = nav.Person(start=(5.0, 1.0))
     world = hall(people=[person], sources=[], time_limit=2.0)
     for x, refused in ((5.4, 1), (5.6, 0)):
         record, bus = served(world, put(1.0, pose(x, 1.0, covariance=True)))
@@ -221,7 +221,7 @@ def test_goals_are_taken_and_begin_a_leg_once_the_robot_has_moved() -> None:
 
 
 def test_contacts_count_in_every_leg() -> None:
-    person = nav.crowd.Person(start=(1.5, 0.0), awareness=0.0)
+    person = nav.Person(start=(1.5, 0.0), awareness=0.0)
     world = hall(people=[person], sources=[], time_limit=6.0)
     answers = put(5.0, pose(6.0, 2.0, covariance=True))
 
@@ -240,8 +240,8 @@ def test_the_run_ends_when_the_robot_rests_at_its_goal() -> None:
         bus.say("cmd_vel", stamped(bus.now, 0.5 if bus.now < 4.0 else 0.0))
 
     world = empty(time_limit=20.0)
-    near = nav.crowd.CrowdRobot(start=(0, 0), goal=(2, 0), robot=world.robots[0].robot)
-    world = nav.crowd.World(robots=[near], time_limit=20.0)
+    near = nav.Robot(start=(0, 0), goal=(2, 0), body=world.robots[0].body)
+    world = nav.World(robots=[near], time_limit=20.0)
     record, _ = served(world, answer)
     assert record.legs[0].outcome == "arrived"
     assert 5.0 <= record.legs[0].trajectory.time[-1] < 6.0

@@ -15,26 +15,26 @@ ROBOT = nav.DifferentialDriveRobot(radius=0.25, max_speed=0.8, max_acceleration=
 WALLS = [[(-2.0, -3.0), (10.0, -3.0)], [(-2.0, 3.0), (10.0, 3.0)]]
 
 
-def hall(**given: Any) -> nav.crowd.World:
+def hall(**given: Any) -> nav.World:
     """Return a hall in which two people come toward a robot with two wheels, and more of them later."""
     people = [
-        nav.crowd.Person(start=(8.0, 0.6), route=[(0.0, 0.6)], desired_speed=1.2),
-        nav.crowd.Person(start=(9.0, -0.8), route=[(-1.0, -0.8)], desired_speed=1.0),
+        nav.Person(start=(8.0, 0.6), route=[(0.0, 0.6)], desired_speed=1.2),
+        nav.Person(start=(9.0, -0.8), route=[(-1.0, -0.8)], desired_speed=1.0),
     ]
-    source = nav.crowd.Source(low=(8.5, -2.0), high=(9.5, 2.0), rate=0.5, route=[(-1.5, 0.0)])
+    source = nav.Source(low=(8.5, -2.0), high=(9.5, 2.0), rate=0.5, route=[(-1.5, 0.0)])
     law = nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield(person_speed=2.2), yielding=nav.Yielding())
-    robot = nav.crowd.CrowdRobot(start=(0.0, 0.0), goal=(8.0, 0.0), robot=ROBOT, law=law)
+    robot = nav.Robot(start=(0.0, 0.0), goal=(8.0, 0.0), body=ROBOT, law=law)
     beside = {"people": people, "sources": [source], "walls": WALLS, "time_limit": 10.0, "seed": 3}
-    return nav.crowd.World(robots=[robot], **{**beside, **given})
+    return nav.World(robots=[robot], **{**beside, **given})
 
 
-def empty(**given: Any) -> nav.crowd.World:
+def empty(**given: Any) -> nav.World:
     """Return a hall without people."""
     return hall(people=[], sources=[], **given)
 
 
 def served(
-    world: nav.crowd.World, answer: Callable[[FakeBus], None] | None, *, bus: FakeBus | None = None, **settings: Any
+    world: nav.World, answer: Callable[[FakeBus], None] | None, *, bus: FakeBus | None = None, **settings: Any
 ) -> tuple[Record, FakeBus]:
     """Run a world in lock-step, unless told otherwise, with somebody who answers."""
     own = FakeBus() if bus is None else bus
@@ -53,7 +53,7 @@ class Wire:
 
     TOPICS = ("/people", "/people_markers", "/tf", "/scan", "/odom")
 
-    def __init__(self, world: nav.crowd.World, bus: FakeBus, **given: Any) -> None:
+    def __init__(self, world: nav.World, bus: FakeBus, **given: Any) -> None:
         self.bus = FakeBus(types=sorted(bus.types))
         self.drive = Drive(world, self.bus, **given)
         self._passed = dict.fromkeys((*self.TOPICS, "cmd_vel"), 0)

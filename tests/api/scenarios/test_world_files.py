@@ -14,7 +14,7 @@ ROOM = "start = [0.0, 0.0]\ngoal = [8.0, 0.0]\n"
 PERSON = "[[people]]\nstart = [6.0, 0.2]\n"
 
 
-def loaded(folder: Path, text: str) -> nav.crowd.World:
+def loaded(folder: Path, text: str) -> nav.World:
     path = folder / "world.toml"
     path.write_text(text)
     return scenarios.load_world(path)
@@ -59,17 +59,17 @@ arrivals = "regular"
 route = [[0, 0]]
 distracted_share = 0.2
 """
-    robot = nav.crowd.CrowdRobot(
+    robot = nav.Robot(
         start=(0.0, 0.0),
         goal=(8.0, 0.0),
         law=nav.OptimalReciprocalCollisionAvoidance(),
-        robot=nav.DifferentialDriveRobot(radius=0.25),
+        body=nav.DifferentialDriveRobot(radius=0.25),
         control_period=0.1,
         arrival_tolerance=0.25,
         heading=0.5,
         measurement=nav.Measurement(scale=0.01),
     )
-    person = nav.crowd.Person(
+    person = nav.Person(
         start=(6, 0.2),
         route=[(0, 0.2), ((0, 1), (0, 2))],
         model=nav.crowd.SocialForce1995(),
@@ -81,9 +81,7 @@ distracted_share = 0.2
         enters=2,
         group=3,
     )
-    source = nav.crowd.Source(
-        low=(7, -1), high=(8, 1), rate=0.4, arrivals="regular", route=[(0, 0)], distracted_share=0.2
-    )
+    source = nav.Source(low=(7, -1), high=(8, 1), rate=0.4, arrivals="regular", route=[(0, 0)], distracted_share=0.2)
     world = loaded(tmp_path, text)
     assert (world.robots, world.people, world.sources) == ((robot,), (person,), (source,))
     assert (world.step, world.time_limit, world.seed) == (0.025, 30.0, 7)
@@ -95,13 +93,13 @@ def test_every_scenario_file_is_a_world_with_the_same_people() -> None:
     world, scenario = scenarios.load_world(path), scenarios.load(path).scenario
     assert len(world.people) == 3
     assert len(world.walls) == 2
-    run = nav.crowd.simulate_crowd(world)
+    run = nav.simulate(world)
     still = nav.simulate(scenario, lambda _: np.zeros(2))
     same = np.isin(np.round(still.time, 6), np.round(run.time, 6))
     moving = [index for index, each in enumerate(scenario.obstacles) if not isinstance(each, (nav.Disc, nav.Rectangle))]
     rows = min(len(run.time), int(same.sum()), 100)
     np.testing.assert_allclose(
-        run.position[:rows], still.obstacle_position[same][:rows, moving], atol=1e-6, equal_nan=True
+        run.obstacle_position[:rows], still.obstacle_position[same][:rows, moving], atol=1e-6, equal_nan=True
     )
 
 
