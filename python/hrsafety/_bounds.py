@@ -40,6 +40,7 @@ __all__ = [
     "MOST_TABLE_ROWS",
     "MOST_TASKS",
     "MOST_THREADS",
+    "MOST_WALL_POINTS",
 ]
 
 # Any count at all: it has to fit into the integers of the cores.
@@ -55,6 +56,8 @@ MOST_OBSTACLES = 10_000
 MOST_BODIES = 10**7
 # Cells of an occupancy grid: 32 MB as bits.
 MOST_CELLS = 2**28
+# Points of the walls of a floor plan: 250 bytes each.
+MOST_WALL_POINTS = 10**6
 # Rays of a beam, beams of a scan.
 MOST_RAYS = 100_000
 # Points that a planner draws at one step.

@@ -283,6 +283,7 @@ RANGES: dict[str, Range] = {
     "arrival_tolerance": Range(1e-4, 5.0, "m", "accurate docking to large vehicles", "mm or cm given for m"),
     "floor_position": Range(-10000.0, 10000.0, "m", "the largest sites", "mm given for m"),
     "map_resolution": Range(0.005, 1.0, "m", "fine to coarse grids of floors", "mm, or cells per meter, given for m"),
+    "plan_extent": Range(1.0, 5000.0, "m", "a small room to a large site", "another unit, or a drawing on paper"),
     "region_clearance": Range(0.0, 30.0, "m", "touching to the way of a fast truck", "mm or cm given for m"),
     "region_radius": Range(0.01, 30.0, "m", "a small disc to the way of a fast truck", "mm or cm given for m"),
     "obstacle_size": Range(0.005, 1000.0, "m", "thin poles to long walls", "mm or cm given for m"),

@@ -7,6 +7,7 @@ from hrsafety._namespace import names_of
 if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.errors import FileError as FileError
     from hrsafety.io.people.loading import load_people as load_people
+    from hrsafety.io.places.maps import load_map as load_map
     from hrsafety.io.reader import Source as Source
 else:
     __all__, __getattr__, __dir__ = names_of(__name__)

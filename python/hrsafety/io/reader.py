@@ -32,7 +32,7 @@ READERS: dict[str, tuple[str, ...]] = {
         "hrsafety.io.people.tables",
     ),
     "log": (),
-    "map": (),
+    "map": ("hrsafety.io.places.maps",),
     "scene": (),
 }
 """Modules of the readers of each kind of file, in the order in which they are asked; each has a list ``READERS``."""

@@ -11,7 +11,6 @@ import numpy.typing as npt
 
 from hrsafety._arguments import count, meant, readable, word
 from hrsafety.errors import FileError, Shown
-from hrsafety.io.yaml import LARGEST, Section, read_yaml
 from hrsafety.navigation.maps.pgm import Picture
 from hrsafety.navigation.maps.pictures import read_picture
 from hrsafety.plausibility import ResultWarning, implausible
@@ -19,11 +18,15 @@ from hrsafety.plausibility import ResultWarning, implausible
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from hrsafety.io.yaml import Section
+
 __all__ = ["BETWEEN", "FREE", "OCCUPIED", "UNKNOWN", "ServedMap", "cell_classes", "doubts_of_place", "read_map_server"]
 
 CELLS_AT_ONCE = 1 << 23
 FREE, UNKNOWN, OCCUPIED, BETWEEN = range(4)
 """What a cell is: `BETWEEN` has a value from 1 to 99 of 100."""
+LARGEST = 1e300
+"""Coordinates of a corner are smaller, so that all that is computed from them is finite."""
 SAVED_UNKNOWN = 205
 """Gray value that map savers write for unknown cells."""
 SAVED_FREE = 0.196
@@ -121,6 +124,8 @@ def cell_classes(path: str | PathLike[str]) -> Classes:
 
 
 def _entries(path: str | PathLike[str]) -> tuple[Section, tuple[ResultWarning, ...]]:
+    from hrsafety.io.yaml import read_yaml  # for those who have such a file
+
     document = read_yaml(path)
     root = document.root
     held = root.keys()

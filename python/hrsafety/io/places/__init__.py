@@ -1,0 +1,1 @@
+"""Readers of maps, floor plans, scenes and settings of robots."""
