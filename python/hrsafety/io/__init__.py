@@ -6,6 +6,8 @@ from hrsafety._namespace import names_of
 
 if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.errors import FileError as FileError
+    from hrsafety.io.logs.load import load_log as load_log
+    from hrsafety.io.logs.robot_log import RobotLog as RobotLog
     from hrsafety.io.people.loading import load_people as load_people
     from hrsafety.io.places.maps import load_map as load_map
     from hrsafety.io.reader import Source as Source

@@ -31,7 +31,7 @@ READERS: dict[str, tuple[str, ...]] = {
         "hrsafety.io.people.bare",
         "hrsafety.io.people.tables",
     ),
-    "log": (),
+    "log": ("hrsafety.io.logs.load",),
     "map": ("hrsafety.io.places.maps",),
     "scene": (),
 }
