@@ -475,7 +475,8 @@ def _fitted(time: Array, position: Array, window: float) -> Array:
         moments = np.einsum("nk,nki,nkj->nij", weight, powers, powers)
         right = np.einsum("nk,nki,nkd->nid", weight, powers, position[index])
         found[some] = np.linalg.solve(moments, right)
-    return found / np.array([1.0, half, half * half])[:, None]
+    found /= np.array([1.0, half, half * half])[:, None]
+    return found
 
 
 def _in_parts(sizes: Indices) -> list[slice]:

@@ -88,14 +88,15 @@ def _forget_output() -> None:
 
 
 @contextmanager
-def _as_options(*names: str) -> Iterator[None]:
+def _as_options(*names: str, **others: str) -> Iterator[None]:
     """Give an argument that comes from the command line the name that it has there."""
+    options = {name: f"--{name}" for name in names} | others
     try:
         yield
     except InvalidParameterError as error:
-        if error.argument not in names:
+        if error.argument not in options:
             raise
-        raise error.renamed(f"--{error.argument}") from None
+        raise error.renamed(options[error.argument]) from None
 
 
 def _reproduce(options: argparse.Namespace) -> None:
@@ -131,6 +132,14 @@ def _simulate(options: argparse.Namespace) -> None:
         simulate_file(options)
 
 
+def _judge(options: argparse.Namespace) -> None:
+    from hrsafety.cli.judge import judge_log
+
+    names = ("people", "frame", "map", "goal", "moments", "offset")
+    with _as_options(*names, robot_radius="--radius", person_radius="--person-radius", robot="--robot-frame"):
+        judge_log(options)
+
+
 def _arm(options: argparse.Namespace) -> None:
     from hrsafety.cli.arm import show_arm
 
@@ -146,6 +155,7 @@ _COMMANDS: dict[str, str | Callable[[argparse.Namespace], None]] = {
     "sweep": "sweep.command:sweep_file",
     "arm": _arm,
     "contact": "cell.command:report_cell",
+    "judge": _judge,
     "benchmark": "benchmark:run_suite",
     "ros": "ros:serve_world",
     "init": "init:write_starter",

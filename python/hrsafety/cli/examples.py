@@ -9,6 +9,7 @@ __all__ = [
     "FOAM",
     "INFO",
     "INIT",
+    "JUDGE",
     "OPTIMIZE",
     "REPRODUCE",
     "ROS",
@@ -78,6 +79,15 @@ ROS = """examples:
 
 It publishes /clock, /tf, /odom, /scan, /map, /people and /hrsafety/verdict, and moves the robot by cmd_vel. Ctrl-C
 ends the run and scores it. rclpy comes with ROS 2: source its setup file first.
+"""
+
+JUDGE = """examples:
+  hrsafety judge rosbag2_2026_03_31 --radius 0.3 --map map.yaml --out judged
+  hrsafety judge odometry.csv --people tracks.csv --radius 0.3 --fail-on contact,violated_rule
+  hrsafety judge run.bag --frame odom --people "/humans:agents[] id=id position=pose.position" --radius 0.3
+
+Nobody who was not seen counts as safe: what is not judged stands in a table with its times and reasons. A bag
+needs rosbags: pip install "hrsafety[bags]".
 """
 
 INIT = """examples:

@@ -122,6 +122,7 @@ def parser() -> argparse.ArgumentParser:
     _add_sweep(commands)
     _add_arm(commands)
     _add_contact(commands)
+    _add_judge(commands)
     _add_benchmark(commands)
     _add_ros(commands)
     _add_init(commands)
@@ -335,6 +336,41 @@ def _add_contact(commands: Any) -> None:
     parser.add_argument("--out", metavar="DIR", default="report", help="folder to write into [%(default)s]")
     parser.add_argument("--date", metavar="YYYY-MM-DD", help="date that the page prints [SOURCE_DATE_EPOCH, else none]")
     _add_shared(parser)
+
+
+def _add_judge(commands: Any) -> None:
+    parser = _add_command(
+        commands,
+        "judge",
+        summary="judge the log of a robot among people: contacts, rules of permission, metrics",
+        example=examples.JUDGE,
+    )
+    parser.add_argument("log", metavar="LOG", help="bag of ROS 1 or 2 (file or folder), TUM, EuRoC, table of odometry")
+    parser.add_argument("--out", metavar="DIR", help="folder for a page, a table (CSV) and pictures")
+    _add_shared(parser)
+    parser.add_argument(
+        "--fail-on",
+        metavar="WORDS",
+        help="exit with code 3, after everything was written, if one of these was found: contact, moving_contact, "
+        "at_fault, wall_contact, possible_contact, broken_assumption, violated_rule, any; several with commas between",
+    )
+    parser.add_argument("--moments", type=_count, default=5, metavar="N", help="number of worst moments [%(default)s]")
+    robot = parser.add_argument_group("robot")
+    robot.add_argument("--radius", type=_number, metavar="M", help="radius in m of a disc that covers the robot")
+    robot.add_argument("--robot", metavar="ROBOT.toml", help="scenario file with the robot, and perhaps its shield")
+    robot.add_argument("--params", metavar="NAV2.yaml", help="settings of Nav2 with footprint and limits")
+    robot.add_argument("--robot-frame", metavar="NAME", help="frame of the robot, or topic of its poses [found]")
+    robot.add_argument("--goal", nargs=2, type=_number, metavar=("X", "Y"), help="where it was going, in m")
+    place = parser.add_argument_group("people and place")
+    place.add_argument("--people", metavar="FILE|TOPIC", help="recorded people, or the topic that reports them [found]")
+    place.add_argument(
+        "--person-radius", type=_number, default=0.25, metavar="M", help="radius of people in m [%(default)s]"
+    )
+    place.add_argument("--map", metavar="MAP.yaml", help="map of the map server")
+    place.add_argument("--frame", default="map", metavar="NAME", help="frame of the result [%(default)s]")
+    place.add_argument(
+        "--offset", metavar="TOPIC=S", action="append", help="seconds added to the stamps of a topic; can be repeated"
+    )
 
 
 def _add_benchmark(commands: Any) -> None:

@@ -13,7 +13,17 @@ from hrsafety.navigation.metrics.between import PASSED, paths_of, until_arrival
 from hrsafety.navigation.metrics.episode import Episode
 from hrsafety.navigation.trajectory import CONTACT_SPEED, DECIDED_OVERLAP
 
-__all__ = ["APPEARING", "Contacts", "Touches", "contacts_of", "touches_of"]
+__all__ = [
+    "APPEARING",
+    "Contacts",
+    "FirstTouch",
+    "Touches",
+    "appears_until",
+    "contacts_of",
+    "touch_of",
+    "touches_of",
+    "touching_share",
+]
 
 APPEARING = 0.2
 """A contact so soon after somebody appears in the scene is counted apart, in s."""
@@ -73,7 +83,7 @@ class Touches(NamedTuple):
         return bool(np.isfinite(self.time).any())
 
 
-class _Touch(NamedTuple):
+class FirstTouch(NamedTuple):
     """A first touch of one person, as of `Touches`."""
 
     time: float = math.nan
@@ -99,7 +109,7 @@ def touches_of(episode: Episode, arrival_time: float) -> Touches:
         Of every person.
     """
     own, people = until_arrival(episode, arrival_time)
-    found = [_Touch()] * (people.shape[1] if people.ndim == 3 else 0)
+    found = [FirstTouch()] * (people.shape[1] if people.ndim == 3 else 0)
     if people.size and len(own) > 1:
         start, way, nearest = paths_of(episode, own, people)
         reach = episode.robot_radius + np.asarray(episode.person_radius)
@@ -111,13 +121,13 @@ def touches_of(episode: Episode, arrival_time: float) -> Touches:
         velocity = np.diff(own, axis=0) / episode.step
         radii = np.broadcast_to(reach, people.shape[1])
         for person in np.flatnonzero(near.any(axis=0)).tolist():
-            appears = _appears(people[:, person], episode.step)
+            appears = appears_until(people[:, person], episode.step)
             paths, steps = (start[:-1, person], way[:, person]), np.flatnonzero(near[:, person])
-            found[person] = _followed(steps, paths, velocity, float(radii[person]), appears, episode.step)
+            found[person] = touch_of(steps, paths, velocity, float(radii[person]), appears, episode.step)
         # Whoever is there at single instants only has appeared.
         for person in np.flatnonzero(touching.any(axis=0) & ~near.any(axis=0)).tolist():
-            found[person] = _Touch(apart=True)
-    rows = np.array(found, dtype=np.float64).reshape(-1, len(_Touch._fields)).T
+            found[person] = FirstTouch(apart=True)
+    rows = np.array(found, dtype=np.float64).reshape(-1, len(FirstTouch._fields)).T
     return Touches(rows[0], rows[1], *(row > 0.0 for row in rows[2:]))
 
 
@@ -142,27 +152,43 @@ def contacts_of(episode: Episode, arrival_time: float) -> Contacts:
     return Contacts(*(int(kind.sum()) for kind in kinds))
 
 
-def _appears(path: Array, step: float) -> float:
+def appears_until(path: Array, step: float) -> float:
     """Return up to which number of steps a contact is counted apart; negative for who is there at the start."""
     first = int(np.argmax(np.isfinite(path[:, 0])))
     return -1.0 if first == 0 else first + APPEARING / step + 1e-9
 
 
-def _followed(
+def touch_of(
     steps: npt.NDArray[np.intp],
     paths: tuple[Array, Array],
     velocity: Array,
     reach: float,
     appears: float,
     length: float,
-) -> _Touch:
-    """Return what the steps in which a person touches the robot make of it; they are of one length in s."""
-    touch = _Touch()
+) -> FirstTouch:
+    """Return what the steps in which a person touches the robot make of it.
+
+    Parameters
+    ----------
+    steps : ndarray of int
+        Those in which both touch.
+    paths : tuple of ndarray, shape (n, 2)
+        Offset of the person from the robot at each instant and the way from there, in m.
+    velocity : ndarray, shape (n, 2)
+        Of the robot in each step, in m/s.
+    reach : float
+        Sum of the radii in m.
+    appears : float
+        Up to which number of steps a contact is counted apart; negative: never.
+    length : float
+        Of a step in s.
+    """
+    touch = FirstTouch()
     # The step after one that ended in a contact of somebody who appeared.
     lasts = -1
     for step in steps.tolist():
         start, way = paths[0][step], paths[1][step]
-        begin, end, decided = _within(start, way, reach)
+        begin, end, decided = touching_share(start, way, reach)
         first = math.isnan(touch.time)
         if first and (step == lasts or step + begin <= appears):
             touch = touch._replace(apart=True)
@@ -181,7 +207,7 @@ def _followed(
     return touch
 
 
-def _within(start: Array, way: Array, reach: float) -> tuple[float, float, bool]:
+def touching_share(start: Array, way: Array, reach: float) -> tuple[float, float, bool]:
     """Return the shares of a step at which a contact begins, and ends or is decided, and whether it is."""
     deep = reach - DECIDED_OVERLAP
     square, along, across = float(way @ way), float(start @ way), float(start @ start)

@@ -9,7 +9,7 @@ from typing import Generic, Literal, NamedTuple, TypeVar
 from hrsafety import _hrsafety
 from hrsafety._display import displayed
 
-__all__ = ["METRICS", "WORLD_METRICS", "Measured", "MeasuredWorld", "Metric", "with_metrics"]
+__all__ = ["METRICS", "OF_GOAL", "WORLD_METRICS", "Measured", "MeasuredWorld", "Metric", "with_metrics"]
 
 N = TypeVar("N")
 K = TypeVar("K")
@@ -44,6 +44,12 @@ METRICS: Mapping[str, Metric] = MappingProxyType(_ROBOT)
 """What the native core declares about each metric of a robot, in the order of tables."""
 WORLD_METRICS: Mapping[str, Metric] = MappingProxyType(_WORLD)
 """What the native core declares about each metric of a world."""
+
+OF_GOAL = (
+    *("arrived", "arrival_time", "final_goal_distance", "success", "path_length_ratio", "spl"),
+    *("longest_without_progress", "frozen"),
+)
+"""Metrics that say nothing without a goal."""
 
 
 class Measured(Generic[N, K, F]):

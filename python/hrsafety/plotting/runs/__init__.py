@@ -5,6 +5,7 @@ from hrsafety.plotting.runs.decisions import animate_safety, safety_decision
 from hrsafety.plotting.runs.energies import energy
 from hrsafety.plotting.runs.fields import force_field, potential_valley
 from hrsafety.plotting.runs.histories import distances, lyapunov
+from hrsafety.plotting.runs.judgements import judged_way, worst_moments
 from hrsafety.plotting.runs.layouts import layout
 from hrsafety.plotting.runs.plans import guide_plan
 from hrsafety.plotting.runs.scenes import paths
@@ -17,10 +18,12 @@ __all__ = [
     "energy",
     "force_field",
     "guide_plan",
+    "judged_way",
     "layout",
     "lyapunov",
     "paths",
     "potential_valley",
     "safety_decision",
     "time_sequence",
+    "worst_moments",
 ]

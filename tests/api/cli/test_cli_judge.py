@@ -1,0 +1,80 @@
+"""The command ``hrsafety judge``: its words, page, JSON and exit codes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from api.robot_logs import Scene, write_log, write_people
+from hrsafety.cli import main
+from hrsafety.cli.exit_codes import ERROR, FAILED_RUN, NOT_CHECKED
+from hrsafety.cli.judge import FAILURES
+from hrsafety.navigation.metrics import METRICS
+
+
+@pytest.fixture
+def passing(tmp_path: Path) -> list[str]:
+    """Return a log of a robot that passes somebody too near, and the people."""
+    time = np.arange(121) / 10
+    log, people = tmp_path / "robot.csv", tmp_path / "people.csv"
+    log.write_text("\n".join(["t_s,x_m,y_m,yaw_rad", *(f"{t},{t},0,0" for t in time)]))
+    people.write_text("\n".join(["t_s,ped_id,x_m,y_m", *(f"{t},ann,8,0.8" for t in time)]))
+    return [str(log), "--people", str(people), "--radius", "0.3"]
+
+
+def test_page_json_and_words(passing: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "judged"
+    assert main(["judge", *passing, "--out", str(out), "--json", str(tmp_path / "found.json")]) == 0
+    told = capsys.readouterr()
+    assert told.out.splitlines()[-1].startswith("NOTE    no contact, 1 passing: 1 rule kept, 2 violated, 0 open")
+    assert "warning" not in told.err
+    page = (out / "summary.html").read_text()
+    assert all(word in page for word in ("Rules of permission", "ann", "What is not judged", "violated", *METRICS))
+    assert {each.name for each in out.iterdir()} == {"summary.html", "judged.csv", "way.png", "moments.png"}
+    found = json.loads((tmp_path / "found.json").read_text())
+    assert found["counts"] == {"violated_rule": 2, "any": 2} | {
+        word: 0 for word in FAILURES if word not in ("violated_rule", "any")
+    }
+    assert found["passings"][0]["person"] == "ann"
+    assert set(found["metrics"]) == set(METRICS)
+
+
+def test_exit_codes(passing: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["judge", *passing, "--fail-on", "contact"]) == 0
+    assert main(["judge", *passing, "--fail-on", "contact,violated-rule"]) == FAILED_RUN
+    assert "FAILED" in capsys.readouterr().out
+    alone = [passing[0], "--radius", "0.3"]
+    assert main(["judge", *alone]) == 0
+    assert "NOT CHECKED" in capsys.readouterr().out
+    assert main(["judge", *alone, "--fail-on", "any"]) == NOT_CHECKED
+    for wrong, said in {
+        ("--fail-on", "crash"): "--fail-on must be among",
+        ("--offset", "people"): "--offset must be TOPIC=SECONDS",
+        ("--radius", "-1"): "--radius",
+        ("--frame", ""): "--frame must be a name",
+    }.items():
+        assert main(["judge", *passing, *wrong]) == ERROR
+        assert said in capsys.readouterr().err
+    assert main(["judge", passing[0]]) == ERROR
+    assert "--radius must be known" in capsys.readouterr().err
+
+
+def test_robot_and_shield_of_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene = Scene()
+    robot = tmp_path / "robot.toml"
+    robot.write_text(
+        "start = [0.0, 0.0]\ngoal = [5.0, 0.0]\n[robot]\nradius = 0.31\nmax_deceleration = 2.0\n"
+        "[safe.shield]\nlatency = 0.2\n"
+    )
+    log = write_log(tmp_path, scene, "mcap")
+    assert main(["judge", str(log), "--robot", str(robot), "--fail-on", "broken_assumption"]) == 0
+    told = capsys.readouterr().out
+    assert "radius 0.31 m" in told
+    assert "latency" in told
+    assert "No shield was given" not in told
+    people = write_people(tmp_path, scene, origin=0.0)
+    table = write_log(tmp_path, scene, "table")
+    assert main(["judge", str(table), "--people", str(people), "--radius", "0.3", "--goal", "9", "1"]) == 0
