@@ -15,7 +15,7 @@ from page_tables import written
 
 GUIDE = (Path(__file__).resolve().parents[2] / "docs" / "guides" / "built.md").read_text(encoding="utf-8")
 WORDS = " ".join(GUIDE.split())
-README = (Path(__file__).resolve().parents[2] / "README.md").read_text(encoding="utf-8")
+MEASURED = (Path(__file__).resolve().parents[2] / "docs" / "measured.md").read_text(encoding="utf-8")
 ROW = re.compile(r"^\| (c\d), (\w+), (.+?) \| (\w+) \| (.+) \|$", re.MULTILINE)
 TABLE = re.compile(r"^\| (New\*?), stabilizing force (\w+) \|.*\n\|[-|]+\n((?:\|.*\n)+)", re.MULTILINE)
 SENSINGS = [name for name in measure_built.SENSINGS if name != "exact"]
@@ -130,10 +130,10 @@ def test_regions_for_a_late_robot_are_as_much_larger_as_the_text_says() -> None:
     assert "regions of rectangle and disc 0.11 m and the active ones 0.21 m larger" in WORDS
 
 
-def test_readme_prints_the_successes_with_every_sensing() -> None:
+def test_measured_numbers_print_the_successes_with_every_sensing() -> None:
     rows = successes()
     found = [rows["New", "capped", "c2", SENSINGS[place], "person"] for place in (1, 2, 4)]
     start = "| c2, successes without and with the side kept"
-    (line,) = [line for line in README.splitlines() if line.startswith(start)]
+    (line,) = [line for line in MEASURED.splitlines() if line.startswith(start)]
     shown = "; ".join(f"{row['afresh']}, {row['3.05']} %" for row in found)
     assert line.endswith(f"| {shown} |")

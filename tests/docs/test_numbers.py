@@ -16,7 +16,7 @@ from page_tables import written
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 VALIDATION = (REPOSITORY / "docs" / "validation.md").read_text(encoding="utf-8")
-README = (REPOSITORY / "README.md").read_text(encoding="utf-8")
+MEASURED = (REPOSITORY / "docs" / "measured.md").read_text(encoding="utf-8")
 
 GAIN_SETS = {
     "New": nav.VirtualForceField(stabilizing="off"),
@@ -51,9 +51,9 @@ def test_every_published_configuration_has_a_row() -> None:
     assert len({row[:2] for row in ROWS}) == 12
 
 
-def test_readme_prints_the_arrival_times_of_the_validation() -> None:
+def test_measured_numbers_print_the_arrival_times_of_the_validation() -> None:
     times = [time for gains, name, time, *_ in ROWS if gains == "New" and name.startswith("c")]
-    line = next(line for line in README.splitlines() if line.startswith("| arrival times of c1 to c4"))
+    line = next(line for line in MEASURED.splitlines() if line.startswith("| arrival times of c1 to c4"))
     assert re.findall(r"(\d+\.\d+) \(", line) == times
 
 
@@ -122,4 +122,4 @@ def test_rows_of_a_recording_are_what_is_computed(recording: str, shared: Path) 
         toward = int((table.contacts_toward > 0).sum())
         away = int(((table.contacts_away > 0) & ~(table.contacts_toward > 0)).sum())
         assert toward + away == moving
-        assert f"| {recording} | {sensing} | {reached} | {toward} | {away} | {standing} |" in README.splitlines()
+        assert f"| {recording} | {sensing} | {reached} | {toward} | {away} | {standing} |" in MEASURED.splitlines()

@@ -1,4 +1,4 @@
-"""What README and guides say of shares of contacts is what the tables beside them hold."""
+"""What measured numbers and guides say of shares of contacts is what the tables beside them hold."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from page_tables import shares, written
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 VALIDATION = (REPOSITORY / "docs" / "validation.md").read_text(encoding="utf-8")
-README = (REPOSITORY / "README.md").read_text(encoding="utf-8")
+MEASURED = (REPOSITORY / "docs" / "measured.md").read_text(encoding="utf-8")
 FIRST_RUN = (REPOSITORY / "docs" / "guides" / "first_run.md").read_text(encoding="utf-8")
 TABLES = written(VALIDATION, measure_shares.MARKS)
 GUIDES = sorted((REPOSITORY / "docs" / "guides").glob("*.md"))
@@ -65,7 +65,7 @@ def test_shares_of_encounters_are_what_is_computed(name: str, column: int) -> No
 
 @pytest.mark.parametrize("name", ["New field", "ORCA", "Velocity obstacle"])
 @pytest.mark.parametrize("people", [1, 3, 12])
-def test_readme_prints_the_shares_of_all_sensings(people: int, name: str) -> None:
+def test_measured_numbers_print_the_shares_of_all_sensings(people: int, name: str) -> None:
     if people == 1:
         number, *cells = CONDITIONS[measure_shares.CONDITIONS[1]][name]
         shares = cells[::2]
@@ -73,7 +73,7 @@ def test_readme_prints_the_shares_of_all_sensings(people: int, name: str) -> Non
         number, *shares = table(measure_shares.crowd_title(people))[name]
     scene = "one person of up to 1.6 m/s" if people == 1 else f"{people} people of up to 1.0 m/s"
     law = {"New field": "virtual force field", "Velocity obstacle": "velocity obstacle"}.get(name, name)
-    assert f"| {scene} | {law} | {int(number):,} | {' | '.join(shares)} |" in README.splitlines()
+    assert f"| {scene} | {law} | {int(number):,} | {' | '.join(shares)} |" in MEASURED.splitlines()
 
 
 def test_first_run_says_what_the_speed_of_a_person_costs() -> None:
