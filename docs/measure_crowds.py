@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hrsafety import datasets, scenarios
+from hrsafety import datasets, io, scenarios
 from hrsafety import navigation as nav
 from hrsafety.benchmarks import SUITES, entry
 from hrsafety.benchmarks.protocol import Case
@@ -58,7 +58,7 @@ def say(*words: object) -> None:
 
 def crossings() -> str:
     """Return the contacts in crossings of a recording whose people react."""
-    recording = datasets.load_pedestrians(Path(os.environ["HRSAFETY_RECORDINGS"]) / "zara01.csv")
+    recording = io.load_people(Path(os.environ["HRSAFETY_RECORDINGS"]) / "zara01.csv")
     laws = {"field": nav.VirtualForceField(), "ORCA": nav.OptimalReciprocalCollisionAvoidance()}
     lines = head("people", *(f"{law}: {what}" for law in laws for what in ("toward", "away", "standing")))
     for model in MODELS:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hrsafety import datasets, scenarios
+from hrsafety import io, scenarios
 from hrsafety import navigation as nav
 
 FITTED = {
@@ -39,7 +39,7 @@ def cells(errors: nav.crowd.PredictionErrors) -> str:
 
 def predicted(folder: Path) -> None:
     """Print the errors of predictions."""
-    one, other = (datasets.load_pedestrians(folder / f"{name}.csv") for name in ("zara01", "zara03"))
+    one, other = (io.load_people(folder / f"{name}.csv") for name in ("zara01", "zara03"))
     fit = nav.crowd.prediction_errors("straight", one, part="first").windows
     held = nav.crowd.prediction_errors("straight", one, part="second").windows
     far = nav.crowd.prediction_errors("straight", other).windows

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 
-from hrsafety import datasets, scenarios
+from hrsafety import io, scenarios
 from hrsafety import navigation as nav
 
 RUNS = 20
@@ -16,7 +16,7 @@ RUNS = 20
 
 def main(path: str) -> None:
     """Cross the main flow of a recording at many start times."""
-    recording = datasets.load_pedestrians(path)
+    recording = io.load_people(path)
     flow = recording.main_flow()
     print(f"{len(recording.people())} people in {recording.duration:.0f} s")
     print(f"main flow through ({flow.center[0]:.1f}, {flow.center[1]:.1f}) m, {2 * flow.spread:.1f} m to either side")

@@ -7,10 +7,10 @@ the page docs/bad_inputs.md, which ``python docs/list_bad_inputs.py --write`` ma
 from __future__ import annotations
 
 import contextlib
-import io
 import os
 import re
 from collections.abc import Iterator, Mapping
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +21,7 @@ from hrsafety import (
     datasets,
     gym,
     impact,
+    io,
     navigation,
     plotting,
     reactive,
@@ -46,10 +47,16 @@ FILES = {
     "axes.toml": 'head = "minimum"\n[design]\nkind = "grid"\n',
     "axis.toml": 'head = "minimum"\n[design]\nkind = "grid"\n[[axes]]\nname = "foam_stifness"\nfrom = 1.0\nto = 2.0\n'
     "points = 3\n[manipulator]\nmass = 49.4\ndamping = 111.0\nstiffness = 14400.0\n[impact]\nclosing_speed = 1.25\n",
-    "semicolons.csv": "frame;t_s;ped_id;x_m;y_m\n0;0.0;1;0.0;1.0\n",
-    "columns.csv": "frame,t,ped_id,x_m,y_m\n0,0.0,1,0.0,1.0\n",
+    "thousands.csv": "t_s;id;x_m;y_m\n0;1;1.234,5;2,0\n",
+    "columns.csv": "frame,number,x_m,y_m\n0,1,0.0,1.0\n",
+    "trajnet.txt": "0 4 -4.0 0.61\n10 4 -3.57 0.64\n10 17 4.5 1.7\n20 4 -3.14 0.65\n20 17 4.0 1.65\n",
+    "grid.txt": "0 0 0.0 0.0\n0 1 0.0 1.0\n1 0 1.0 0.0\n1 1 1.0 1.0\n",
+    "places.csv": "time,id,lat,lon\n0,1,50.1,8.6\n1,1,50.1,8.6\n",
+    "centimeters.csv": "t,id,x,y\n0.0,1,0,100\n0.4,1,50,100\n0.8,1,100,100\n",
+    "pixels.txt": '0 122 287 138 307 100 0 0 0 "Pedestrian"\n0 131 286 147 306 110 0 0 1 "Pedestrian"\n',
+    "camera.txt": "# framerate: 16 fps\n# id frame x/cm y/cm\n1 40 -400.0 61.0\n1 41 -393.3 61.5\n",
     "words.csv": "frame,t_s,ped_id,x_m,y_m\n0,0.0,1,zero,1.0\n",
-    "order.csv": "frame,t_s,ped_id,x_m,y_m\n10,0.4,1,0.0,1.0\n0,0.0,1,0.0,1.0\n",
+    "order.csv": "t_s,x_m,y_m\n0.4,0.0,1.0\n0.0,0.0,1.0\n",
     "twice.csv": "frame,t_s,ped_id,x_m,y_m\n0,0.0,1,0.0,1.0\n0,0.0,1,0.5,1.0\n",
     "header.csv": "frame,t_s,ped_id,x_m,y_m\n",
     "short.csv": "t_s,x_m,y_m\n0.0,1.0\n",
@@ -85,6 +92,7 @@ NAMES = {
     "met": MET,
     "nav": navigation,
     "impact": impact,
+    "io": io,
     "reactive": reactive,
     "arms": arms,
     "sweep": sweep,
@@ -359,14 +367,23 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "hypercube seed of 65 bits": "sweep.LatinHypercube([axis], 4, seed=2**64)",
     },
     "Files and pictures": {
-        "table with semicolons": 'datasets.load_pedestrians("semicolons.csv")',
-        "column by another name": 'datasets.load_pedestrians("columns.csv")',
-        "word in a table": 'datasets.load_pedestrians("words.csv")',
-        "frames out of order": 'datasets.load_pedestrians("order.csv")',
-        "person twice at one instant": 'datasets.load_pedestrians("twice.csv")',
-        "table without rows": 'datasets.load_pedestrians("header.csv")',
-        "row of two fields": 'datasets.load_track("short.csv")',
-        "table that is not there": 'datasets.load_pedestrians("nowhere.csv")',
+        "number with a separator of thousands": 'io.load_people("thousands.csv")',
+        "column by an unknown name": 'io.load_people("columns.csv")',
+        "people by frames without a rate": 'io.load_people("trajnet.txt")',
+        "columns that may be exchanged": 'io.load_people("grid.txt", fps=2.5)',
+        "latitude and longitude": 'io.load_people("places.csv")',
+        "centimeters without their unit": 'io.load_people("centimeters.csv")',
+        "pixels without a scale": 'io.load_people("pixels.txt")',
+        "rate that contradicts the file": 'io.load_people("camera.txt", fps=30.0)',
+        "unit that contradicts the file": 'io.load_people("camera.txt", unit="m")',
+        "format that nobody knows": 'io.load_people("camera.txt", format="petrac")',
+        "people in no known format": 'io.load_people("broken.toml")',
+        "word in a table": 'io.load_people("words.csv")',
+        "way that goes back in time": 'io.load_track("order.csv")',
+        "person twice at one instant": 'io.load_people("twice.csv")',
+        "table without rows": 'io.load_people("header.csv")',
+        "row of two fields": 'io.load_track("short.csv")',
+        "table that is not there": 'io.load_people("nowhere.csv")',
         "scenario with an unknown key": 'scenarios.load("misspelt.toml")',
         "scenario with a bad number": 'scenarios.load("negative.toml")',
         "scenario with a number as text": 'scenarios.load("text.toml")',
@@ -407,7 +424,7 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "folder that is a file": "hrsafety simulate scene.toml --out scene.toml",
         "animation of unknown kind": "hrsafety simulate scene.toml --animate run.txt",
         "runs without people": "hrsafety simulate scene.toml --runs 3",
-        "people with semicolons": "hrsafety simulate --people semicolons.csv",
+        "people with a separator of thousands": "hrsafety simulate --people thousands.csv",
         "foam design without stiffness": "hrsafety foam design.toml",
         "study of an unknown configuration": "hrsafety optimize study.toml",
         "study with an unknown method": "hrsafety optimize budget.toml",
@@ -447,8 +464,8 @@ def _raised(call: str) -> str:
 
 
 def _command(call: str) -> str:
-    said = io.StringIO()
-    with contextlib.redirect_stderr(said), contextlib.redirect_stdout(io.StringIO()):
+    said = StringIO()
+    with contextlib.redirect_stderr(said), contextlib.redirect_stdout(StringIO()):
         code = main(call.split()[1:])
     if code == 0:
         raise AcceptedError(call)

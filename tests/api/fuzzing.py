@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from hrsafety import arms, contact, datasets, impact, reactive, scenarios, standards, sweep
+from hrsafety import arms, contact, datasets, impact, io, reactive, scenarios, standards, sweep
 from hrsafety import navigation as nav
 
 NAN, INF = float("nan"), float("inf")
@@ -339,6 +339,6 @@ def right_files(folder: Path) -> dict[Path, Callable[[Path], Any]]:
     return {
         sound: reactive.read_recording,
         scene: scenarios.load,
-        people: datasets.load_pedestrians,
+        people: io.load_people,
         checkpoint: lambda path: nav.optimize_gains([SHORT], checkpoint=path, **options),
     }

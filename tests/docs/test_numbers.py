@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import measure_stabilizing
-from hrsafety import datasets, scenarios
+from hrsafety import io, scenarios
 from hrsafety import navigation as nav
 from measure_shares import SENSINGS
 from page_tables import written
@@ -30,7 +30,7 @@ ROWS = re.findall(
 
 
 def crossed(recording: Path, measurement: nav.Measurement | None) -> nav.RunTable:
-    crossings = scenarios.crossings(datasets.load_pedestrians(recording), runs=24)
+    crossings = scenarios.crossings(io.load_people(recording), runs=24)
     scenes = [replace(each.scenario, measurement=measurement, seed=seed) for seed, each in enumerate(crossings)]
     return nav.simulate_batch(scenes, nav.VirtualForceField())
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from api.fuzzing import right_files
-from hrsafety import arms, contact, datasets, sweep
+from hrsafety import arms, contact, io, sweep
 from hrsafety import navigation as nav
 from hrsafety.benchmarks.results import Row, read_rows, row_text
 from hrsafety.cli import file_kinds
@@ -60,7 +60,7 @@ def _tables(folder: Path, found: dict[str, tuple[Path, Callable[[Path], Any]]]) 
     """Add tracks, materials, limits and rows of a benchmark."""
     track = folder / "track.csv"
     track.write_text("t_s,x_m,y_m\n0.0,0.0,0.0\n0.1,0.1,0.0\n0.2,0.2,0.0\n", encoding="utf-8")
-    found["load_track"] = (track, datasets.load_track)
+    found["load_track"] = (track, io.load_track)
     for name, reader, source in (
         ("materials.toml", contact.load_materials, _MATERIALS),
         ("limits.toml", load_limits, _LIMITS),

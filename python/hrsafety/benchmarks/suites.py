@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hrsafety import datasets, scenarios
+from hrsafety import datasets, io, scenarios
 from hrsafety import navigation as nav
 from hrsafety._arguments import readable
 from hrsafety.benchmarks import barn
@@ -65,7 +65,7 @@ _KNOWN: dict[Path, tuple[datasets.Recording, list[scenarios.Crossing]]] = {}
 
 def _known(path: Path) -> tuple[datasets.Recording, list[scenarios.Crossing]]:
     if path not in _KNOWN:
-        recording = datasets.load_pedestrians(path)
+        recording = io.load_people(path)
         try:
             found = list(scenarios.crossings(recording, runs=RUNS))
         except InvalidParameterError as error:

@@ -1,4 +1,4 @@
-"""Command line ``hrsafety``: reproduce, simulate, design foam, search gains, sweep, weigh arms, judge contacts."""
+"""Command line ``hrsafety``: reproduce, simulate, read people, design foam, search gains, sweep, judge contacts."""
 
 from __future__ import annotations
 
@@ -120,11 +120,12 @@ def _simulate(options: argparse.Namespace) -> None:
     if options.people is not None:
         from hrsafety.cli.people import simulate_people
 
-        with _as_options("step", "runs", "selection", "fps"):
+        with _as_options("step", "runs", "selection"):
             simulate_people(options)
         return
-    for name in ("fps", "runs", "selection", "animate_run"):
-        if getattr(options, name) is not None:
+    of_people = ("format", "fps", "step_s", "unit", "scale", "homography", "columns", "classes", "relabel")
+    for name in (*of_people, "runs", "selection", "animate_run"):
+        if getattr(options, name) not in (None, False):
             raise UsageError(f"--{name.replace('_', '-')} goes with --people only (see hrsafety simulate --help)")
     from hrsafety.cli.one_run import simulate_file
 
@@ -140,6 +141,12 @@ def _judge(options: argparse.Namespace) -> None:
         judge_log(options)
 
 
+def _people(options: argparse.Namespace) -> None:
+    from hrsafety.cli import recordings
+
+    {"info": recordings.show, "convert": recordings.convert}[options.task](options)
+
+
 def _arm(options: argparse.Namespace) -> None:
     from hrsafety.cli.arm import show_arm
 
@@ -150,6 +157,7 @@ def _arm(options: argparse.Namespace) -> None:
 _COMMANDS: dict[str, str | Callable[[argparse.Namespace], None]] = {
     "reproduce": _reproduce,
     "simulate": _simulate,
+    "people": _people,
     "foam": "foam.command:design_file",
     "optimize": "optimize.command:optimize_file",
     "sweep": "sweep.command:sweep_file",

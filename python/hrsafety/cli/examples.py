@@ -29,8 +29,18 @@ SIMULATE = """examples:
   hrsafety simulate my_first_crossing.toml --law velocity-obstacle
   hrsafety simulate --people zara01.csv --runs 24 --out zara01 --animate zara01/run.gif
 
-A people file has the columns t_s, ped_id, x_m, y_m and may have frame. The robot crosses the main flow of people,
+People come from a file in any layout that "hrsafety people info" reads. The robot crosses the main flow of people,
 who walk as recorded; start times are those with most traffic on its way.
+"""
+
+PEOPLE = """examples:
+  hrsafety people info obsmat.txt
+  hrsafety people info students003.txt --step-s 0.4
+  hrsafety people convert annotations.txt people.csv --scale 0.0384 --classes pedestrian,biker
+
+The format is recognized by the contents: ETH, UCY, TrajNet, TrajNet++, Stanford Drone, inD, PeTrack, JuPedSim, Juelich
+HDF5, ATC, THOR, THOR-Magni, CITR, SocNavData, tables with a header, bare columns of numbers. What a file does not say
+is asked for.
 """
 
 FOAM = """example:

@@ -117,6 +117,7 @@ def parser() -> argparse.ArgumentParser:
     commands = whole.add_subparsers(dest="command", required=True, metavar="COMMAND")
     _add_reproduce(commands)
     _add_simulate(commands)
+    _add_people(commands)
     _add_foam(commands)
     _add_optimize(commands)
     _add_sweep(commands)
@@ -217,8 +218,10 @@ def _add_simulate(commands: Any) -> None:
         "--no-hold", dest="hold", action="store_false", help="compute the force at every step, not every control period"
     )
     people = parser.add_argument_group("recorded people (instead of a scenario file)")
-    people.add_argument("--people", metavar="FILE.csv", help="recorded people to cross")
-    people.add_argument("--fps", type=_number, metavar="F", help="frames per second of a file whose times are frames")
+    people.add_argument(
+        "--people", metavar="FILE", help="recorded people to cross, in any layout that people info reads"
+    )
+    _add_people_file(people)
     people.add_argument("--runs", type=_count, metavar="N", help="number of start times [24]")
     people.add_argument(
         "--selection", choices=["busiest", "even"], help="start times with most traffic, or evenly spaced [busiest]"
@@ -226,6 +229,50 @@ def _add_simulate(commands: Any) -> None:
     people.add_argument(
         "--animate-run", type=_count, metavar="K", help="animate run K, not the one that met most people"
     )
+
+
+def _add_people_file(parser: Any) -> None:
+    """Add what a file of recorded people may not say itself."""
+    parser.add_argument("--format", metavar="NAME", help="format of the file [by its contents]")
+    parser.add_argument("--fps", type=_number, metavar="F", help="frames per second of a file that counts frames")
+    parser.add_argument("--step-s", type=_number, metavar="S", help="instead: time in s between two rows of a person")
+    parser.add_argument("--unit", metavar="U", help="unit of positions: m, cm, mm, km")
+    parser.add_argument("--scale", type=_number, metavar="M", help="instead: meters of a unit, for example of a pixel")
+    parser.add_argument("--homography", metavar="FILE", help="instead: 3 by 3 matrix from pixels to meters, as text")
+    parser.add_argument(
+        "--columns",
+        metavar="NAMES",
+        help="names of all columns, as 'id frame x_cm y_cm', or of some, as number=id,t=frame",
+    )
+    parser.add_argument("--classes", metavar="A,B,...", help="road users that are taken as people [pedestrian]")
+    parser.add_argument("--relabel", action="store_true", help="exchange ids that were exchanged")
+
+
+def _add_people(commands: Any) -> None:
+    parser = _add_command(
+        commands,
+        "people",
+        summary="show what a file of recorded people holds, or write it for another program",
+        example=examples.PEOPLE,
+    )
+    kinds = parser.add_subparsers(dest="task", required=True, metavar="info|convert")
+    info = _add_command(kinds, "info", summary="show format, rate, people and doubts", example=examples.PEOPLE)
+    convert = _add_command(kinds, "convert", summary="write the people for another program", example=examples.PEOPLE)
+    for each in (info, convert):
+        each.add_argument("file", metavar="FILE", help="recorded people")
+    convert.add_argument(
+        "out", metavar="OUT", help="file to write; .csv, .txt, .sqlite, .ndjson or .json tells its format"
+    )
+    for each in (info, convert):
+        _add_shared(each)
+        _add_people_file(each.add_argument_group("what the file may not say"))
+    convert.add_argument(
+        "--to", metavar="NAME", help="table, petrack, jupedsim-sqlite, trajnet++ or socnavdata [by OUT]"
+    )
+    convert.add_argument(
+        "--out-fps", type=_number, metavar="F", help="frames per second to write, of a file with times"
+    )
+    convert.add_argument("--renumber", action="store_true", help="give people numbers where a format has no names")
 
 
 def _add_foam(commands: Any) -> None:

@@ -16,6 +16,7 @@ from hrsafety import navigation as nav
 from hrsafety._records import dataclass
 from hrsafety.cli import output, terminal, verdict
 from hrsafety.cli.output import decimal
+from hrsafety.cli.recordings import loaded
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.tables.runs import RunTable
@@ -40,7 +41,7 @@ class _Encounters:
     """Least distance of every person in every run, one row each."""
 
     run: npt.NDArray[np.int64]
-    person: npt.NDArray[np.int64]
+    person: npt.NDArray[Any]
     distance: Array
     contact: float
     critical: float
@@ -64,7 +65,7 @@ def simulate_people(options: argparse.Namespace) -> None:
     verdict.failures_of(options.fail_on)  # a wrong word is told before the runs
     output.check_targets(options)
     law = output.with_options(nav.VirtualForceField(), options)
-    recording = datasets.load_pedestrians(options.people, fps=options.fps)
+    recording = loaded(options.people, options)
     crossings = scenarios.crossings(recording, runs=runs, selection=options.selection or "busiest")
     stepping = {"integrator": options.integrator, "step": options.step, "hold": options.hold}
     summary = nav.simulate_batch([crossing.scenario for crossing in crossings], law, **stepping)
@@ -139,7 +140,7 @@ def _encounters(crossings: Sequence[scenarios.Crossing], summary: RunTable) -> _
         least = summary.min_distance[row, : len(crossing.people)]
         seen = np.isfinite(least)
         rows.append(np.full(int(seen.sum()), row))
-        people.append(np.array(crossing.people, dtype=np.int64)[seen])
+        people.append(np.array(crossing.people)[seen])
         distances.append(least[seen])
     return _Encounters(
         run=np.concatenate(rows),

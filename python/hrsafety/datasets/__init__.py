@@ -1,11 +1,11 @@
-"""Recorded people: read, check and cut tables of positions over time."""
+"""Recorded people: who is where at which instant, checked, cut and doubted; `hrsafety.io` reads the files."""
 
 from hrsafety._calls import suggest
 from hrsafety.datasets.flow import Flow
+from hrsafety.datasets.motion import RecordedMotion
 from hrsafety.datasets.recording import Recording
 from hrsafety.datasets.robots import RecordedRobot
-from hrsafety.datasets.tables import load_pedestrians, load_track
 
-__all__ = ["Flow", "RecordedRobot", "Recording", "load_pedestrians", "load_track"]
+__all__ = ["Flow", "RecordedMotion", "RecordedRobot", "Recording"]
 
 suggest(__all__, globals())

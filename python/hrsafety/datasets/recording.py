@@ -16,8 +16,17 @@ from hrsafety._records import dataclass
 from hrsafety._sources import Source
 from hrsafety._tracks import WINDOW, Breaks, Ways, smoothed_ways
 from hrsafety.datasets.flow import Flow, flow_of
+from hrsafety.datasets.motion import RecordedMotion, motion_of
 from hrsafety.datasets.robots import RecordedRobot
-from hrsafety.datasets.row_checks import checked_ids, checked_order, checked_velocity, checked_window, finite_array
+from hrsafety.datasets.row_checks import (
+    FARTHEST,
+    LONGEST,
+    checked_ids,
+    checked_order,
+    checked_velocity,
+    checked_window,
+    finite_array,
+)
 from hrsafety.datasets.track_ends import TrackEnds, ends_doubts, lost_doubts, track_ends
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.plausibility import ResultWarning, telling
@@ -99,7 +108,8 @@ class Recording:
 
     def __post_init__(self) -> None:
         """Check the rows and freeze the arrays."""
-        time, position = finite_array("time_s", self.time_s), finite_array("position", self.position)
+        time = finite_array("time_s", self.time_s, LONGEST)
+        position = finite_array("position", self.position, FARTHEST)
         if time.ndim != 1:
             raise ShapeError("time_s", "(n,)", time.shape)
         if len(time) == 0:
@@ -212,6 +222,41 @@ class Recording:
         found = np.empty_like(self.position)
         found[self._order] = smoothed_ways(ways, positive("window", window), self._breaks().steps)
         return replace(self, position=found, velocity=None)
+
+    def motion(self, window: float = WINDOW) -> RecordedMotion:
+        """Return velocities and accelerations, with how exact they are and what they pass.
+
+        Stored velocities are taken if they are within 20 % of differences of the positions. Others are those of local
+        quadratic fits over the window, at least 5 rows and never across a gap, a jump or an exchange of ids; of
+        recordings with less than 5 rows a second differences.
+
+        Parameters
+        ----------
+        window : float
+            Length of the window in s.
+
+        Returns
+        -------
+        RecordedMotion
+            One row for each of the recording.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the window is not finite and positive.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from hrsafety.datasets import Recording
+        >>> time = 0.02 * np.arange(200)
+        >>> walk = time[:, None] * (1.2, 0.0) + np.random.default_rng(1).normal(0.0, 0.02, (200, 2))
+        >>> motion = Recording(time_s=time, person=[7] * 200, position=walk).motion()
+        >>> motion.velocity_from, round(motion.bandwidth, 1), round(motion.velocity_noise, 2)
+        ('fit', 1.7, 0.02)
+        """
+        length = positive("window", window)
+        return motion_of(self._ways(), self._breaks().steps, self._order, self.velocity, length)
 
     @property
     def sampling_period(self) -> float:

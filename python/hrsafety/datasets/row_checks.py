@@ -11,9 +11,14 @@ import numpy.typing as npt
 from hrsafety._arguments import number, positive, with_article
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 
-__all__ = ["checked_ids", "checked_order", "checked_velocity", "checked_window", "finite_array"]
+__all__ = ["FARTHEST", "LONGEST", "checked_ids", "checked_order", "checked_velocity", "checked_window", "finite_array"]
 
 Array = npt.NDArray[np.float64]
+
+FARTHEST, LONGEST = 1e9, 1e12
+"""Bounds of places in m and of times in s: beyond them differences and products lose their meaning."""
+SHORTEST = 1e-9
+"""Rows of one person are so far apart at least, in s."""
 
 
 def checked_ids(value: object, rows: int) -> npt.NDArray[Any]:
@@ -29,7 +34,7 @@ def checked_ids(value: object, rows: int) -> npt.NDArray[Any]:
     return person if person.dtype.kind == "U" else person.astype(np.int64)
 
 
-def finite_array(name: str, value: npt.ArrayLike) -> Array:
+def finite_array(name: str, value: npt.ArrayLike, most: float) -> Array:
     """Return a copy of ``value`` as float64, or say why not."""
     try:
         array = np.array(value, dtype=np.float64)
@@ -37,6 +42,9 @@ def finite_array(name: str, value: npt.ArrayLike) -> Array:
         raise InvalidParameterError(name, "be an array of numbers", Shown(with_article(type(value).__name__))) from None
     if not np.isfinite(array).all():
         raise InvalidParameterError(name, "be finite", float(array[~np.isfinite(array)][0]))
+    far = np.abs(array) > most
+    if far.any():
+        raise InvalidParameterError(name, f"be from {-most:g} to {most:g}", float(array[far][0]))
     return array
 
 
@@ -50,7 +58,7 @@ def checked_order(time: Array, person: npt.NDArray[Any]) -> npt.NDArray[np.intp]
         raise InvalidParameterError(f"time_s[{row}]", rule, float(time[row]), remedy)
     # The rows are sorted by time, and a stable sort keeps that.
     order = np.argsort(person, kind="stable")
-    same = (person[order][1:] == person[order][:-1]) & (np.diff(time[order]) <= 0.0)
+    same = (person[order][1:] == person[order][:-1]) & (np.diff(time[order]) < SHORTEST)
     if same.any():
         row = int(order[int(np.flatnonzero(same)[0]) + 1])
         raise InvalidParameterError(f"person[{row}]", "have one row for each instant", Shown(f"two at {time[row]} s"))

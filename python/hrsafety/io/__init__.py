@@ -10,6 +10,8 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.io.logs.robot_log import RobotLog as RobotLog
     from hrsafety.io.people.loading import load_people as load_people
     from hrsafety.io.places.maps import load_map as load_map
+    from hrsafety.io.people.tracks import load_track as load_track
+    from hrsafety.io.people.writers import write_people as write_people
     from hrsafety.io.reader import Source as Source
 else:
     __all__, __getattr__, __dir__ = names_of(__name__)

@@ -14,9 +14,8 @@ from hrsafety import _keys as kind
 from hrsafety import navigation as nav
 from hrsafety._display import displayed
 from hrsafety._keys import Keys, checked, located, parsed
-from hrsafety.datasets import load_track
-from hrsafety.datasets.tables import track_doubts
 from hrsafety.errors import InvalidParameterError
+from hrsafety.io.people.tracks import load_track, track_doubts
 from hrsafety.navigation.obstacles.moving_rectangle import Mobile
 from hrsafety.scenarios.laws import law_of, safe_of
 

@@ -56,7 +56,7 @@ class Crossing:
     traffic : int
         How many people come within the active radius of a robot that crosses straight at 0.7
         of its largest speed from ``start_time`` on.
-    people : tuple of int
+    people : tuple of int or str
         Id of the person behind each obstacle of the scenario.
     scenario : Scenario
         What to simulate.
@@ -65,7 +65,7 @@ class Crossing:
     start_time: Annotated[float, "s"]
     planned_time: Annotated[float, "s"]
     traffic: int
-    people: tuple[int, ...]
+    people: tuple[int | str, ...]
     scenario: nav.Scenario
 
 
@@ -241,7 +241,7 @@ def _route(recording: Recording, length: float | None, clearance: float, robot: 
 
 def _doubt(recording: Recording) -> str | None:
     """Return what the recording itself is doubtful about, as the likely reason of a refusal."""
-    return next((found.message for found in recording.warnings), None)
+    return next((found.message for found in recording.warnings if found.code == "implausible"), None)
 
 
 def _candidates(recording: Recording, route: _Route) -> Array:

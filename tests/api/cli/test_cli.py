@@ -12,8 +12,8 @@ import pytest
 
 import hrsafety
 from api.cli_answers import error_line
+from hrsafety import io, plotting, reproduce, scenarios
 from hrsafety import navigation as nav
-from hrsafety import plotting, reproduce, scenarios
 from hrsafety.cli import main
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -174,7 +174,7 @@ def test_people_are_crossed_as_the_library_does(people: Path, capsys: pytest.Cap
     report = people.parent / "report" / "all.json"
     options = ["--runs", "3", "--stabilizing", "off", "--out", str(out), "--json", str(report)]
     assert main(["simulate", "--people", str(people), *options]) == 0
-    crossings = scenarios.crossings(hrsafety.datasets.load_pedestrians(people), runs=3)
+    crossings = scenarios.crossings(io.load_people(people), runs=3)
     summary = nav.simulate_batch([run.scenario for run in crossings], nav.VirtualForceField(stabilizing="off"))
     rows = table(out / "runs.csv")
     assert [row["outcome"] for row in rows] == summary.outcome.tolist()
@@ -217,7 +217,7 @@ def test_the_chosen_run_or_the_one_that_met_most_people_is_animated(
     options = ["--runs", "4", "--stabilizing", "off", "--animate", str(people.parent / "run.gif")]
     options += [] if chosen is None else ["--animate-run", str(chosen)]
     assert main(["simulate", "--people", str(people), *options]) == 0
-    crossings = scenarios.crossings(hrsafety.datasets.load_pedestrians(people), runs=4)
+    crossings = scenarios.crossings(io.load_people(people), runs=4)
     summary = nav.simulate_batch([run.scenario for run in crossings], nav.VirtualForceField(stabilizing="off"))
     expected = int(np.argmax(summary.entered_active)) if chosen is None else chosen
     assert [trajectory.scenario for trajectory in seen] == [crossings[expected].scenario]
@@ -226,7 +226,7 @@ def test_the_chosen_run_or_the_one_that_met_most_people_is_animated(
 
 def test_evenly_spaced_runs_can_be_asked_for(people: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["simulate", "--people", str(people), "--runs", "3", "--selection", "even"]) == 0
-    crossings = scenarios.crossings(hrsafety.datasets.load_pedestrians(people), runs=3, selection="even")
+    crossings = scenarios.crossings(io.load_people(people), runs=3, selection="even")
     lines = capsys.readouterr().out.splitlines()
     assert all(
         any(line.split()[:2] == [str(k), f"{run.start_time:.1f}"] for line in lines) for k, run in enumerate(crossings)
@@ -247,7 +247,7 @@ BAD_COMMANDS = {
         "path must name a readable file, got 'nowhere.csv'; no such file in",
     ),
     "not a scenario": (["simulate", "PEOPLE"], "must be a TOML file"),
-    "not people": (["simulate", "--people", "SCENE"], "line 1 must name the columns frame, t_s, ped_id, x_m, y_m"),
+    "not people": (["simulate", "--people", "SCENE"], "line 1 must have a column for a time or a frame and an id"),
     "three gains": (["simulate", "SCENE", "--gains", "1", "2", "3"], "--gains must be 4 numbers: attractive_gain"),
     "mode of another law": (["simulate", "SCENE", "--law", "masoud", "--stabilizing", "off"], "--stabilizing must"),
     "gain word": (["simulate", "SCENE", "--gains", "1", "2", "3", "x"], "--gains: must be a number, got 'x'"),

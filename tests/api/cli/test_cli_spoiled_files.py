@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from api.spoiled_files import spoiled
-from hrsafety import datasets, scenarios
+from hrsafety import io, scenarios
 from hrsafety.cli import main
 from hrsafety.cli.foam import file as foam_file
 from hrsafety.cli.optimize import file as optimize_file
@@ -25,7 +25,7 @@ TRACK = "t_s,x_m,y_m\n0.0,0.0,1.0\n0.4,0.5,1.0\n0.8,1.0,1.0\n"
 
 
 def people(path: str) -> object:
-    recording = datasets.load_pedestrians(path)
+    recording = io.load_people(path)
     return recording.warnings, scenarios.crossings(recording, runs=2)
 
 
@@ -36,7 +36,7 @@ READERS: dict[str, tuple[str, str, Callable[[str], object]]] = {
     "sweep of impacts": ("impact_sweep.toml", "", sweep_file.load),
     "sweep of gains": ("gain_sweep.toml", "", sweep_file.load),
     "people": ("people.csv", PEOPLE, people),
-    "track": ("track.csv", TRACK, datasets.load_track),
+    "track": ("track.csv", TRACK, io.load_track),
 }
 
 

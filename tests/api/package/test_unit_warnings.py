@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hrsafety import datasets, impact, scenarios
+from hrsafety import datasets, impact, io, scenarios
 from hrsafety import navigation as nav
 from hrsafety.plausibility import HrsafetyWarning, UnitWarning
 
@@ -143,7 +143,7 @@ def test_a_file_of_frames_says_so_when_it_is_read(tmp_path: Path) -> None:
     rows = [f"{10 * k},{person},{0.5 * k},{3.0 * person}" for k in range(30) for person in (1, 2)]
     path.write_text("\n".join(["t_s,ped_id,x_m,y_m", *rows]), encoding="utf-8")
     with pytest.warns(UnitWarning, match="fps="):
-        datasets.load_pedestrians(path)
+        io.load_people(path)
 
 
 @pytest.mark.parametrize(

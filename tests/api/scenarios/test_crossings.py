@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hrsafety import datasets, scenarios
+from hrsafety import io, scenarios
 from hrsafety import navigation as nav
 from hrsafety.datasets import Recording
 from hrsafety.errors import InvalidParameterError
@@ -153,7 +153,7 @@ def test_most_crossings_of_recorded_scenes_meet_many_people(name: str) -> None:
     path = PEDESTRIANS / f"{name}.csv"
     if not path.is_file():
         pytest.skip(f"needs {path.name} of the pedestrian data (HRSAFETY_SHARED)")
-    runs = scenarios.crossings(datasets.load_pedestrians(path), runs=RUNS)
+    runs = scenarios.crossings(io.load_people(path), runs=RUNS)
     assert len({run.start_time for run in runs}) == RUNS
     table = nav.simulate_batch([run.scenario for run in runs], nav.VirtualForceField(stabilizing="off"))
     assert np.count_nonzero(table.entered_active >= MANY) > RUNS // 2

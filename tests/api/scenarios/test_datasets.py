@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hrsafety import datasets
+from hrsafety import datasets, io
 from hrsafety.datasets import Recording
 from hrsafety.errors import HrsafetyError, InvalidParameterError, ShapeError
 
@@ -32,7 +32,7 @@ def written(folder: Path, text: str | bytes) -> Path:
 
 
 def good(folder: Path) -> Recording:
-    return datasets.load_pedestrians(written(folder, GOOD))
+    return io.load_people(written(folder, GOOD))
 
 
 def test_loading_keeps_every_row_in_order(tmp_path: Path) -> None:
@@ -46,7 +46,7 @@ def test_loading_keeps_every_row_in_order(tmp_path: Path) -> None:
 def test_columns_may_stand_in_any_order_behind_a_byte_order_mark(tmp_path: Path) -> None:
     lines = [line.split(",") for line in GOOD.split()]
     shuffled = "\r\n".join(",".join(line[k] for k in (3, 1, 4, 0, 2)) for line in lines) + "\r\n"
-    recording = datasets.load_pedestrians(written(tmp_path, b"\xef\xbb\xbf" + shuffled.encode()))
+    recording = io.load_people(written(tmp_path, b"\xef\xbb\xbf" + shuffled.encode()))
     expected = good(tmp_path)
     np.testing.assert_array_equal(recording.position, expected.position)
     np.testing.assert_array_equal(recording.person, expected.person)
@@ -188,7 +188,7 @@ def test_frames_may_be_left_out(tmp_path: Path) -> None:
     framed, plain = tmp_path / "framed.csv", tmp_path / "plain.csv"
     framed.write_text("\n".join(["frame,t_s,ped_id,x_m,y_m", *(",".join(map(str, row)) for row in rows)]))
     plain.write_text("\n".join(["y_m,t_s,x_m,ped_id", *(f"{y},{t},{x},{who}" for _, t, who, x, y in rows)]))
-    one, other = (datasets.load_pedestrians(path) for path in (framed, plain))
+    one, other = (io.load_people(path) for path in (framed, plain))
     assert np.array_equal(one.time_s, other.time_s)
     assert np.array_equal(one.person, other.person)
     assert np.array_equal(one.position, other.position)
@@ -196,57 +196,47 @@ def test_frames_may_be_left_out(tmp_path: Path) -> None:
 
 HEADER = "frame,t_s,ped_id,x_m,y_m\n"
 BAD_FILES = {
-    "empty": ("", "line 1 must name the columns"),
-    "header only": (HEADER, "must hold at least one row, got the header only"),
+    "empty": ("", "must hold at least one row"),
+    "header only": (HEADER, "must hold at least one row"),
     "missing column": (
         "frame,t_s,ped_id,x_m\n0,0,1,0\n",
-        "line 1 must have one column y_m, got the columns frame, t_s, ped_id, x_m",
+        "line 1 must have a column for y, got the columns frame, t_s, ped_id, x_m",
     ),
-    "extra column": ("frame,t_s,ped_id,x_m,y_m,z_m\n0,0,1,0,0,0\n", "have no other columns than .*, got 'z_m'"),
-    "double column": ("frame,t_s,ped_id,x_m,x_m\n0,0,1,0,0\n", "have one column x_m, got 2"),
-    "wrong unit": (
-        "frame,t_ms,ped_id,x_m,y_m\n0,0,1,0,0\n",
-        "have one column t_s, got .*; convert t_ms to the unit of t_s",
-    ),
-    "no header": ("0,0.0,1,0,0\n", "line 1 must name the columns frame, .*, got numbers; write frame,t_s,"),
+    "double column": ("frame,t_s,ped_id,x_m,x_m\n0,0,1,0,0\n", "have one column for x, got 'x_m' and 'x_m'"),
+    "two units": ("t_s,ped_id,x_m,y_cm\n0,1,0,0\n", "have one unit of x and y, got m and cm"),
+    "unknown unit": ("t_s,ped_id,x_ft,y_ft\n0,1,0,0\n", "have a column for x and y"),
     "word": (HEADER + "0,0,1,0,0\n10,0.4,1,abc,0\n", "line 3, column x_m must be a finite number, got 'abc'"),
-    "blank": (HEADER + "0,0,1,,0\n", "line 2, column x_m must be a finite number, got ''"),
-    "nan": (HEADER + "0,nan,1,0,0\n", "line 2, column t_s must be a finite number, got 'nan'"),
     "inf": (HEADER + "0,0,1,0,-inf\n", "line 2, column y_m must be a finite number"),
     "huge": (HEADER + "0,0,1,0,1e999\n", "line 2, column y_m must be a finite number"),
     "underscore": (HEADER + "0,0,1,1_0,0\n", "line 2, column x_m must be a finite number"),
-    "float id": (HEADER + "0,0,1.5,0,0\n", "line 2, column ped_id must be an integer, got '1.5'"),
-    "huge id": (HEADER + f"0,0,{'9' * 5000},0,0\n", "line 2, column ped_id must be an integer, got '9999"),
-    "short row": (HEADER + "0,0,1,0\n", "line 2 must have 5 fields, got 4"),
-    "long row": (HEADER + "0,0,1,0,0,0\n", "line 2 must have 5 fields, got 6"),
-    "blank line": (HEADER + "0,0,1,0,0\n\n10,0.4,1,0,0\n", "line 3 must have 5 fields, got 0"),
-    "frames backward": (HEADER + "10,0.4,1,0,0\n0,0.0,1,0,0\n", "line 3, column frame must not be before frame 10"),
-    "time backward": (HEADER + "0,0.4,1,0,0\n10,0.0,1,0,0\n", "line 3, column t_s must be later than 0.4"),
-    "time stands": (HEADER + "0,0.4,1,0,0\n10,0.4,1,0,0\n", "line 3, column t_s must be later than 0.4"),
-    "two times": (HEADER + "0,0.0,1,0,0\n0,0.1,2,0,0\n", "line 3, column t_s must be 0.0 as in"),
-    "duplicate": (HEADER + "0,0,1,0,0\n0,0,1,1,1\n", "line 3, column ped_id must have one row for each instant"),
-    "ids backward": (HEADER + "0,0,2,0,0\n0,0,1,1,1\n", "line 3, column ped_id must follow 2 within the frame, got 1"),
-    "latin": (HEADER.encode() + b"0,0,1,\xe9,0\n", "must be UTF-8 text, got byte 0xe9"),
+    "time that is none": (HEADER + "0,nan,1,0,0\n", "line 2 must have a time or frame in each row"),
+    "no id": (HEADER + "0,0,,0,0\n", "line 2, column ped_id must name somebody"),
+    "huge id": (HEADER + f"0,0,{'9' * 5000},0,0\n", "line 2, column ped_id must name somebody in 1 to 200 letters"),
+    "short row": (HEADER + "0,0,1,0\n", "line 2 must have 5 cells, got 4"),
+    "long row": (HEADER + "0,0,1,0,0,0\n", "line 2 must have 5 cells, got 6"),
+    "decimal commas": (HEADER + "0,0,5,1,0,5,0,5\n", "have 5 cells, got 8; decimals need a point"),
+    "two signs": ("t_s;id;x_m;y_m\n0,5;1;1,5;0\n1,0;1;1.7;0\n", "line 3, column x_m .*others have commas"),
+    "two places": (HEADER + "0,0,1,0,0\n0,0,1,1,1\n", "line 3 must have one position of a person at one instant"),
+    "no text": (HEADER.encode() + b"0,0,1,\0,0\n", "line 2 must be text, got a null character"),
     "binary": (bytes(range(256)), "must"),
-    "open quote": (HEADER + '0,0,1,"0,0\n', "must be comma-separated text"),
-    "semicolons": (HEADER.replace(",", ";") + "0;0;1;0;0\n", "got semicolons between the columns frame, t_s,"),
+    "open quote": (HEADER + '0,0,1,"0,0\n', "line 2 must close each quote"),
 }
 
 
 @pytest.mark.parametrize(("text", "message"), BAD_FILES.values(), ids=BAD_FILES.keys())
 def test_a_bad_file_is_an_error_that_says_where(tmp_path: Path, text: str | bytes, message: str) -> None:
     with pytest.raises(InvalidParameterError, match=message):
-        datasets.load_pedestrians(written(tmp_path, text))
+        io.load_people(written(tmp_path, text))
 
 
 def test_a_missing_file_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(InvalidParameterError, match=r"path must name a readable file, got .*nobody\.csv"):
-        datasets.load_pedestrians(tmp_path / "nobody.csv")
+        io.load_people(tmp_path / "nobody.csv")
 
 
 def test_a_folder_is_not_a_recording(tmp_path: Path) -> None:
     with pytest.raises(InvalidParameterError, match="path must name a readable file"):
-        datasets.load_pedestrians(tmp_path)
+        io.load_people(tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -272,7 +262,7 @@ def test_bad_arrays_make_no_recording(fields: dict[str, object], error: type[Hrs
 
 
 def test_load_track_reads_time_and_position(tmp_path: Path) -> None:
-    time, position = datasets.load_track(written(tmp_path, "y_m,t_s,x_m\n1,0,2\n3,0.5,4\n"))
+    time, position = io.load_track(written(tmp_path, "y_m,t_s,x_m\n1,0,2\n3,0.5,4\n"))
     assert time.tolist() == [0.0, 0.5]
     assert position.tolist() == [[2.0, 1.0], [4.0, 3.0]]
 
@@ -280,7 +270,7 @@ def test_load_track_reads_time_and_position(tmp_path: Path) -> None:
 @pytest.mark.parametrize("second", ["0,1,1", "-1,1,1"])
 def test_a_track_must_go_on_in_time(tmp_path: Path, second: str) -> None:
     with pytest.raises(InvalidParameterError, match=r"line 3, column t_s must be later than 0\.0"):
-        datasets.load_track(written(tmp_path, f"t_s,x_m,y_m\n0,0,0\n{second}\n"))
+        io.load_track(written(tmp_path, f"t_s,x_m,y_m\n0,0,0\n{second}\n"))
 
 
 @pytest.mark.parametrize(
@@ -290,7 +280,7 @@ def test_the_recorded_scenes_are_read_whole(name: str, rows: int, people: int, d
     path = PEDESTRIANS / f"{name}.csv"
     if not path.is_file():
         pytest.skip(f"needs {path.name} of the pedestrian data (HRSAFETY_SHARED)")
-    recording = datasets.load_pedestrians(path)
+    recording = io.load_people(path)
     assert len(recording) == rows
     assert len(recording.people()) == people
     assert recording.duration == pytest.approx(duration, abs=1e-9)

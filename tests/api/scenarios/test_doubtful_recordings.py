@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hrsafety import datasets, scenarios
+from hrsafety import io, scenarios
 from hrsafety import navigation as nav
 from hrsafety.cli import main
 from hrsafety.datasets import Recording
@@ -82,7 +82,7 @@ def table(folder: Path, header: str, time_s: np.ndarray, ids: np.ndarray, places
 def test_a_file_of_frames_is_read_with_its_frames_per_second(tmp_path: Path, header: str) -> None:
     time_s, ids, places = crowd()
     path = table(tmp_path, header, np.round(25.0 * time_s), ids, places)
-    found = datasets.load_pedestrians(path, fps=25.0)
+    found = io.load_people(path, fps=25.0)
     np.testing.assert_allclose(found.time_s, np.repeat(time_s, len(ids)), atol=1e-9)
     assert found.warnings == ()
 
@@ -90,23 +90,23 @@ def test_a_file_of_frames_is_read_with_its_frames_per_second(tmp_path: Path, hea
 def test_the_message_of_a_file_without_times_leads_to_right_seconds(tmp_path: Path) -> None:
     time_s, ids, places = crowd()
     path = table(tmp_path, "frame,ped_id,x_m,y_m", np.round(25.0 * time_s), ids, places)
-    with pytest.raises(InvalidParameterError, match="give fps=, the frames per second"):
-        datasets.load_pedestrians(path)
-    assert datasets.load_pedestrians(path, fps=25.0).duration == pytest.approx(time_s[-1])
+    with pytest.raises(InvalidParameterError, match="come with fps=, the frames per second"):
+        io.load_people(path)
+    assert io.load_people(path, fps=25.0).duration == pytest.approx(time_s[-1])
 
 
 def test_frames_that_contradict_the_times_of_a_file_are_refused(tmp_path: Path) -> None:
     time_s, ids, places = crowd()
     path = table(tmp_path, "t_s,ped_id,x_m,y_m", time_s, ids, places)
     with pytest.raises(InvalidParameterError, match=r"column t_s must hold frames where fps is given, got 0\.4"):
-        datasets.load_pedestrians(path, fps=25.0)
+        io.load_people(path, fps=25.0)
     path.write_text("frame,t_s,ped_id,x_m,y_m\n0,0.0,1,0,0\n10,0.4,1,0.5,0\n", encoding="utf-8")
-    assert datasets.load_pedestrians(path, fps=25.0).duration == 0.4
-    with pytest.raises(InvalidParameterError, match=r"be the frames divided by fps = 10, got 0\.4 s for 10 frames"):
-        datasets.load_pedestrians(path, fps=10.0)
+    assert io.load_people(path, fps=25.0).duration == 0.4
+    with pytest.raises(InvalidParameterError, match="says 10 frames per second, got 25 in the file"):
+        io.load_people(path, fps=10.0)
     for wrong in (0.0, -1.0, math.nan, math.inf):
         with pytest.raises(InvalidParameterError, match="fps must be finite and positive"):
-            datasets.load_pedestrians(path, fps=wrong)
+            io.load_people(path, fps=wrong)
 
 
 def test_runs_among_people_by_frames_are_not_passed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -134,7 +134,7 @@ def test_positions_in_other_units_are_doubted(factor: float, seed: int) -> None:
 
 def test_recorded_scenes_have_no_doubts(shared: Path) -> None:
     for name in ("zara01", "zara03"):
-        recording = datasets.load_pedestrians(shared / "data" / "pedestrians" / f"{name}.csv")
+        recording = io.load_people(shared / "data" / "pedestrians" / f"{name}.csv")
         assert recording.warnings == ()
 
 
@@ -149,7 +149,7 @@ def test_recorded_scenes_have_no_doubts(shared: Path) -> None:
     ],
 )
 def test_samples_have_the_doubts_that_were_put_into_them(shared: Path, name: str, expected: str) -> None:
-    recording = datasets.load_pedestrians(shared / "data" / "formats" / f"people_{name}.csv")
+    recording = io.load_people(shared / "data" / "formats" / f"people_{name}.csv")
     assert codes(recording) == [expected]
 
 
@@ -278,8 +278,8 @@ def test_a_way_by_frames_is_doubted_in_scenes_and_fps_takes_the_doubt_away(
         run = nav.simulate(found.scenario, found.law)
         assert any("look like frames" in each.message for each in unsafe_doubts(run.warnings)) == doubted
     with pytest.warns(UnitWarning, match="fps"):
-        datasets.load_track(folder / "walk.csv")
-    assert datasets.load_track(folder / "frames.csv", fps=fps)[0][-1] == frames[-1] / fps
+        io.load_track(folder / "walk.csv")
+    assert io.load_track(folder / "frames.csv", fps=fps)[0][-1] == frames[-1] / fps
 
 
 def test_a_scene_with_a_way_by_frames_does_not_pass(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

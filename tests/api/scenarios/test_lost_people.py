@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hrsafety import datasets, scenarios
+from hrsafety import io, scenarios
 from hrsafety import navigation as nav
 from hrsafety.benchmarks import benchmark
 from hrsafety.cli import main
@@ -79,7 +79,7 @@ def test_two_streams_that_meet_are_no_broken_tracks() -> None:
 
 def test_recorded_scenes_are_broken_by_less_than_half(shared: Path) -> None:
     for name in ("zara01", "zara03"):
-        assert datasets.load_pedestrians(shared / f"data/pedestrians/{name}.csv").warnings == ()
+        assert io.load_people(shared / f"data/pedestrians/{name}.csv").warnings == ()
 
 
 # One person may stand within 3 cm.

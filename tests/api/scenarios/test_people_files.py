@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import json
 import warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from hrsafety import io
+from hrsafety import io, scenarios
+from hrsafety import navigation as nav
+from hrsafety.datasets import Recording
 from hrsafety.errors import FileError, HrsafetyError
 from hrsafety.plausibility import HrsafetyWarning
 
@@ -122,3 +127,229 @@ def test_every_hint_leads_on(shared: Path) -> None:
         loaded(folder / "people_eth_obsmat.txt", fps=10.0)
     assert loaded(folder / "people_eth_obsmat.txt", fps=15.0).warnings == ()
     assert loaded(folder / "people_frames_as_seconds.csv", fps=25.0).sampling_period == pytest.approx(0.4)
+
+
+# ---- writers and other readers ------------------------------------------------------------------
+
+
+def walk(*, step: int = 3, rate: float = 30.0, people: int = 4, rows: int = 40, seed: int = 0) -> Recording:
+    """Return people who walk on curves and are there at different times."""
+    rng = np.random.default_rng(seed)
+    time, who, place = [], [], []
+    for person in range(people):
+        frames = step * (np.arange(rows) + int(rng.integers(0, 20)))
+        seconds = frames / rate
+        time.append(seconds)
+        who += [3 * person + 1] * rows
+        turn = rng.uniform(0.2, 1.0)
+        place.append(np.stack([1.2 * seconds, 2.0 * person + np.sin(turn * seconds)], axis=1))
+    times, ids, places = np.concatenate(time), np.array(who), np.round(np.concatenate(place), 6)
+    order = np.lexsort((ids, times))
+    begin = times.min()
+    return Recording(time_s=times[order] - begin, person=ids[order], position=places[order], frame_rate=rate)
+
+
+RING = np.array([[-5.0, -5.0], [9.0, -5.0], [9.0, 12.0], [-5.0, 12.0]])
+HOLE = np.array([[1.0, 1.5], [2.0, 1.5], [2.0, 2.5]])
+WRITTEN = ["people.csv", "people.txt", "people.sqlite", "people.ndjson", "people.json"]
+
+
+@pytest.mark.parametrize("name", WRITTEN)
+@given(seed=st.integers(0, 99), step=st.integers(1, 12), rate=st.sampled_from([8.0, 25.0, 29.97002997002997, 100.0]))
+@settings(max_examples=12, deadline=None)
+def test_what_is_written_is_read_again(
+    name: str, seed: int, step: int, rate: float, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    recording = walk(step=step, rate=rate, seed=seed)
+    path = io.write_people(recording, tmp_path_factory.mktemp("written") / name)
+    again = loaded(path)
+    np.testing.assert_allclose(again.time_s, recording.time_s, atol=1e-9)
+    assert again.person.tolist() == recording.person.tolist()
+    np.testing.assert_array_equal(again.position, recording.position)
+    if name != "people.json":
+        assert again.frame_rate == pytest.approx(rate, rel=1e-9)
+
+
+def test_the_same_recording_through_eleven_formats_gives_the_same_numbers(tmp_path: Path) -> None:
+    import h5py
+
+    recording = walk(step=3, rate=30.0)
+    frames = np.rint(recording.time_s * 30.0).astype(int).tolist()
+    rows = list(zip(frames, recording.person.tolist(), *recording.position.T.tolist(), strict=True))
+    calls: dict[str, dict[str, Any]] = {name: {} for name in WRITTEN}
+    for name in WRITTEN:
+        io.write_people(recording, tmp_path / name)
+    velocity = recording.motion().velocity.tolist()
+    moving = list(zip(rows, velocity, strict=True))
+    eth = "".join(f"{f} {p} {x!r} 0 {y!r} {vx!r} 0 {vy!r}\n" for (f, p, x, y), (vx, vy) in moving)
+    texts = {
+        "obsmat.txt": (eth, {"fps": 30.0}),
+        "trajnet.txt": ("".join(f"{f} {p} {x!r} {y!r}\n" for f, p, x, y in rows), {"step_s": 0.1}),
+        "jupedsim.txt": (
+            "#framerate: 30.00\n#ID\tFR\tX\tY\tZ\n" + "".join(f"{p}\t{f}\t{x!r}\t{y!r}\t0\n" for f, p, x, y in rows),
+            {},
+        ),
+        "zeit.csv": (
+            "Bild;Person;X [cm];Y [cm]\n"
+            + "".join(f"{f};{p};{100 * x:.4f};{100 * y:.4f}\n".replace(".", ",") for f, p, x, y in rows),
+            {"fps": 30.0},
+        ),
+        "ped.csv": (
+            "id,frame,label,x_est,y_est,vx_est,vy_est\n"
+            + "".join(f"{p},{f},ped,{x!r},{y!r},{vx!r},{vy!r}\n" for (f, p, x, y), (vx, vy) in moving),
+            {"fps": 30.0},
+        ),
+    }
+    for name, (text, call) in texts.items():
+        (tmp_path / name).write_text(text)
+        calls[name] = call
+    with h5py.File(tmp_path / "people.h5", "w") as file:
+        kind = [("id", int), ("frame", int), ("x", float), ("y", float)]
+        data = file.create_dataset("trajectory", data=np.array([(p, f, x, y) for f, p, x, y in rows], dtype=kind))
+        data.attrs["fps"] = 30.0
+    calls["people.h5"] = {}
+    found = {name: loaded(tmp_path / name, **call) for name, call in calls.items()}
+    assert len({each.source.format for each in found.values()}) == len(found) - 1  # two tables
+    expected = scores(recording)
+    for name, each in found.items():
+        np.testing.assert_allclose(each.time_s, recording.time_s, atol=1e-9, err_msg=name)
+        assert each.person.tolist() == recording.person.tolist(), name
+        np.testing.assert_allclose(each.position, recording.position, atol=1e-6, err_msg=name)
+        assert scores(each) == pytest.approx(expected, rel=1e-5, abs=1e-5, nan_ok=True), name
+
+
+def scores(recording: Recording) -> dict[str, float]:
+    """Return the social metrics of the first person among the others."""
+    episode = nav.metrics.Episode.from_recording(recording, 1, step=0.1, robot_radius=0.3)
+    found = nav.metrics.evaluate(episode)
+    return {name: float(getattr(found, name)) for name in nav.metrics.METRICS}
+
+
+def test_pedpy_reads_what_is_written(tmp_path: Path) -> None:
+    import pedpy
+
+    recording = replace(walk(), walls=(RING, HOLE))
+    text = io.write_people(replace(recording, walls=()), tmp_path / "people.txt")
+    database = io.write_people(recording, tmp_path / "people.sqlite")
+    area = pedpy.load_walkable_area_from_jupedsim_sqlite(trajectory_file=database).polygon
+    assert area.area == pytest.approx(14.0 * 17.0 - 0.5)
+    for found in (
+        pedpy.load_trajectory(trajectory_file=text),
+        pedpy.load_trajectory_from_jupedsim_sqlite(trajectory_file=database),
+    ):
+        data = found.data.sort_values(["frame", "id"])
+        assert found.frame_rate == 30.0
+        assert data["id"].tolist() == recording.person.tolist()
+        np.testing.assert_allclose(data["frame"].to_numpy() / 30.0, recording.time_s, atol=1e-9)
+        np.testing.assert_allclose(data[["x", "y"]].to_numpy(), recording.position, atol=1e-12)
+    again = loaded(database)
+    assert [each.tolist() for each in again.walls] == [RING.tolist(), HOLE.tolist()]
+
+
+def test_every_version_of_jupedsim_is_read_and_others_are_refused(tmp_path: Path) -> None:
+    import sqlite3
+
+    path = io.write_people(walk(), tmp_path / "people.sqlite")
+    for version in (1, 3, 4):
+        with sqlite3.connect(path) as connection:
+            connection.execute("UPDATE metadata SET value = ? WHERE key = 'version'", (str(version),))
+        connection.close()
+        if version < 4:
+            assert len(loaded(path)) == len(walk())
+        else:
+            with pytest.raises(FileError, match=r"metadata\.version must be of version 1, 2, 3, got 4"):
+                loaded(path)
+
+
+def test_jupedsim_itself_writes_what_is_read(tmp_path: Path) -> None:
+    import jupedsim as jps
+
+    path = tmp_path / "run.sqlite"
+    writer = jps.SqliteTrajectoryWriter(output_file=path, every_nth_frame=10)
+    model = jps.CollisionFreeSpeedModel()
+    area = [(0.0, 0.0), (12.0, 0.0), (12.0, 4.0), (0.0, 4.0)]
+    simulation = jps.Simulation(model=model, geometry=area, trajectory_writer=writer, dt=0.01)
+    leave = simulation.add_exit_stage([(11.0, 1.0), (12.0, 1.0), (12.0, 3.0), (11.0, 3.0)])
+    journey = simulation.add_journey(jps.JourneyDescription([leave]))
+    for y in (1.0, 2.0, 3.0):
+        agent = jps.CollisionFreeSpeedModelAgentParameters(position=(1.0, y), journey_id=journey, stage_id=leave)
+        simulation.add_agent(agent)
+    while simulation.agent_count() and simulation.iteration_count() < 3000:
+        simulation.iterate()
+    writer.close()
+    found = loaded(path)
+    assert found.frame_rate == pytest.approx(10.0)
+    assert len(found.people()) == 3
+    assert found.warnings == ()
+    assert {tuple(each) for each in found.walls[0].tolist()} == set(area)
+
+
+def test_what_a_format_cannot_hold_is_told(tmp_path: Path, shared: Path) -> None:
+    found = loaded(shared / "data" / "formats" / "people_socnav.json")
+    with pytest.warns(HrsafetyWarning, match="petrack holds no robot, no walls"):
+        io.write_people(found, tmp_path / "people.txt")
+    again = loaded(io.write_people(found, tmp_path / "again.json"))
+    assert [each.tolist() for each in again.walls] == [each.tolist() for each in found.walls]
+    np.testing.assert_array_equal(again.robot.position, found.robot.position)
+    assert again.details["goal"] == found.details["goal"]
+    words = loaded(shared / "data" / "formats" / "people_thor_Exp_1_run_1.tsv")
+    with pytest.raises(HrsafetyError, match=r"got the id 'Helmet_1'; give renumber=True"):
+        io.write_people(words, tmp_path / "words.txt")
+    assert loaded(io.write_people(words, tmp_path / "words.txt", renumber=True)).people().tolist() == [1, 2]
+    irregular = loaded(shared / "data" / "formats" / "people_atc-20121024.csv")
+    with pytest.raises(HrsafetyError, match="have all rows on frames"):
+        io.write_people(irregular, tmp_path / "irregular.txt", fps=30.0)
+
+
+# ---- motion -------------------------------------------------------------------------------------
+
+
+def test_noise_of_velocities_and_accelerations_is_what_is_stated() -> None:
+    rng = np.random.default_rng(1)
+    time = 0.02 * np.arange(20_000)
+    place = np.stack([1.1 * time, 0.0 * time], axis=1) + rng.normal(0.0, 0.02, (len(time), 2))
+    motion = Recording(time_s=time, person=[1] * len(time), position=place).motion(0.6)
+    assert motion.velocity_from == "fit"
+    assert motion.bandwidth == pytest.approx(1.07 / (31 * 0.02))
+    assert motion.velocity_noise == pytest.approx(0.020, rel=0.05)
+    assert motion.acceleration_noise == pytest.approx(0.25, rel=0.05)
+    inner = slice(100, -100)
+    assert motion.velocity[inner].std(axis=0) == pytest.approx([motion.velocity_noise] * 2, rel=0.1)
+    assert motion.acceleration[inner].std(axis=0) == pytest.approx([motion.acceleration_noise] * 2, rel=0.1)
+
+
+def test_stored_velocities_are_believed_where_they_fit() -> None:
+    recording = walk()
+    true = recording.motion().velocity
+    assert replace(recording, velocity=1.1 * true).motion().velocity_from == "stored"
+    assert replace(recording, velocity=1.5 * true).motion().velocity_from == "fit"
+    slow = walk(step=10, rate=25.0).motion()
+    assert slow.velocity_from == "differences"
+    assert np.isfinite(slow.velocity).all()
+
+
+# ---- words as ids, and noise, wherever recorded people go ---------------------------------------
+
+
+def test_people_with_names_go_wherever_people_with_numbers_go() -> None:
+    numbers = walk(people=5, rows=60)
+    names = replace(numbers, person=np.array([f"Helmet_{each:02d}" for each in numbers.person.tolist()]))
+    runs, named = (scenarios.crossings(each, runs=1, length=2.0) for each in (numbers, names))
+    assert [each.start_time for each in runs] == [each.start_time for each in named]
+    assert all(isinstance(who, str) for each in named for who in each.people)
+    worlds = [scenarios.with_recording(each, 0.5, time_limit=5.0) for each in (numbers, names)]
+    assert [len(each.people) for each in worlds] == [5, 5]
+    scored = [
+        nav.metrics.evaluate(nav.metrics.Episode.from_recording(each, who, step=0.1, robot_radius=0.3)).path_length
+        for each, who in ((numbers, 1), (names, "Helmet_01"))
+    ]
+    assert scored[0] == scored[1]
+
+
+def test_scores_of_noisy_people_are_those_of_smoothed_ones_and_say_so(shared: Path) -> None:
+    found = loaded(shared / "data" / "formats" / "people_noise_50hz.csv")
+    scored = nav.metrics.evaluate(
+        nav.metrics.Episode.from_recording(found, 1, step=0.02, robot_radius=0.3, goal=(99.0, 0.0))
+    )
+    assert scored.path_length == pytest.approx(3.278, rel=0.03)
+    assert "smoothed_positions" in {each.code for each in scored.warnings}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,10 +10,10 @@ import numpy.typing as npt
 
 from hrsafety.errors import FileError, Shown
 from hrsafety.io.cells import Cell, read_columns
-from hrsafety.io.headers import cells_of, delimiter_of, first_row, header_of, is_number
+from hrsafety.io.headers import cells_of, delimiter_of, first_row, is_number
 from hrsafety.io.people.request import Request
 from hrsafety.io.people.rows import Rows, assumed
-from hrsafety.io.people.tables import ROLES, rows_of
+from hrsafety.io.people.tables import rows_of
 from hrsafety.io.reader import Document, Reader
 from hrsafety.plausibility import ResultWarning
 
@@ -135,10 +134,8 @@ def _rows(
 def _read_bare(document: Document, request: Request) -> Rows:
     """Return the rows of columns a b x y, or a b x y z, of which one of the first two counts frames."""
     if request.columns is not None:
-        header = header_of(document, ROLES, request.columns)
-        assert header is not None, "names were given"
         form = request.columns if isinstance(request.columns, str) else " ".join(request.columns)
-        return replace(rows_of(document, request, header, form=form), unit_guess=False)
+        return rows_of(document, request, form=form, guess=False)
     cells = len(_first_numbers(document))
     values, _, lines = _numbers(document, cells, [0, 1, 2, 3], 1)
     by = _frame_column(document, values)

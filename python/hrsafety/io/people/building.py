@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety.datasets.recording import Recording
+from hrsafety.datasets.row_checks import FARTHEST, LONGEST
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.io.headers import LENGTHS
 from hrsafety.io.people.rates import frame_rate
@@ -56,24 +58,30 @@ def recording_of(document: Document, rows: Rows, request: Request) -> Recording:
         rate, rate_from = rows.rate, "file" if rows.rate is not None else None
         time, origin = rows.clock - rows.clock[0], float(rows.clock[0])
     position, velocity, scale, guessed = _in_meters(document, rows, request, time)
+    _check_range(document, rows, time, position)
     if guessed:
         details["unit"] = "m"
     elif rows.unit in LENGTHS and scale is not None:
         details.setdefault("unit", rows.unit)
-    made = Recording(
-        time_s=time,
-        person=rows.person,
-        position=position,
-        velocity=velocity,
-        walls=rows.walls,
-        robot=rows.robot,
-        frame_rate=rate,
-        frame_rate_from=rate_from,
-        time_origin=origin,
-        source=request.source(document, rows.format),
-        details=details,
-        notes=tuple(notes),
-    )
+    try:
+        made = Recording(
+            time_s=time,
+            person=rows.person,
+            position=position,
+            velocity=velocity,
+            walls=rows.walls,
+            robot=rows.robot,
+            frame_rate=rate,
+            frame_rate_from=rate_from,
+            time_origin=origin,
+            source=request.source(document, rows.format),
+            details=details,
+            notes=tuple(notes),
+        )
+    except InvalidParameterError as error:
+        row = re.search(r"\[(\d+)\]$", error.argument)
+        line = _line(rows, int(row[1])) if row else None
+        raise document.error("unreadable_number", error.requirement, error.value, error.remedy, line=line) from None
     if not guessed:
         return made
     doubt = next((each for each in made.warnings if each.code in UNIT_DOUBTS), None)
@@ -81,6 +89,16 @@ def recording_of(document: Document, rows: Rows, request: Request) -> Recording:
         raise unit_needed(document, made, doubt.message)
     note = assumed("unit", f"{document.name} names no unit of positions: meters, with which all speeds are plausible")
     return replace(made, notes=(*made.notes, note))
+
+
+def _check_range(document: Document, rows: Rows, time: Array, position: Array) -> None:
+    """Refuse places and times that are nowhere on the floor."""
+    for values, most, rule in ((np.abs(position).max(axis=1), FARTHEST, "m away"), (np.abs(time), LONGEST, "s long")):
+        far = np.flatnonzero(~(values <= most))
+        if len(far):
+            row = int(far[0])
+            found = Shown(f"{values[row]:g} of person {rows.person[row]}")
+            raise document.error("unreadable_number", f"be at most {most:g} {rule}", found, line=_line(rows, row))
 
 
 def _without_missing(

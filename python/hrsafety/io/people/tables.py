@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety.errors import FileError, Shown
-from hrsafety.io.cells import Cell, Columns, read_columns
+from hrsafety.io.cells import Cell, read_columns
 from hrsafety.io.headers import DELIMITERS, LENGTHS, TIMES, Header, header_of
 from hrsafety.io.people.request import Request
 from hrsafety.io.people.rows import Rows
 from hrsafety.io.reader import Document, Reader
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["READERS", "ROLES", "of_classes", "read_table"]
+__all__ = ["READERS", "ROLES", "Table", "of_classes", "rows_of", "table_columns"]
 
 Array = npt.NDArray[np.float64]
 
@@ -76,106 +76,181 @@ def of_classes(
     return kept, [ResultWarning("other_classes", "classes", message)], {"other_classes": others}
 
 
-def read_table(document: Document, request: Request) -> Rows:
-    """Return the rows of a table with a header."""
-    header = header_of(document, ROLES, request.columns)
-    if header is None:
-        raise document.error(
-            "ambiguous_columns", "have a header", Shown("numbers"), 'name the columns, columns="id frame x y"'
-        )
-    return rows_of(document, request, header, form="table")
+def _read_table(document: Document, request: Request) -> Rows:
+    return rows_of(document, request, form="table")
 
 
 def _read_citr(document: Document, request: Request) -> Rows:
-    header = header_of(document, ROLES, request.columns)
-    assert header is not None, "a header was recognized"
-    if "label" not in header.place:
-        raise _missing(document, header, ["label"])
-    return rows_of(document, request, header, form="citr", unit="m")
+    return rows_of(document, request, form="citr", unit="m")
 
 
-def rows_of(document: Document, request: Request, header: Header, *, form: str, unit: str = "") -> Rows:
-    """Return the rows of a table whose columns are known; ``unit``: of positions in all files of a format."""
-    index, units = header.place, header.unit
-    clock = "time" if "time" in index else "frame"
-    missing = [each for each in (clock, "id", "x", "y") if each not in index]
-    if {"x", "y"} & set(missing) and {"lat", "lon"} & set(index):
-        found = Shown("latitude and longitude" if {"lat", "lon"} <= set(index) else "a latitude or longitude")
+class Table(NamedTuple):
+    """Columns of a table by their meaning, in the units of the file.
+
+    Attributes
+    ----------
+    clock, frame : ndarray, shape (n,)
+        Times, or frames where there are none; frames, if there are both.
+    clock_name : str
+        Name of the first column.
+    second : float
+        Unit of times in s.
+    frames : bool
+        Whether the clock counts frames.
+    person, position, velocity, label, lines : ndarray
+        As in `Rows`; ``label`` holds words.
+    unit : str
+        Of positions; empty if the header names none.
+    details : dict of str to object
+        Delimiter and sign of decimals.
+    """
+
+    clock: Array
+    frame: Array | None
+    clock_name: str
+    second: float
+    frames: bool
+    person: npt.NDArray[Any]
+    position: Array
+    velocity: Array | None
+    label: npt.NDArray[np.str_] | None
+    lines: npt.NDArray[np.int64]
+    unit: str
+    details: dict[str, Any]
+
+
+def table_columns(document: Document, columns: object = None, *, labeled: bool = False, single: bool = False) -> Table:
+    """Return the columns of a table by their meaning.
+
+    Parameters
+    ----------
+    document : Document
+        The file.
+    columns : object
+        Other names of its columns, see `load_people`.
+    labeled : bool
+        Whether there must be a column of classes.
+    single : bool
+        Whether there are no ids.
+
+    Raises
+    ------
+    FileError
+        If a column is missing or a cell is no number.
+    """
+    header = header_of(document, ROLES, columns)
+    if header is None:
+        remedy = "write t_s,x_m,y_m above it" if single else 'name the columns, columns="id frame x y"'
+        raise document.error("ambiguous_columns", "have a header", Shown("numbers"), remedy, line=1)
+    place, units = header.place, header.unit
+    clock = "time" if "time" in place else "frame"
+    needed = (clock, *(() if single else ("id",)), "x", "y", *(("label",) if labeled else ()))
+    missing = [each for each in needed if each not in place]
+    if {"x", "y"} & set(missing) and {"lat", "lon"} & set(place):
+        found = Shown("latitude and longitude" if {"lat", "lon"} <= set(place) else "a latitude or longitude")
         remedy = "project them to meters first, for example to UTM"
         raise document.error("not_metric", "have positions in a plane, x and y", found, remedy, line=header.skip)
     if missing:
         raise _missing(document, header, missing)
-    length = _unit_of_positions(document, header) or unit
-    second = _unit_of_time(document, units[clock]) if clock == "time" else 1.0
-    wanted = [clock, "x", "y", *(["vx", "vy"] if {"vx", "vy"} <= set(index) else [])]
-    wanted += ["frame"] if clock == "time" and "frame" in index else []
-    labeled = form == "citr"
+    unit = _unit_of_positions(document, header)
+    moving = {"vx", "vy"} <= set(place) and _same_units(units, unit)
+    both = clock == "time" and "frame" in place
+    wanted = [clock, "x", "y", *(["vx", "vy"] if moving else []), *(["frame"] if both else [])]
     table = read_columns(
         document,
         delimiter=header.delimiter,
         skip=header.skip,
         columns=len(header.names),
-        numbers=[Cell(index[each], header.names[index[each]]) for each in wanted],
-        ids=Cell(index["id"], header.names[index["id"]]),
-        words=[Cell(index["label"], "label")] if labeled else [],
+        numbers=[Cell(place[each], header.names[place[each]]) for each in wanted],
+        ids=None if single else Cell(place["id"], header.names[place["id"]]),
+        words=[Cell(place["label"], "label")] if labeled else [],
     )
+    return Table(
+        clock=table.numbers[:, 0],
+        frame=table.numbers[:, -1] if both else None,
+        clock_name=header.names[place[clock]],
+        second=_unit_of_time(document, units[clock]) if clock == "time" else 1.0,
+        frames=clock == "frame",
+        person=table.ids,
+        position=table.numbers[:, 1:3],
+        velocity=table.numbers[:, 3:5] if moving else None,
+        label=table.words[:, 0] if labeled else None,
+        lines=table.lines,
+        unit=unit,
+        details={"delimiter": DELIMITERS[header.delimiter], "decimal": table.decimal},
+    )
+
+
+def rows_of(document: Document, request: Request, *, form: str, unit: str = "", guess: bool = True) -> Rows:
+    """Return the rows of a table.
+
+    Parameters
+    ----------
+    document : Document
+        The file.
+    request : Request
+        What the caller says.
+    form : str
+        Name of the format.
+    unit : str
+        Of positions in all files of the format; empty if the header names it.
+    guess : bool
+        Whether meters are assumed where nothing names a unit.
+    """
+    labeled = form == "citr"
+    table = table_columns(document, request.columns, labeled=labeled)
+    which, details = np.ones(len(table.clock), dtype=np.bool_), table.details
     notes: list[ResultWarning] = []
-    details: dict[str, Any] = {"delimiter": DELIMITERS[header.delimiter], "decimal": table.decimal}
-    which = np.ones(len(table.ids), dtype=np.bool_)
-    if labeled:
-        which, notes, counts = of_classes(table.words[:, 0], request, document)
+    if table.label is not None:
+        which, notes, counts = of_classes(table.label, request, document)
         details |= counts
-    velocity = table.numbers[which, 3:5] if "vx" in wanted else None
-    if velocity is not None and not _same_units(units, length):
-        velocity = None
-    time, frames, rate = _clock(document, request, wanted, table, which, second)
+    clock, frames, rate = _clock(document, request, table)
+    length = table.unit or unit
     return Rows(
-        clock=time,
-        person=table.ids[which],
-        position=table.numbers[which, 1:3],
-        velocity=velocity,
+        clock=clock[which],
+        person=table.person[which],
+        position=table.position[which],
+        velocity=None if table.velocity is None else table.velocity[which],
         lines=table.lines[which],
         frames=frames,
         rate=rate,
-        rate_from_velocity=form == "citr",
+        rate_from_velocity=labeled,
         unit=length,
-        unit_guess=not length,
+        unit_guess=guess and not length,
         format=form,
         notes=tuple(notes),
         details=details,
     )
 
 
-def _clock(
-    document: Document,
-    request: Request,
-    wanted: list[str],
-    table: Columns,
-    which: npt.NDArray[np.bool_],
-    second: float,
-) -> tuple[Array, bool, float | None]:
+def _clock(document: Document, request: Request, table: Table) -> tuple[Array, bool, float | None]:
     """Return the clock of rows, whether it counts frames, and the frames per second if the file tells them."""
-    clock = table.numbers[which, 0]
-    asked = request.fps is not None or request.step_s is not None
-    if wanted[0] == "frame":
+    clock, frame = table.clock, table.frame
+    name = "fps" if request.fps is not None else "step_s" if request.step_s is not None else ""
+    if table.frames:
         return clock, True, None
-    time = clock * second if second != 1.0 else clock
-    if not asked:
-        return time, False, _rate_of_frames(table.numbers[which, -1], time) if wanted[-1] == "frame" else None
-    if wanted[-1] == "frame":
-        frames = table.numbers[which, -1]
-        rate = _rate_of_frames(frames, time)
-        if rate is not None and not np.array_equal(frames, clock):
-            return frames, True, rate
-        return frames, True, None
-    whole = np.isfinite(clock) & (clock != np.floor(clock))
-    if whole.any():
-        row = int(np.flatnonzero(whole)[0])
-        name = "fps" if request.fps is not None else "step_s"
-        found = Shown(f"times in seconds, {clock[row]:g}")
-        line = int(table.lines[which][row])
+    time = clock * table.second if table.second != 1.0 else clock
+    rate = None if frame is None else _rate_of_frames(frame, time)
+    if not name:
+        return time, False, rate
+    if frame is not None and not np.array_equal(frame, clock, equal_nan=True):
+        if rate is None:
+            found = Shown(f"times in {table.clock_name} that are no frames divided by a rate")
+            rule = f"agree with {name}"
+            raise document.error(
+                "frame_rate_contradicts_file", rule, found, f"leave out {name}: the times are taken then"
+            )
+        return frame, True, rate
+    broken = np.flatnonzero(np.isfinite(clock) & (clock != np.floor(clock)))
+    if len(broken):
+        row = int(broken[0])
         raise document.error(
-            "frame_rate_contradicts_file", f"hold frames where {name} is given", found, f"leave out {name}", line=line
+            "frame_rate_contradicts_file",
+            f"hold frames where {name} is given",
+            float(clock[row]),
+            f"leave out {name}: the times of the file are taken as seconds then",
+            line=int(table.lines[row]),
+            key=f"column {table.clock_name}",
         )
     return clock, True, None
 
@@ -235,5 +310,5 @@ READERS = [
         recognizes=_is_citr,
         read=_read_citr,
     ),
-    Reader(name="table", title="any table with a header", recognizes=_is_table, read=read_table),
+    Reader(name="table", title="any table with a header", recognizes=_is_table, read=_read_table),
 ]

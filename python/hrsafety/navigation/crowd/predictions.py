@@ -148,8 +148,10 @@ def _rows_of(recording: Recorded) -> tuple[Array, npt.NDArray[np.int64], Array]:
         raise InvalidParameterError("recording", "have time_s, person and position", recording) from None
     time, person = vector("recording.time_s", given[0]), np.asarray(given[1])
     position = points("recording.position", given[2])
-    if person.ndim != 1 or person.dtype.kind not in "iu":
-        raise InvalidParameterError("recording.person", "be an array (n,) of integers", given[1])
+    if person.ndim != 1 or person.dtype.kind not in "iuU":
+        raise InvalidParameterError("recording.person", "be an array (n,) of integers or words", given[1])
+    if person.dtype.kind == "U":  # words by their place in the alphabet
+        person = np.unique(person, return_inverse=True)[1].ravel()
     if not len(time) == len(person) == len(position):
         lengths = f"{len(time)}, {len(person)} and {len(position)} rows"
         raise InvalidParameterError("recording", "have as many persons and positions as instants", Shown(lengths))

@@ -29,7 +29,7 @@ from hrsafety._records import dataclass
 from hrsafety._tracks import WINDOW, Ways, smoothed_ways
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.metrics.sights import unseen_instants
-from hrsafety.navigation.metrics.sources import at_instants, doubts_of_run, steps_of_run
+from hrsafety.navigation.metrics.sources import at_instants, doubts_of_run, steps_of_run, without_noise
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plausibility import ResultWarning
@@ -308,17 +308,21 @@ class Episode(Parameters):
         return cls(**({**found, "warnings": (*trajectory.warnings, *doubts), "simulated": True} | options))
 
     @classmethod
-    def from_recording(cls, recording: Recorded, robot: int | npt.ArrayLike, *, step: float, **options: Any) -> Self:
+    def from_recording(
+        cls, recording: Recorded, robot: int | str | npt.ArrayLike, *, step: float, **options: Any
+    ) -> Self:
         """Return recorded people as an episode, one of whom, or a path of one's own, is the robot.
 
         Positions are linear between the rows of a person up to three median steps apart; between others the person is
         not seen, and absent before the first and after the last row. The episode lasts as long as the robot is there.
+        Positions that are too noisy (``noisy_positions``) are those of `Recording.smoothed`, and ``smoothed_positions``
+        says so.
 
         Parameters
         ----------
         recording : Recording
             Positions over time; any object with ``time_s``, ``person`` and ``position``.
-        robot : int or array_like, shape (k, 3)
+        robot : int, str or array_like, shape (k, 3)
             Id of the person who is taken for the robot, or instants in s and positions in m of a robot.
         step : float
             Time between two instants of the episode in s.
@@ -345,8 +349,9 @@ class Episode(Parameters):
         >>> round(nav.metrics.evaluate(episode).min_clearance, 3)
         0.618
         """
+        recording, told = without_noise(recording)
         found = at_instants(recording, robot, positive("step", step))
-        doubts = (*getattr(recording, "warnings", ()), *found.pop("warnings"))
+        doubts = (*told, *found.pop("warnings"))
         episode = cls(**({**found, "step": step, "warnings": doubts} | options))
         episode._set(_resampled=True)
         return episode

@@ -21,7 +21,7 @@ from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["at_instants", "doubts_of_run", "fields_in", "steps_of_run", "track_doubts"]
+__all__ = ["at_instants", "doubts_of_run", "fields_in", "steps_of_run", "track_doubts", "without_noise"]
 
 # Instants of a run that differ by less are the same, relative to the step.
 _ROUNDING = 1e-9
@@ -148,16 +148,28 @@ def _whole_last_step(time: Array, places: Array, step: float) -> Array:
     return found
 
 
-def at_instants(recording: Any, robot: int | npt.ArrayLike, step: float) -> dict[str, Any]:
+def without_noise(recording: Any) -> tuple[Any, tuple[ResultWarning, ...]]:
+    """Return a recording whose positions are smooth if they were too noisy, and its doubts, of which one says so."""
+    told = tuple(getattr(recording, "warnings", ()))
+    noisy = [each for each in told if each.code == "noisy_positions"]
+    if not noisy or not hasattr(recording, "smoothed"):
+        return recording, told
+    smooth = recording.smoothed()
+    message = f"scores are those of smoothed positions: {noisy[0].message}"
+    others = [each for each in smooth.warnings if each.code != "noisy_positions"]
+    return smooth, (*others, ResultWarning("smoothed_positions", noisy[0].subject, message))
+
+
+def at_instants(recording: Any, robot: int | str | npt.ArrayLike, step: float) -> dict[str, Any]:
     """Return positions of a robot and of all others while it is there, and when they are not seen.
 
     Its last position is the goal; a path of the robot that is none of the recording has doubts of its own.
     """
     ids = np.unique(recording.person)
     doubts: tuple[ResultWarning, ...] = ()
-    if isinstance(robot, (int, np.integer)):
-        who = count("robot", robot, least=-(2**63))
-        if who not in ids:
+    if isinstance(robot, (int, str, np.integer)):
+        who = robot if isinstance(robot, str) else count("robot", robot, least=-(2**63))
+        if who not in ids.tolist():
             raise InvalidParameterError("robot", "be the id of a recorded person", robot)
         time, path = _track(recording, who)
         ids = ids[ids != who]
@@ -169,8 +181,8 @@ def at_instants(recording: Any, robot: int | npt.ArrayLike, step: float) -> dict
     instants = time[0] + step * np.arange(steps + 1)
     people = np.empty((len(instants), len(ids), 2))
     unseen = np.zeros((len(instants), len(ids)), dtype=np.bool_)
-    for index, person in enumerate(ids):
-        rows, places = _track(recording, int(person))
+    for index, person in enumerate(ids.tolist()):
+        rows, places = _track(recording, person)
         people[:, index] = _between(rows, places, instants)
         gap = _within_gaps(rows, instants)
         people[gap, index] = np.nan
@@ -179,7 +191,8 @@ def at_instants(recording: Any, robot: int | npt.ArrayLike, step: float) -> dict
         here = not np.isnan(people[:, index]).all()
         unseen[:, index] = gap | (around & np.isnan(people[:, index, 0]) & here)
     own = _between(time, path, np.minimum(instants, time[-1]))
-    return {"position": own, "people": people, "goal": tuple(path[-1].tolist()), "unseen": unseen, "warnings": doubts}
+    others = {"people": people, "unseen": unseen} if len(ids) else {}
+    return {"position": own, "goal": tuple(path[-1].tolist()), "warnings": doubts, **others}
 
 
 _PATH_SMOOTHING = "Episode.smoothed(0.6) takes the noise out"
@@ -214,7 +227,7 @@ def _given_path(robot: npt.ArrayLike) -> tuple[Array, Array]:
     return rows[:, 0], rows[:, 1:]
 
 
-def _track(recording: Any, person: int) -> tuple[Array, Array]:
+def _track(recording: Any, person: int | str) -> tuple[Array, Array]:
     rows = recording.person == person
     return recording.time_s[rows], recording.position[rows]
 
