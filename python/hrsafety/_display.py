@@ -16,7 +16,7 @@ import numpy as np
 
 from hrsafety._records import generates
 
-__all__ = ["displayed", "fields_with_units"]
+__all__ = ["displayed", "fields_with_units", "shown_html"]
 
 Kind = TypeVar("Kind")
 
@@ -41,7 +41,7 @@ def displayed(kind: type[Kind]) -> type[Kind]:
         The same class.
     """
     changed: Any = kind
-    changed._repr_html_ = _html
+    changed._repr_html_ = shown_html
     made = generates(kind, "__repr__") or changed.__repr__.__module__ == "collections"
     if made and (hasattr(kind, "warnings") or _long(" ".join(map(str, getattr(kind, "__annotations__", {}).values())))):
         changed.__repr__ = _text
@@ -172,7 +172,7 @@ def _quoted(value: object, shown: str) -> str:
     return repr(value) if words and len(repr(value)) <= LONGEST else shown
 
 
-def _html(result: object) -> str:
+def shown_html(result: object) -> str:
     """Return fields, values and units as a table, and the warnings."""
     import html  # a notebook's; it holds the names of all letters
 

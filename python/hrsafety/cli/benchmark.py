@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from hrsafety import navigation as nav
+from hrsafety._replay import PlayerPage
 from hrsafety.benchmarks import SUITES, Result, benchmark, entry
 from hrsafety.benchmarks.results import HEAD, NAMES
 from hrsafety.benchmarks.runs import case_of
@@ -85,8 +86,8 @@ def _write(options: argparse.Namespace, result: Result, report: Report, place: P
     return [*tables, output.write_text(place / f"{stem}.html", whole.page())]
 
 
-def _failures(options: argparse.Namespace, result: Result) -> Iterator[Picture]:
-    """Draw the first episodes of every entry that did not succeed."""
+def _failures(options: argparse.Namespace, result: Result) -> Iterator[Picture | PlayerPage]:
+    """Draw the first episodes of every entry that did not succeed, the first one of each entry as a player, too."""
     from hrsafety import plotting
 
     suite = SUITES[result.suite]
@@ -109,3 +110,5 @@ def _failures(options: argparse.Namespace, result: Result) -> Iterator[Picture]:
                 caption=f"{name}, episode {case}: {run.outcome}",
                 png=output.picture(plotting.time_sequence(run)),
             )
+            if case == result.failures(name)[0]:
+                yield plotting.player(run, title=f"{name}, episode {case}: {run.outcome}")

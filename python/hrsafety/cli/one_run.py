@@ -58,7 +58,8 @@ def simulate_file(options: argparse.Namespace) -> None:
     written = []
     if options.out is not None:
         place = output.folder(options.out)
-        written = output.write_report(report, place, _draw(run), [run.to_csv(place / "trajectory.csv")])
+        tables = [run.to_csv(place / "trajectory.csv")]
+        written = output.write_report(report, place, _draw(run), tables, plays=[output.player(run)])
     if options.animate is not None:
         written.append(output.animation(run, options.animate))
     output.say_written(written, report, options)

@@ -15,6 +15,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from hrsafety import navigation as nav
 from hrsafety._arguments import meant
 from hrsafety._atomic import write_file
@@ -30,6 +32,8 @@ from hrsafety.scenarios.laws import law_named, name_of
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from hrsafety._replay import PlayerPage
+
 __all__ = [
     "animation",
     "check_json",
@@ -43,6 +47,7 @@ __all__ = [
     "pictures",
     "planned_animation",
     "planned_folder",
+    "player",
     "report_warnings",
     "require_matplotlib",
     "require_page",
@@ -285,7 +290,12 @@ def pictures(place: Path, drawn: Iterable[tuple[str, Figure, str]]) -> list[Pict
 
 
 def write_report(
-    report: Report, place: Path, drawn: Iterable[tuple[str, Figure, str]], files: Sequence[Path], name: str = "summary"
+    report: Report,
+    place: Path,
+    drawn: Iterable[tuple[str, Figure, str]],
+    files: Sequence[Path],
+    name: str = "summary",
+    plays: Iterable[PlayerPage] = (),
 ) -> list[Path]:
     """Write the pictures of a report and its page, and return all files.
 
@@ -301,10 +311,15 @@ def write_report(
         Files beside the page that are written already.
     name : str
         Name of the page without ending.
+    plays : iterable of PlayerPage
+        Players of runs, which stand before the pictures, and in files of their own.
     """
-    made = pictures(place, drawn)
+    made, players = pictures(place, drawn), list(plays)
+    names = ["player.html", *(f"player_{index}.html" for index in range(2, len(players) + 1))]
     written = [*files, *(place / f"{each.name}.png" for each in made)]
-    sections = [*report.sections, *([Section("Pictures", made)] if made else [])]
+    written += [write_text(place / file, page) for file, page in zip(names, players, strict=False)]
+    sections = [*report.sections, *([Section("Player", players)] if players else [])]
+    sections += [Section("Pictures", made)] if made else []
     whole = replace(report, sections=sections, files=[*report.files, *(path.name for path in written)])
     return [*written, write_text(place / f"{name}.html", whole.page())]
 
@@ -338,6 +353,18 @@ def planned_animation(path: str) -> None:
     from hrsafety.plotting import movies
 
     movies.check_writer(Path(path))
+
+
+def player(run: nav.Trajectory) -> PlayerPage:
+    """Return the player of a run, with the decisions of a shield where recording them gives the same run again."""
+    from hrsafety import plotting
+
+    decided = isinstance(run.law, nav.laws.SafeNavigation) and isinstance(run.scenario.robot, nav.HolonomicRobot)
+    if decided and run.built is None:
+        record = nav.metrics.record_safety(run.scenario, run.law)
+        if np.array_equal(record.trajectory.position, run.position):
+            return plotting.player(record)
+    return plotting.player(run)
 
 
 def animation(trajectory: nav.Trajectory, path: str) -> Path:

@@ -91,7 +91,8 @@ def simulate_people(options: argparse.Namespace) -> None:
         if options.out is not None:
             place = output.folder(options.out)
             tables = list(_tables(crossings, summary, met, place))
-            written += output.write_report(report, place, _draw(summary, trajectory), tables)
+            plays = [output.player(trajectory)]
+            written += output.write_report(report, place, _draw(summary, trajectory), tables, plays=plays)
         if options.animate is not None:
             print(f"\nanimated run  {index}")
             written.append(output.animation(trajectory, options.animate))

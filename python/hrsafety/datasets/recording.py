@@ -13,6 +13,8 @@ from hrsafety import navigation as nav
 from hrsafety._arguments import finite, instance, positive
 from hrsafety._doubts import checked_doubts
 from hrsafety._records import dataclass
+from hrsafety._replay.played import Played
+from hrsafety._replay.record import Replay
 from hrsafety._sources import Source
 from hrsafety._tracks import WINDOW, Breaks, Ways, smoothed_ways
 from hrsafety.datasets.flow import Flow, flow_of
@@ -40,7 +42,7 @@ _SMOOTHING = "recording.smoothed(0.6) takes the noise out"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Recording:
+class Recording(Played):
     """Positions of people over time, one row for each person and instant.
 
     Parameters
@@ -132,6 +134,11 @@ class Recording:
         """Return what makes the recording again, without what was found out about it."""
         names = (each.name for each in fields(self) if each.init)
         return _recording, ({name: getattr(self, name) for name in names},)
+
+    def _replay(self) -> Replay:
+        from hrsafety.datasets.replays import replay_of_people
+
+        return replay_of_people(self)
 
     def __len__(self) -> int:
         """Return the number of rows."""

@@ -12,6 +12,8 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, instance, number
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
+from hrsafety._replay.played import Played
+from hrsafety._replay.record import Replay
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.free_space import stands
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation, SafetyTrace
@@ -81,9 +83,8 @@ class SafetyDecision:
     local_goal: Annotated[Pair | None, "m"]
 
 
-@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class SafetyRecord:
+class SafetyRecord(Played):
     """The decisions of a run, one a control period.
 
     Parameters
@@ -96,6 +97,11 @@ class SafetyRecord:
 
     trajectory: Trajectory
     decisions: tuple[SafetyDecision, ...]
+
+    def _replay(self) -> Replay:
+        from hrsafety.navigation.replays import replay_of_record
+
+        return replay_of_record(self)
 
     @property
     def law(self) -> SafeNavigation:

@@ -13,6 +13,8 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
+from hrsafety._replay.played import Played
+from hrsafety._replay.record import Replay
 from hrsafety.navigation.knowledge import Sensing, sensing_of
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.outcomes import Outcome
@@ -63,7 +65,7 @@ class Followed(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
-class Trajectory(Table):
+class Trajectory(Played, Table):
     """One run of a robot: n instants, m obstacles, w wheels.
 
     The rows are the motion steps, or every so many of them, and, last, the instant of arrival (linear inside
@@ -248,6 +250,11 @@ class Trajectory(Table):
     goal_phase: npt.NDArray[np.bool_] | Any = None
     reference: Followed | None = None
     tracking: Tracking | None = None
+
+    def _replay(self) -> Replay:
+        from hrsafety.navigation.replays import replay_of_run
+
+        return replay_of_run(self)
 
     @property
     def robot(self) -> int:

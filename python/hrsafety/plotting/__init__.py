@@ -3,7 +3,8 @@
 Every function takes results of `hrsafety.navigation`, `.impact`, `.contact`, `.standards` or `.arms`, computes no
 physics, and returns a ``matplotlib.figure.Figure`` that needs no display and leaves no trace in ``pyplot``; save it
 with ``figure.savefig(path)``. `animate` writes a file and returns its path. Axis labels carry
-units. matplotlib is imported when a picture is asked for; without it the functions raise
+units. `player` makes an HTML file and needs nothing. matplotlib is imported when a picture is asked for; without it
+the functions raise
 `MissingExtraError`, which names ``pip install matplotlib``.
 """
 
@@ -44,6 +45,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
         impact_study as impact_study,
         measured_impact as measured_impact,
     )
+    from hrsafety.plotting.players import player as player
     from hrsafety.plotting.runs.animation import animate as animate
     from hrsafety.plotting.runs.energies import energy as energy
     from hrsafety.plotting.runs.fields import force_field as force_field, potential_valley as potential_valley

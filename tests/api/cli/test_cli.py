@@ -143,7 +143,8 @@ def test_simulate_writes_trajectory_and_pictures(scene: Path, capsys: pytest.Cap
     assert [float(row["t_s"]) for row in rows] == run.time.tolist()
     assert [float(row["distance_0_m"]) for row in rows] == run.distance[:, 0].tolist()
     names = {path.name for path in out.iterdir()}
-    assert names == {"trajectory.csv", "paths.png", "time_sequence.png", "distances.png", "energy.png", "summary.html"}
+    pictures = {"paths.png", "time_sequence.png", "distances.png", "energy.png"}
+    assert names == {"trajectory.csv", "player.html", "summary.html"} | pictures
     printed = capsys.readouterr().out
     assert all(name in printed for name in names)
 

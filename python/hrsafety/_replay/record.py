@@ -1,0 +1,199 @@
+"""What a player shows: who was where, what a shield said, what touched, what nobody judged."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety._records import dataclass
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
+from hrsafety.plausibility import ResultWarning
+
+__all__ = ["VERDICTS", "Decisions", "Event", "NotJudged", "PlayedRobot", "Replay"]
+
+Array = npt.NDArray[np.float64]
+
+VERDICTS = ("not recorded", "kept", "changed", "taken over", "braking")
+"""Words for what the parts around a law did, in the order in which the later one counts for a frame."""
+
+
+class Event(NamedTuple):
+    """Something that happened at an instant.
+
+    Parameters
+    ----------
+    time : float
+        When, in s.
+    kind : {"contact", "fault", "arrival", "note"}
+        What; ``"fault"`` is a contact by the fault of the robot.
+    words : str
+        What to say.
+    place : (float, float) or None
+        Where, in m.
+    """
+
+    time: float
+    kind: str
+    words: str
+    place: tuple[float, float] | None = None
+
+
+class NotJudged(NamedTuple):
+    """A time over which nothing was judged.
+
+    Parameters
+    ----------
+    begin, end : float
+        In s.
+    reason : str
+        Why.
+    """
+
+    begin: float
+    end: float
+    reason: str
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Decisions:
+    """What the parts around a law decided, d decisions.
+
+    Parameters
+    ----------
+    time : ndarray, shape (d,)
+        When, in s, rising.
+    verdict : sequence of str
+        Of `VERDICTS`.
+    margin : ndarray, shape (d,)
+        Least distance to everywhere that people can be over the plan, in m; NaN without.
+    plan : sequence of ndarray, shape (k, 2)
+        Places of the verified plan, in m.
+    path : sequence of ndarray, shape (p, 2)
+        Path of the guide, in m.
+    reach : ndarray, shape (d, m)
+        How far each person can have come at the end of the plan, in m.
+    """
+
+    time: Array
+    verdict: Sequence[str]
+    margin: Array
+    plan: Sequence[Array] = ()
+    path: Sequence[Array] = ()
+    reach: Array | None = None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class PlayedRobot:
+    """A robot over n instants.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    position : ndarray, shape (n, 2)
+        In m; NaN while nobody knows.
+    radius : float
+        Of the disc that it is, or that holds its footprint, in m.
+    heading : ndarray of shape (n,), or None
+        In rad; ``None`` for a robot whose heading tells nothing.
+    footprint : sequence of (float, float)
+        Corners in m about its position at heading 0; none for a disc.
+    speed : ndarray of shape (n,), or None
+        In m/s.
+    clearance : ndarray of shape (n,), or None
+        Distance of its surface to the nearest other one, in m; infinite without any, negative in a contact.
+    goal : (float, float) or None
+        In m.
+    tolerance : float
+        How near to the goal it has arrived, in m.
+    decisions : Decisions or None
+        What the parts around its law decided.
+    """
+
+    name: str
+    position: Array
+    radius: float
+    heading: Array | None = None
+    footprint: Sequence[tuple[float, float]] = ()
+    speed: Array | None = None
+    clearance: Array | None = None
+    goal: tuple[float, float] | None = None
+    tolerance: float = 0.0
+    decisions: Decisions | None = None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Replay:
+    """What happened over n instants among robots and m people.
+
+    Parameters
+    ----------
+    title : str
+        Above the player.
+    time : ndarray, shape (n,)
+        Instants in s, rising.
+    robots : sequence of PlayedRobot
+        The robots.
+    people : ndarray of shape (n, m, 2), or None
+        Positions in m, NaN while absent; ``None`` for nobody.
+    radius : ndarray of shape (m,), or None
+        Of the people in m.
+    names : sequence of str
+        What they are called; their numbers if empty.
+    kinds : sequence of str
+        What they are, for legend and color; people if empty.
+    boxes : mapping of int to (float, float, float)
+        Length, width and heading, in m and rad, of those of the people who are rectangles.
+    maps : sequence of StaticMap
+        What stands, with what nobody has seen.
+    events : sequence of Event
+        What happened.
+    not_judged : sequence of NotJudged
+        What was not judged, and why.
+    facts : sequence of (str, str)
+        What else to say, by name.
+    warnings : sequence of ResultWarning
+        Doubts about all of it.
+
+    Raises
+    ------
+    InvalidParameterError
+        If there is no instant, or time does not rise.
+    ShapeError
+        If an array has another number of instants or people.
+    """
+
+    title: str
+    time: Array
+    robots: Sequence[PlayedRobot] = ()
+    people: Array | None = None
+    radius: Array | None = None
+    names: Sequence[str] = ()
+    kinds: Sequence[str] = ()
+    boxes: Mapping[int, tuple[float, float, float]] | None = None
+    maps: Sequence[Any] = ()
+    events: Sequence[Event] = ()
+    not_judged: Sequence[NotJudged] = ()
+    facts: Sequence[tuple[str, str]] = ()
+    warnings: Sequence[ResultWarning] = ()
+
+    def _replay(self) -> Replay:
+        """Return itself."""
+        return self
+
+    def __post_init__(self) -> None:
+        """Check that there is something to play, and that it fits together."""
+        count = len(self.time)
+        if count == 0:
+            remedy = "a player needs at least one instant at which somebody is somewhere"
+            raise InvalidParameterError("run", "have frames to play", Shown("none"), remedy)
+        if not np.isfinite(self.time).all() or (np.diff(self.time) < 0.0).any():
+            raise InvalidParameterError("run", "have finite, rising instants", Shown("others"))
+        for robot in self.robots:
+            if np.shape(robot.position) != (count, 2):
+                raise ShapeError(f"position of {robot.name}", f"({count}, 2)", np.shape(robot.position))
+        if self.people is not None and (np.ndim(self.people) != 3 or len(self.people) != count):
+            raise ShapeError("people", f"({count}, m, 2)", np.shape(self.people))

@@ -1,0 +1,280 @@
+"""What a player shows of runs, and of recorded decisions.
+
+The classes of results import these functions, which know them by their fields only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from hrsafety._arguments import Array
+from hrsafety._replay.record import Decisions, Event, PlayedRobot, Replay
+from hrsafety.navigation.maps.static_map import StaticMap
+from hrsafety.navigation.obstacles.moving import Human
+from hrsafety.navigation.obstacles.moving_rectangle import Box, Mobile
+from hrsafety.navigation.obstacles.standing import Disc, Rectangle
+from hrsafety.navigation.outcomes import OUTCOMES
+from hrsafety.navigation.robots.bodies import HolonomicRobot
+
+__all__ = ["replay_of_record", "replay_of_run"]
+
+Run = Any
+"""A `Trajectory`."""
+Record = Any
+"""A `SafetyRecord`."""
+Bodies = Sequence[tuple[int, str, str, float, Any]]
+"""Column, kind, name, radius in m and, of one with sides, the obstacle, of everybody who can move."""
+
+STANDING = 0.05
+
+
+def replay_of_run(run: Run, decisions: Decisions | None = None) -> Replay:
+    """Return what a player shows of a run.
+
+    Parameters
+    ----------
+    run : Trajectory
+        The run.
+    decisions : Decisions or None
+        What the parts around the law of its robot decided.
+    """
+    scene = run.scenario
+    of_world = hasattr(scene, "people")
+    bodies = _people(run) if of_world else _moving(run)
+    maps = [*_walls(scene), *maps_around(run)] if of_world else [*maps_around(run), *_standing(run)]
+    robots = [
+        _robot(own, index, maps, bodies, of_world=of_world, decisions=decisions if index == 0 else None)
+        for index, own in enumerate(run.robots)
+    ]
+    columns = [column for column, *_ in bodies]
+    events = [] if scene is None else [event for own in run.robots for event in _events(own, bodies, maps)]
+    if run.diverged is not None:
+        events.append(Event(run.diverged.time, "note", f"{run.diverged.kind} {run.diverged.index} diverged"))
+    period = getattr(scene, "period", (0.0, 0.0))
+    return Replay(
+        title=_title(run, of_world=of_world),
+        time=run.time,
+        robots=robots,
+        people=_in_cell(run.obstacle_position[:, columns], period) if bodies else None,
+        radius=np.array([radius for *_, radius, _ in bodies]),
+        names=[name for _, _, name, *_ in bodies],
+        kinds=[kind for _, kind, *_ in bodies],
+        boxes={k: (box.length, box.width, box.heading) for k, (*_, box) in enumerate(bodies) if box is not None},
+        maps=maps,
+        events=sorted(events, key=lambda event: event.time),
+        facts=list(_facts(run, of_world=of_world)),
+        warnings=run.warnings,
+    )
+
+
+def replay_of_record(record: Record) -> Replay:
+    """Return what a player shows of a run with the decisions of its parts."""
+    run, made = record.trajectory, record.decisions
+    shielded, guided = record.law.shield is not None, record.law.guide is not None
+    columns = [column for column, *_ in _moving(run)]
+    decisions = Decisions(
+        time=np.array([each.time for each in made]),
+        verdict=["taken over" if each.taken_over and each.status == "kept" else each.status for each in made],
+        margin=np.array([each.margin for each in made]),
+        plan=[each.plan_position for each in made] if shielded else (),
+        path=[each.path for each in made] if guided else (),
+        reach=np.array([each.obstacle_reach for each in made])[:, columns] if shielded and made else None,
+    )
+    return replay_of_run(run, decisions)
+
+
+def maps_around(run: Run) -> list[StaticMap]:
+    """Return the different maps that the laws and the sensors of a run know."""
+    found: list[StaticMap] = []
+    for own in run.robots:
+        sensors = () if own.built is None else own.built.sensors
+        known = [getattr(own.law, "map", None), *(getattr(each, "map", None) for each in sensors)]
+        found += [each for each in known if isinstance(each, StaticMap) and each not in found]
+    return found
+
+
+def _title(run: Run, *, of_world: bool) -> str:
+    if run.scenario is None:
+        return "Run of a robot"
+    if of_world and len(run.robots) != 1:
+        return "World of people and robots" if run.robots else "World of people"
+    outcome = run.robots[0].outcome
+    return f"Run: {OUTCOMES.get(outcome, outcome)}"
+
+
+# ---- who is there ---------------------------------------------------------------------------
+
+
+def _moving(run: Run) -> Bodies:
+    """Return the obstacles of a scenario that can move."""
+    if run.scenario is None or run.obstacle_position is None:
+        return []
+    chosen = [(index, each) for index, each in enumerate(run.scenario.obstacles) if isinstance(each, Mobile)]
+    kinds = ["person" if isinstance(each, Human) else "cart" if isinstance(each, Box) else "body" for _, each in chosen]
+    total, seen = Counter(kinds), Counter[str]()
+    found: list[tuple[int, str, str, float, Any]] = []
+    for (index, each), kind in zip(chosen, kinds, strict=True):
+        seen[kind] += 1
+        name = f"{kind} {seen[kind]}" if total[kind] > 1 else kind
+        if isinstance(each, Box):
+            found.append((index, kind, name, 0.5 * math.hypot(each.length, each.width), each))
+        else:
+            found.append((index, kind, name, each.radius, None))
+    return found
+
+
+def _people(run: Run) -> Bodies:
+    """Return the people of a world."""
+    given = run.scenario.people
+    recorded = [getattr(each, "recording", None) is not None for each in given]
+    return [
+        (
+            index,
+            "recorded person" if recorded[index : index + 1] == [True] else "person",
+            f"person {index}",
+            radius,
+            None,
+        )
+        for index, radius in enumerate(run.obstacle_radius.tolist())
+    ]
+
+
+def _standing(run: Run) -> list[StaticMap]:
+    """Return what stands in a scenario."""
+    if run.scenario is None:
+        return []
+    solid: list[Any] = [each for each in run.scenario.obstacles if isinstance(each, Disc | Rectangle)]
+    return [StaticMap.from_obstacles(solid)] if solid else []
+
+
+def _walls(world: Any) -> list[StaticMap]:
+    """Return what stands in a world."""
+    if isinstance(world.walls, StaticMap):
+        return [world.walls]
+    solid = [each for each in world.walls if isinstance(each, Disc | Rectangle)]
+    lines = [each for each in world.walls if not isinstance(each, Disc | Rectangle)]
+    found = [StaticMap.from_polylines(lines)] if lines else []
+    return [*found, StaticMap.from_obstacles(solid)] if solid else found
+
+
+def _in_cell(places: Array, period: tuple[float, float]) -> Array:
+    """Return places in the cell of a world that repeats itself."""
+    found: Array = places
+    for axis, size in enumerate(period):
+        if size > 0.0:
+            found = found.copy()
+            found[..., axis] = np.mod(found[..., axis], size)
+    return found
+
+
+# ---- robots ---------------------------------------------------------------------------------
+
+
+def _robot(
+    run: Run, index: int, maps: Sequence[StaticMap], bodies: Bodies, *, of_world: bool, decisions: Decisions | None
+) -> PlayedRobot:
+    scene = run.scenario
+    own = scene.robots[index] if of_world else scene
+    body = None if scene is None else own.body if of_world else own.robot
+    radius = 0.2 if body is None else body.radius
+    outline = getattr(body, "footprint", None)
+    return PlayedRobot(
+        name=f"robot {index}" if of_world and len(scene.robots) > 1 else "robot",
+        position=run.position,
+        radius=radius,
+        heading=None if body is None or isinstance(body, HolonomicRobot) else run.heading,
+        footprint=outline if isinstance(outline, tuple) else (),
+        speed=np.hypot(*run.velocity.T),
+        clearance=None if scene is None else _clearance(run, maps, bodies, radius),
+        goal=None if scene is None else own.goal,
+        tolerance=0.0 if scene is None else own.arrival_tolerance,
+        decisions=decisions,
+    )
+
+
+def _clearance(run: Run, maps: Iterable[StaticMap], bodies: Bodies, radius: float) -> Array | None:
+    """Return how far the robot is from what is nearest, in m, NaN where nobody knows; ``None`` without distances."""
+    if run.distance is None:
+        return None
+    found = np.full(len(run.time), np.inf)
+    here = np.isfinite(run.position).all(axis=1)
+    found[~here] = np.nan
+    for each in maps:
+        if each.bounds is not None:
+            found[here] = np.minimum(found[here], np.asarray(each.clearance(run.position[here])) - radius)
+    for column, _, _, size, box in bodies:
+        away = run.distance[:, column] - radius - (0.0 if box is not None else size)
+        found = np.minimum(found, np.where(np.isnan(away), np.inf, away))
+    return found
+
+
+def _events(run: Run, bodies: Bodies, maps: Sequence[StaticMap]) -> Iterator[Event]:
+    """Yield contacts of a robot and its arrival."""
+    known = {column: (name, size, box) for column, _, name, size, box in bodies}
+    several = len(getattr(run.scenario, "robots", ())) > 1
+    who = f"robot {run.robot}: " if several else ""
+    for index, when in enumerate(run.contact_time.tolist()):
+        if math.isnan(when):
+            continue
+        name, size, box = known.get(index, (f"obstacle {index}", math.nan, None))
+        speed, fault = float(run.contact_speed[index]), bool(run.contact_at_fault[index])
+        did = "robot standing" if speed <= STANDING else "toward it" if run.contact_toward[index] else "away from it"
+        words = f"{who}contact with {name}, {speed:.2f} m/s, {did}{', at fault' if fault else ''}"
+        row = _row(run, when)
+        place = run.position[row]
+        if box is None and math.isfinite(size):
+            # Between the centers, as far from each as its radius says.
+            other = run.obstacle_position[row, index]
+            share = _radius(run) / max(_radius(run) + size, 1e-9)
+            place = place + share * (other - place) if np.isfinite(other).all() else place
+        elif maps and index not in known:
+            place = _nearest(maps, place)
+        yield Event(when, "fault" if fault else "contact", words, (float(place[0]), float(place[1])))
+    if not math.isnan(run.map_contact_time):
+        place = _nearest(maps, run.position[_row(run, run.map_contact_time)])
+        words = f"{who}contact with a wall, {run.map_contact_speed:.2f} m/s, at fault"
+        yield Event(run.map_contact_time, "fault", words, (float(place[0]), float(place[1])))
+    if run.arrival_time is not None and math.isfinite(run.arrival_time):
+        yield Event(run.arrival_time, "arrival", f"{who}arrived at the goal")
+    elif run.outcome in ("timed_out", "stopped"):
+        yield Event(float(run.time[-1]), "note", f"{who}{OUTCOMES[run.outcome]}")
+
+
+def _row(run: Run, when: float) -> int:
+    return min(int(np.searchsorted(run.time, when - 1e-9)), len(run.time) - 1)
+
+
+def _radius(run: Run) -> float:
+    scene = run.scenario
+    body = scene.robots[run.robot].body if hasattr(scene, "people") else scene.robot
+    return float(body.radius)
+
+
+def _nearest(maps: Sequence[StaticMap], place: Array) -> Array:
+    """Return the point of maps that is nearest to a place; the place itself without any."""
+    points = [np.asarray(each.nearest(place)) for each in maps if each.bounds is not None]
+    return min(points, key=lambda point: float(np.hypot(*(point - place))), default=place)
+
+
+def _facts(run: Run, *, of_world: bool) -> Iterator[tuple[str, str]]:
+    scene = run.scenario
+    if of_world:
+        yield "people", str(run.obstacle_position.shape[1])
+        yield "time step", f"{scene.step:g} s"
+    if scene is not None:
+        yield "seed", str(scene.seed)
+    for own in run.robots:
+        who = f" of robot {own.robot}" if len(run.robots) > 1 else ""
+        yield f"path length{who}", f"{own.path_length:.2f} m"
+        if own.law is not None:
+            yield f"law{who}", type(own.law).__name__
+        if own.contacts_apart:
+            yield f"contacts{who} with somebody who appeared on it, counted apart", str(own.contacts_apart)
+    if scene is not None and not of_world:
+        told = run.sensing
+        yield "sensing", f"robot {told.robot}, obstacles {', '.join(told.obstacles)}"

@@ -1,0 +1,63 @@
+"""Players: what happened, as one HTML file that plays without a network."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from typing import Any
+
+from hrsafety._calls import suggesting
+from hrsafety._replay.page import PlayerPage, player_page
+from hrsafety._replay.record import Replay
+from hrsafety.errors import InvalidParameterError, Shown
+
+__all__ = ["player"]
+
+
+@suggesting
+def player(run: Any, path: str | os.PathLike[str] | None = None, *, title: str | None = None) -> PlayerPage:
+    """Return a run as an HTML file that plays it: no network, no library, nothing beside it.
+
+    Shown are robots with footprint, heading and way, people, what stands and what nobody has seen, goals, the
+    verdict of a shield with the area that it verified and where people can be by then, the guide's path, contacts, a
+    clock, speeds and clearances, and what was not judged. Everything can be reached by keyboard (``?`` lists the
+    keys), and stands in tables, too. An address that ends in ``#t=12.4`` opens the file at that instant.
+
+    Parameters
+    ----------
+    run : Trajectory, SafetyRecord, Recording or Replay
+        What happened. A `SafetyRecord` has the decisions of a shield, which a run by itself does not keep.
+    path : str, path-like or None
+        Where to write the file, too.
+    title : str or None
+        Title of the page; what the run says of itself when ``None``.
+
+    Returns
+    -------
+    PlayerPage
+        The HTML document, a string: the same bytes for the same run. ``save(path)`` writes it; a notebook shows it.
+        At most 1 MB: of a longer run instants farther apart are shown, between which clearances are the least and
+        verdicts the worst.
+
+    Raises
+    ------
+    InvalidParameterError
+        If the run has no instants, or is nothing that can be played.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav, plotting, scenarios
+    >>> law = nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield(person_speed=1.0))
+    >>> record = nav.metrics.record_safety(scenarios.configuration("c2"), law)
+    >>> plotting.player(record, "run.html")[:15]
+    '<!DOCTYPE html>'
+    """
+    made = getattr(run, "_replay", None)
+    if made is None:
+        rule = "be a run, a record of decisions, a world that was simulated, or recorded people"
+        raise InvalidParameterError("run", rule, Shown(type(run).__name__), "`nav.simulate` returns a run")
+    shown: Replay = made()
+    page = player_page(shown if title is None else replace(shown, title=str(title)))
+    if path is not None:
+        page.save(path)
+    return page
