@@ -14,6 +14,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     )
     from hrsafety.standards.guards import GuardDistance as GuardDistance, minimum_distance as minimum_distance
     from hrsafety.standards.limit_sets import LimitRow as LimitRow, LimitSet as LimitSet
+    from hrsafety.standards.robot_classes import RobotClass as RobotClass, robot_class as robot_class
     from hrsafety.standards.separation import (
         SpeedCurve as SpeedCurve,
         StoppingData as StoppingData,
