@@ -12,7 +12,7 @@ unexport MAKEFLAGS MFLAGS
 # As maturin does: the binding crate is loaded by an interpreter, not linked with one.
 export PYO3_BUILD_EXTENSION_MODULE = 1
 
-.PHONY: build develop hooks test test-rust test-fast lint bench docs images fuzz check reproduce clean
+.PHONY: build develop hooks test test-rust test-fast test-ros lint bench docs images fuzz check reproduce clean
 
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
@@ -42,6 +42,14 @@ test-rust:
 test-fast: build
 	cargo test --workspace --locked --lib
 	$(PYTEST) --fast
+
+# Two processes on ROS 2 itself, whose wheels (Linux x86-64, CPython 3.11) stand apart from everything else.
+ROS_VENV ?= .venv-ros
+
+test-ros: build
+	$(PYTHON) -m venv $(ROS_VENV)
+	$(ROS_VENV)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r tests/ros/requirements.txt
+	HRSAFETY_ROS_PYTHON=$(abspath $(ROS_VENV))/bin/python $(BIN)/python -m pytest tests/ros
 
 lint: build
 	cargo fmt --all --check

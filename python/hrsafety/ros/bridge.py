@@ -30,6 +30,8 @@ __all__ = ["Bridge", "Settings", "map_of"]
 _TICK = 0.01
 _ODOMETRY, _SCAN, _PEOPLE, _VERDICT = 0.02, 0.05, 0.1, 1.0
 """Periods of topics in s."""
+_REPEAT = 0.2
+"""Period of the state while lock-step waits for its first command, in s of the wall."""
 _ANSWER = 1.0
 """Longest wait for a command in lock-step, in s of the wall."""
 _BEHIND = 0.1
@@ -64,7 +66,7 @@ class Settings(Parameters):
     topic : str
         Where they come.
     wait : bool
-        Whether people and robot stand, while the clock runs, until the first command comes.
+        Whether people and robot stand until the first command comes; the clock runs meanwhile, but in lock-step.
     stay : bool
         Whether the run goes on to its time limit when the robot rests at its goal.
 
@@ -310,7 +312,8 @@ class Bridge:
 
     def _step_with_others(self, time: float) -> None:
         """Publish everything at the start of a control period, wait for its command, and move."""
-        if abs(time / self._step - round(time / self._step)) < 1e-6:
+        answered = self.settings.wait and time == 0.0  # while everybody stood
+        if not answered and abs(time / self._step - round(time / self._step)) < 1e-6:
             self._answered = False
             self._publish_crowd(time)
             self._publish_scan(time, self._step)
@@ -365,17 +368,18 @@ class Bridge:
                 self._warn(f"the world cannot keep up with {speed:g} times real time on this machine")
 
     def _stand_by(self) -> None:
-        """Let the clock run until the first command comes, while everybody stands."""
-        begun, shown = self._bus.wall(), -1.0
+        """Publish the start until the first command comes; the clock runs, but in lock-step."""
+        begun, shown = self._bus.wall(), -math.inf
         self._bus.log("info", f"waiting for the first command on {self.settings.topic}")
         while not self._commands.counts["commands"]:
-            self._offset = self._bus.wall() - begun
-            if self._offset - shown >= _SCAN:
-                shown = self._offset
+            now = self._bus.wall()
+            if now - shown >= (_REPEAT if self.settings.lockstep else _ODOMETRY):
+                shown = now
+                self._offset = 1.0 if self.settings.lockstep else now - begun  # a stamp of 0 is none
                 self._publish_crowd(0.0)
                 self._publish_scan(0.0, _SCAN)
-            self._publish_robot(0.0)
-            self._clock(messages.clock(self._offset))
+                self._publish_robot(0.0)
+                self._clock(messages.clock(self._offset))
             self._bus.spin(_ODOMETRY)
             self._steering.look()
 

@@ -17,7 +17,7 @@ from hrsafety.navigation.robot_command import Command, Sighting
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.ros.base import STANDING, Twist
 from hrsafety.ros.bridge import map_of
-from hrsafety.ros.bus import EVENTS, SENSOR, Bus, Quality
+from hrsafety.ros.bus import EVENTS, SENSOR, Bus, Message, Quality
 from hrsafety.ros.messages import Pose, pose_in, seconds, stamp, twist_in
 from hrsafety.ros.steering import STAMPED, TWIST
 
@@ -96,6 +96,7 @@ class Drive:
         self._heard_at = bus.wall()
         self._controller = self._made(robot.start)
         self.last: Command | None = None
+        self._answer: Message | None = None
         for warning in self._controller.warnings:
             bus.log("warn", str(warning))
         self._stamped = commands != "twist"
@@ -218,6 +219,9 @@ class Drive:
             self._poses.clear()  # a clock that was set back: what was before is not between
         self._poses.append(_Known(time, pose, velocity))
         self._heard_at = self._bus.wall()
+        if self._lockstep and time == self._done_at and self._answer is not None:
+            self._send(self._answer)  # asked again: the answer did not arrive
+            return
         self._try()
 
     def _aim(self, message: Any) -> None:
@@ -324,7 +328,8 @@ class Drive:
             "angular": {"x": 0.0, "y": 0.0, "z": twist.rate},
         }
         head = {"frame_id": "base_footprint", "stamp": stamp(time)}
-        self._send({"header": head, "twist": fields} if self._stamped else fields)
+        self._answer = {"header": head, "twist": fields} if self._stamped else fields
+        self._send(self._answer)
 
 
 def _twist(command: Command, yaw: float) -> Twist:

@@ -277,14 +277,29 @@ def test_people_wait_for_the_first_command() -> None:
         if bus.wall() > 20.0 and bus.sent["/clock"]:
             bus.say("cmd_vel", stamped(bus.now, 0.4))
 
-    record, bus = served(hall(time_limit=2.0), answer, wait=True)
+    record, bus = served(hall(time_limit=2.0), answer, wait=True, lockstep=False)
     assert bus.now > 20.0
     run = record.legs[0].trajectory
     assert run.time[-1] == pytest.approx(2.0)
     assert record.counts["command_late"] == record.counts["command_out_of_order"] == 0
-    assert record.counts["lockstep_timeout"] == 0
     first = [message["people"][0]["position"]["x"] for message in bus.sent["/people"]]
     assert first[0] == first[100] == pytest.approx(8.0)
+
+
+def test_lock_step_waits_for_its_first_command_with_a_clock_that_stands() -> None:
+    def bits(begin: float) -> tuple[bytes, str]:
+        def answer(bus: FakeBus) -> None:
+            if bus.wall() > begin and bus.sent["/clock"]:
+                bus.say("cmd_vel", stamped(bus.now, 0.4, rate=0.2))
+
+        record, bus = served(hall(time_limit=2.0), answer, wait=True)
+        assert record.counts["lockstep_timeout"] == record.counts["command_out_of_order"] == 0
+        assert record.counts["commands"] == 40
+        run = record.legs[0].trajectory
+        assert run.time[-1] == pytest.approx(2.0)
+        return run.robot_position.tobytes() + run.obstacle_position.tobytes(), repr(bus.sent["/scan"][-1])
+
+    assert bits(0.5) == bits(20.0)
 
 
 def test_ctrl_c_scores_what_was_driven() -> None:
