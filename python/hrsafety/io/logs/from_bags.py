@@ -64,6 +64,7 @@ class BagLog:
         self.reports: list[tuple[int, int]] = []
         self.scans: list[Scan] = []
         self.keep_scans = scans
+        self.warnings: tuple[ResultWarning, ...] = ()
         self.people: tuple[Any, Layout] | None = layout_of(bag, people, name)
         self._read()
 
@@ -80,7 +81,9 @@ class BagLog:
             rule = "hold poses of a robot (Odometry, TFMessage, PoseStamped or PoseWithCovarianceStamped)"
             remedy = "record /tf, /tf_static and /odom"
             raise FileError(self.name, rule, Shown(self.bag.words()), remedy, code="nothing_usable")
+        counts = dict.fromkeys(kinds, 0)
         for topic, record, raw in self.bag.messages(list(kinds)):
+            counts[topic] += 1
             kind = kinds[topic]
             try:
                 self._take(topic, kind, record, raw)
@@ -90,6 +93,14 @@ class BagLog:
                 told = Shown(f"{error} at {record / 1e9:.3f} s")
                 place = f"{self.name}, topic {topic}"
                 raise FileError(place, f"be messages of type {kind}", told, code="unreadable") from None
+
+        said = {each.name: each.messages for each in self.bag.topics}
+        fewer = [f"{name} {count} of {said[name]}" for name, count in counts.items() if count < said[name]]
+        if fewer:
+            message = (
+                f"the bag holds fewer messages than it says ({', '.join(fewer)}): it was cut off, or parts are missing"
+            )
+            self.warnings += (ResultWarning("missing_messages", "path", message),)
 
     def _take(self, topic: str, kind: str, record: int, raw: bytes) -> None:
         decoder = self.decoder

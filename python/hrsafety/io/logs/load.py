@@ -153,7 +153,7 @@ def _from_bag(place: Path, source: Source, offsets: dict[str, float], scans: boo
     sensors = [name for name in delays if name == tree.edges[own].topic or name in found.odometry_frames]
     sensors += [each.name for each in found.bag.topics if each.type.endswith("/LaserScan")]
     told += found.clocks.doubts(delays, sensors)
-    told += _not_finite(found.clocks.lost)
+    told += found.warnings + _not_finite(found.clocks.lost)
     origin = int(instants[0])
     time = (instants - origin) / 1e9
     fields: dict[str, Any] = {}

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array
+from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.datasets.recording import Recording
 from hrsafety.io.reader import Source
@@ -18,20 +19,22 @@ from hrsafety.plausibility import ResultWarning
 __all__ = ["Delay", "PoseJump", "RobotLog", "Scan"]
 
 
+@displayed
 class Delay(NamedTuple):
-    """Record time less stamp of the messages of a topic, in s.
+    """Record time less stamp of the messages of a topic.
 
     Attributes
     ----------
     median, high, most : float
-        Median, 95 % quantile and greatest one.
+        Median, 95 % quantile and greatest one, in s.
     """
 
-    median: float
-    high: float
-    most: float
+    median: Annotated[float, "s"]
+    high: Annotated[float, "s"]
+    most: Annotated[float, "s"]
 
 
+@displayed
 class PoseJump(NamedTuple):
     """Two successive poses between which the robot did not drive.
 
@@ -43,11 +46,12 @@ class PoseJump(NamedTuple):
         Way from where its velocity leads to where it was found, in m.
     """
 
-    begin: float
-    end: float
-    length: float
+    begin: Annotated[float, "s"]
+    end: Annotated[float, "s"]
+    length: Annotated[float, "m"]
 
 
+@displayed
 class Scan(NamedTuple):
     """A laser scan.
 
@@ -58,18 +62,19 @@ class Scan(NamedTuple):
     frame : str
         Of the sensor.
     angle, distance : ndarray, shape (k,)
-        Beams in rad and m, as measured.
+        Direction and length of the beams, in rad and in m.
     valid : ndarray of bool, shape (k,)
         Which are finite and within the range of the sensor.
     """
 
-    time: float
+    time: Annotated[float, "s"]
     frame: str
-    angle: Array
-    distance: Array
+    angle: Annotated[Array, "rad"]
+    distance: Annotated[Array, "m"]
     valid: npt.NDArray[np.bool_]
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class RobotLog:
     """Poses of a robot over time, and people near it; made by `load_log`.
@@ -77,13 +82,13 @@ class RobotLog:
     Attributes
     ----------
     time : ndarray, shape (n,)
-        Increasing, in s from the first pose.
+        From the first pose on, in s, increasing.
     position : ndarray, shape (n, 2)
-        In m, in ``frame``.
+        Of the robot in m.
     heading : ndarray, shape (n,)
         In rad, counter-clockwise.
     twist : ndarray, shape (n, 3)
-        Velocity forward and to the left in m/s and turn rate in rad/s, in the frame of the robot: the last that was
+        Velocity forward and to the left (m/s) and turn rate (rad/s) in the frame of the robot: the last that was
         stored at or before each pose; NaN without one.
     frame : str
         Frame of the positions.
@@ -94,7 +99,7 @@ class RobotLog:
     people_time : ndarray, shape (q,)
         Instants in s at which people were reported, with nobody in it, too.
     commands : ndarray, shape (c, 4)
-        Time in s, velocity forward, to the left (m/s) and turn rate (rad/s) that were asked for.
+        Time (s), velocity forward and to the left (m/s) and turn rate (rad/s) that were asked for.
     delay : mapping of str to Delay
         By topic.
     pose_jumps : tuple of PoseJump
@@ -113,21 +118,21 @@ class RobotLog:
         What is doubtful.
     """
 
-    time: Array
-    position: Array
-    heading: Array
+    time: Annotated[Array, "s"]
+    position: Annotated[Array, "m"]
+    heading: Annotated[Array, "rad"]
     twist: Array
     frame: str
     people: Recording | None
     source: Source
     people_topic: str = ""
-    people_time: Array = field(default_factory=lambda: np.empty(0))
+    people_time: Annotated[Array, "s"] = field(default_factory=lambda: np.empty(0))
     commands: Array = field(default_factory=lambda: np.empty((0, 4)))
     delay: Mapping[str, Delay] = field(default_factory=dict)
     pose_jumps: tuple[PoseJump, ...] = ()
     time_from: Mapping[str, str] = field(default_factory=dict)
     time_factor: float | None = None
-    time_origin: float = 0.0
+    time_origin: Annotated[float, "s"] = 0.0
     scans: tuple[Scan, ...] = ()
     warnings: tuple[ResultWarning, ...] = ()
 

@@ -91,13 +91,17 @@ def read_poses(document: Document, form: str) -> PoseTable:
     """
     if form == "odometry":
         return _odometry(document)
-    return _with_quaternions(document, delimiter_of(first_row(document)[1]), euroc=form == "euroc")
+    return _with_quaternions(document, euroc=form == "euroc")
 
 
-def _with_quaternions(document: Document, delimiter: str, *, euroc: bool) -> PoseTable:
+def _with_quaternions(document: Document, *, euroc: bool) -> PoseTable:
+    _, row = first_row(document)
+    delimiter = delimiter_of(row)
+    columns = max(len(cells_of(row, delimiter)), 8)
     order = ["qw", "qx", "qy", "qz"] if euroc else ["qx", "qy", "qz", "qw"]
     numbers = [Cell(index, name) for index, name in enumerate(["time", "x", "y", "z", *order])]
-    found = read_columns(document, delimiter=delimiter, numbers=numbers, ids=Cell(0, "time") if euroc else None)
+    ids = Cell(0, "time") if euroc else None
+    found = read_columns(document, delimiter=delimiter, numbers=numbers, ids=ids, columns=columns)
     table, lines = found.numbers, found.lines
     if euroc:
         table = table[:, [0, 1, 2, 3, 5, 6, 7, 4]]

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
 from hrsafety._arguments import Array
+from hrsafety._display import displayed
 from hrsafety.navigation.judging.synchronized import Synchronized
 from hrsafety.navigation.laws.shield import Shield
 
@@ -26,6 +27,7 @@ LEAST_ROWS = 20
 """With fewer values a 99 % quantile is the largest one."""
 
 
+@displayed
 class Assumption(NamedTuple):
     """What a shield assumes and what was found.
 
@@ -58,7 +60,7 @@ class Assumption(NamedTuple):
     most: float
     error: float
     unit: str
-    time: float
+    time: Annotated[float, "s"]
     note: str = ""
 
 

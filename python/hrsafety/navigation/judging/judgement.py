@@ -73,6 +73,7 @@ class Moment(NamedTuple):
     time_to_collision: Annotated[float, "s"]
 
 
+@displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Judgement:
     """What was found in a log; made by `judge`.
@@ -138,7 +139,7 @@ class Judgement:
     wall_clearance: Annotated[Array, "m"]
     error: Annotated[float, "m"]
     metrics: EpisodeMetrics
-    scored: tuple[float, float]
+    scored: Annotated[tuple[float, float], "s"]
     contacts: tuple[Touch, ...]
     possible_contacts: tuple[Touch, ...]
     assumptions: tuple[Assumption, ...]

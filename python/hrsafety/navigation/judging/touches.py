@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array
+from hrsafety._display import displayed
 from hrsafety.navigation.crowd.contacts import appears_until, touch_of, touching_share
 from hrsafety.navigation.judging.synchronized import Flags, Synchronized
 from hrsafety.navigation.maps.static_map import StaticMap
@@ -18,13 +19,14 @@ from hrsafety.navigation.trajectory import CONTACT_SPEED
 __all__ = ["Touch", "clearances", "people_touched", "walls_touched"]
 
 
+@displayed
 class Touch(NamedTuple):
     """A contact, or one that may have been.
 
     Attributes
     ----------
     begin, end : float
-        Of the contact in s; of a possible one the time in which the error allows it.
+        Of the contact, or of the time in which the error allows a possible one, in s.
     person : int, str or None
         Who; ``None``: a wall.
     kind : str
@@ -39,19 +41,19 @@ class Touch(NamedTuple):
     error : float
         Of that distance in m: with it the contact may not have been, or may have been.
     earliest, latest : float
-        Times in s between which the surfaces are nearer than the error.
+        Between these times the surfaces are nearer than the error, in s.
     """
 
-    begin: float
-    end: float
+    begin: Annotated[float, "s"]
+    end: Annotated[float, "s"]
     person: int | str | None
     kind: str
     at_fault: bool
-    speed: float
-    clearance: float
-    error: float
-    earliest: float
-    latest: float
+    speed: Annotated[float, "m/s"]
+    clearance: Annotated[float, "m"]
+    error: Annotated[float, "m"]
+    earliest: Annotated[float, "s"]
+    latest: Annotated[float, "s"]
 
     @property
     def certain(self) -> bool:

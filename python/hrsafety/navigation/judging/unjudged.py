@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
 from hrsafety._arguments import Array
+from hrsafety._display import displayed
 from hrsafety.navigation.judging.synchronized import PERSON_PERIODS, Flags, Synchronized
 from hrsafety.navigation.judging.touches import runs_of
 from hrsafety.navigation.maps.static_map import StaticMap
@@ -28,6 +29,7 @@ REASONS = {
 """What each reason means."""
 
 
+@displayed
 class NotJudged(NamedTuple):
     """A part of a log that is not judged.
 
@@ -41,8 +43,8 @@ class NotJudged(NamedTuple):
         Whom it is about; ``None``: everybody.
     """
 
-    begin: float
-    end: float
+    begin: Annotated[float, "s"]
+    end: Annotated[float, "s"]
     reason: str
     person: int | str | None = None
 
