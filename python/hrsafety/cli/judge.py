@@ -72,8 +72,11 @@ def judge_log(options: argparse.Namespace) -> None:
     print(terminal.told(report))
     written: list[Path] = []
     if options.out is not None:
+        from hrsafety import plotting
+
         place = output.folder(options.out)
-        written = output.write_report(report, place, _draw(found), [_table(found, place)])
+        plays = [plotting.player(found, title=report.title)]
+        written = output.write_report(report, place, _draw(found), [_table(found, place)], plays=plays)
     output.say_written(written, report, options)
     _end(found, fail_on, options)
 

@@ -33,7 +33,13 @@ def test_page_json_and_words(passing: list[str], tmp_path: Path, capsys: pytest.
     assert "warning" not in told.err
     page = (out / "summary.html").read_text()
     assert all(word in page for word in ("Rules of permission", "ann", "What is not judged", "violated", *METRICS))
-    assert {each.name for each in out.iterdir()} == {"summary.html", "judged.csv", "way.png", "moments.png"}
+    assert {each.name for each in out.iterdir()} == {
+        "summary.html",
+        "player.html",
+        "judged.csv",
+        "way.png",
+        "moments.png",
+    }
     found = json.loads((tmp_path / "found.json").read_text())
     assert found["counts"] == {"violated_rule": 2, "any": 2} | {
         word: 0 for word in FAILURES if word not in ("violated_rule", "any")

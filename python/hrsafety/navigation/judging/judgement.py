@@ -11,10 +11,13 @@ import numpy.typing as npt
 from hrsafety._arguments import Array, Pair, count, finite_pair, instance, not_negative, positive
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
+from hrsafety._replay.played import Played
+from hrsafety._replay.record import Replay
 from hrsafety._tracks import WINDOW
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.judging.assumptions import Assumption, assumptions
 from hrsafety.navigation.judging.permit import Passing, PermitRules, passings
+from hrsafety.navigation.judging.replay import replay_of
 from hrsafety.navigation.judging.synchronized import Logged, Synchronized, synchronized
 from hrsafety.navigation.judging.touches import Touch, clearances, people_touched, runs_of, walls_touched
 from hrsafety.navigation.judging.unjudged import NotJudged, judged_share, nearest_unseen, not_judged
@@ -75,7 +78,7 @@ class Moment(NamedTuple):
 
 @displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Judgement:
+class Judgement(Played):
     """What was found in a log; made by `judge`.
 
     It has ``time``, ``position``, ``velocity``, ``heading`` and ``obstacle_position``, so
@@ -155,6 +158,10 @@ class Judgement:
     walls: StaticMap | None = None
     shielded: bool = False
     warnings: tuple[ResultWarning, ...] = ()
+
+    def _replay(self) -> Replay:
+        """Return what a player shows."""
+        return replay_of(self)
 
     @property
     def counts(self) -> dict[str, int]:
