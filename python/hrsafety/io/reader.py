@@ -33,7 +33,7 @@ READERS: dict[str, tuple[str, ...]] = {
     ),
     "log": ("hrsafety.io.logs.load",),
     "map": ("hrsafety.io.places.maps",),
-    "scene": (),
+    "scene": ("hrsafety.io.places.scenes",),
 }
 """Modules of the readers of each kind of file, in the order in which they are asked; each has a list ``READERS``."""
 

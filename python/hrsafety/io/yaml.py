@@ -7,7 +7,7 @@ import itertools
 import json
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from os import PathLike
 from pathlib import Path as File
 from typing import Any
@@ -68,6 +68,16 @@ class Section:
         """File, line and keys, as errors name them."""
         where = f"{self._node.source.name}, line {self.line}"
         return f"{where}, {key_path(self.path)}" if self.path else where
+
+    @property
+    def is_map(self) -> bool:
+        """Whether it is a map of keys and values."""
+        return isinstance(self._node.value, dict)
+
+    @property
+    def is_list(self) -> bool:
+        """Whether it is a list."""
+        return isinstance(self._node.value, list)
 
     @property
     def plain(self) -> Any:
@@ -140,6 +150,10 @@ class Section:
         if not isinstance(value, dict):
             raise self.error("be a map of keys and values")
         return tuple(value)
+
+    def __iter__(self) -> Iterator[str]:
+        """Return the keys of a map one after the other."""
+        return iter(self.keys())
 
     def values(self) -> list[Section]:
         """Return the values of a list, which it has to be."""

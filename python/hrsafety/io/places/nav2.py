@@ -1,0 +1,424 @@
+"""Settings of Nav2: the shape and the limits of the robot that a parameter file describes."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+from os import PathLike
+from typing import Annotated, Any
+
+from hrsafety._arguments import Pair, meant
+from hrsafety._display import displayed
+from hrsafety._records import dataclass
+from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.io.reader import Document, Source
+from hrsafety.io.yaml import Section, YamlDocument
+from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
+from hrsafety.plausibility import ResultWarning, implausible
+
+__all__ = ["Nav2Settings", "costmap_footprint", "read_nav2"]
+
+PADDING = 0.01
+"""Default of ``footprint_padding`` in m."""
+RADIUS = 0.1
+"""Default of ``robot_radius`` in m."""
+CORNERS = 16
+"""Corners of the footprint that Nav2 makes of a radius."""
+SAME = 1e-6
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_QUANTITIES = {
+    "circumscribed_radius": "robot_radius",
+    "max_speed": "robot_max_speed",
+    "max_turn_rate": "robot_max_turn_rate",
+    "max_acceleration": "robot_max_acceleration",
+    "max_deceleration": "robot_max_deceleration",
+}
+_SMOOTHED = (("max_velocity", 1.0), ("min_velocity", -1.0), ("max_accel", 1.0), ("max_decel", -1.0))
+_DRIVES = {"DiffDrive": "two wheels", "Omni": "holonomic", "Ackermann": "car"}
+# What the controllers call a limit: DWB, MPPI, RPP and its older name.
+_SPEED = ("max_vel_x", "vx_max", "max_linear_vel", "desired_linear_vel")
+_REVERSE = ("min_vel_x", "vx_min")
+_LATERAL = ("max_vel_y", "vy_max")
+_TURN = ("max_vel_theta", "wz_max", "max_angular_vel")
+_SPEED_UP = ("acc_lim_x", "ax_max")
+_BRAKE = ("decel_lim_x", "ax_min")
+_TURN_UP = ("acc_lim_theta", "az_max", "max_angular_accel")
+
+
+@displayed
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Nav2Settings:
+    """Shape and limits of a robot as a parameter file of Nav2 gives them; what it does not say is ``None``.
+
+    Of controller and velocity smoother the stricter limit counts; of several controllers the one that allows more.
+
+    Attributes
+    ----------
+    footprint : tuple of (float, float) or None
+        Corners of the footprint in m, without padding; ``None`` for a round robot.
+    robot_radius : float or None
+        Radius of a round robot in m.
+    footprint_padding : float or None
+        By how much each coordinate of the footprint is moved away from zero, in m.
+    padded : tuple of (float, float) or None
+        Corners with padding in m; of a round robot the 16 that Nav2 makes of it.
+    circumscribed_radius, inscribed_radius : float or None
+        Largest and smallest distance of the padded outline from the center, in m.
+    inflation_radius : float or None
+        Of the inflation layer, in m.
+    cost_scaling_factor : float or None
+        Of the inflation layer, per meter.
+    max_speed, min_speed : float or None
+        Largest forward speed, and the smallest (negative in reverse), in m/s.
+    max_lateral_speed : float or None
+        Largest sideways speed in m/s.
+    max_turn_rate : float or None
+        In rad/s.
+    max_acceleration : float or None
+        Along the way, in m/s^2.
+    max_deceleration : float or None
+        Along the way, positive, in m/s^2.
+    max_turn_acceleration : float or None
+        In rad/s^2.
+    drive : {"two wheels", "holonomic", "car"}
+        By the motion model of MPPI, else two wheels unless a sideways speed is allowed.
+    warnings : tuple of ResultWarning
+        ``two_footprints`` where local and global costmap differ, ``inflation_below_circumscribed``, ``assumed`` for
+        defaults of Nav2 and the encoding, ``implausible`` numbers.
+    source : Source
+        The file.
+    """
+
+    footprint: Annotated[tuple[Pair, ...] | None, "m"] = None
+    robot_radius: Annotated[float | None, "m"] = None
+    footprint_padding: Annotated[float | None, "m"] = None
+    padded: Annotated[tuple[Pair, ...] | None, "m"] = None
+    circumscribed_radius: Annotated[float | None, "m"] = None
+    inscribed_radius: Annotated[float | None, "m"] = None
+    inflation_radius: Annotated[float | None, "m"] = None
+    cost_scaling_factor: float | None = None
+    max_speed: Annotated[float | None, "m/s"]
+    min_speed: Annotated[float | None, "m/s"]
+    max_lateral_speed: Annotated[float | None, "m/s"]
+    max_turn_rate: Annotated[float | None, "rad/s"]
+    max_acceleration: Annotated[float | None, "m/s^2"]
+    max_deceleration: Annotated[float | None, "m/s^2"]
+    max_turn_acceleration: Annotated[float | None, "rad/s^2"]
+    drive: str
+    warnings: tuple[ResultWarning, ...]
+    source: Source
+
+    def robot(self, **given: Any) -> DifferentialDriveRobot | HolonomicRobot:
+        r"""Return the robot, a disc of the circumscribed radius.
+
+        Parameters
+        ----------
+        **given
+            Arguments of `DifferentialDriveRobot` or `HolonomicRobot` that the file does not give, such as ``mass``, or
+            that are to be others.
+
+        Returns
+        -------
+        DifferentialDriveRobot or HolonomicRobot
+            By its drive.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the file gives no speed or acceleration and the call does not either, or the drive is that of a car.
+
+        Examples
+        --------
+        >>> import pathlib, tempfile
+        >>> from hrsafety import io
+        >>> lines = [
+        ...     "local_costmap: {local_costmap: {ros__parameters: {robot_radius: 0.2}}}",
+        ...     "velocity_smoother: {ros__parameters: {max_velocity: [0.5, 0.0, 2.0], max_accel: [2.5, 0.0, 3.2]}}",
+        ... ]
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = pathlib.Path(folder, "nav2_params.yaml")
+        ...     _ = path.write_text("\n".join(lines))
+        ...     robot = io.read_nav2(path).robot(mass=20.0)
+        >>> robot.max_speed, robot.max_turn_rate, round(robot.radius, 3)
+        (0.5, 2.0, 0.214)
+        """
+        if self.drive == "car":
+            shown = Shown("the motion model Ackermann")
+            raise InvalidParameterError("drive", "be two wheels or holonomic", shown, "make the robot by hand")
+        named = {
+            "radius": self.circumscribed_radius,
+            "max_speed": None if self.drive == "holonomic" else self.max_speed,
+            "max_acceleration": self.max_acceleration,
+            "max_deceleration": self.max_deceleration,
+        }
+        if self.drive == "two wheels":
+            named |= {"max_turn_rate": self.max_turn_rate, "max_turn_acceleration": self.max_turn_acceleration}
+        found = {name: value for name, value in named.items() if value is not None} | given
+        if self.drive == "holonomic" and self.max_speed is not None:  # forward and sideways at once
+            found.setdefault(
+                "max_speed",
+                math.hypot(self.max_speed, self.max_speed if (side := self.max_lateral_speed) is None else side),
+            )
+        for name in ("radius", "max_speed", "max_acceleration"):
+            if name not in found:
+                raise InvalidParameterError(name, "stand in the file or the call", Shown("neither"), f"give {name}=")
+        return (DifferentialDriveRobot if self.drive == "two wheels" else HolonomicRobot)(**found)
+
+
+def read_nav2(path: str | PathLike[str]) -> Nav2Settings:
+    """Return shape and limits of the robot from a parameter file of Nav2.
+
+    Read are the footprints of the costmaps with their padding and inflation, the limits of the controllers (DWB, MPPI,
+    RPP) and of the velocity smoother.
+
+    Parameters
+    ----------
+    path : path
+        The YAML file.
+
+    Returns
+    -------
+    Nav2Settings
+        Its ``robot()`` is one for scenarios and worlds.
+
+    Raises
+    ------
+    InvalidParameterError
+        If there is no such file.
+    FileError
+        If it is no YAML, holds none of these parameters, or one breaks its rule; the error names file, line and keys.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> from hrsafety import io
+    >>> text = '''
+    ... local_costmap:
+    ...   local_costmap:
+    ...     ros__parameters:
+    ...       footprint: "[[0.3, 0.2], [0.3, -0.2], [-0.3, -0.2], [-0.3, 0.2]]"
+    ... controller_server:
+    ...   ros__parameters:
+    ...     FollowPath: {plugin: "dwb_core::DWBLocalPlanner", max_vel_x: 0.26, max_vel_theta: 1.0, acc_lim_x: 2.5}
+    ... '''
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "nav2_params.yaml")
+    ...     _ = path.write_text(text)
+    ...     settings = io.read_nav2(path)
+    >>> settings.max_speed, settings.drive, round(settings.circumscribed_radius, 4)
+    (0.26, 'two wheels', 0.3744)
+    """
+    document = Document(path)
+    root = YamlDocument(document.text, document.name).root
+    doubts = list(document.warnings)
+    costmaps = {name: found for name in ("local_costmap", "global_costmap") if (found := _node(root, name, name))}
+    server, smoother = _node(root, "controller_server"), _node(root, "velocity_smoother")
+    if not (costmaps or server or smoother):
+        keys = root.keys()
+        alike = meant("controller_server", keys)
+        rule = "hold the parameters of a costmap, controller_server or velocity_smoother"
+        raise document.error("missing_key", rule, Shown(", ".join(keys[:20]) or "nothing"), alike)
+    shapes = {name: _shape(costmap) for name, costmap in costmaps.items()}
+    shape = next((each for each in shapes.values() if each["given"]), next(iter(shapes.values()), None))
+    doubts += _doubts_of_shapes(shapes, shape)
+    limits = _limits(server, smoother)
+    named = limits | {"circumscribed_radius": None if shape is None else shape["circumscribed_radius"]}
+    doubts += implausible({name: named[name] for name in _QUANTITIES}, _QUANTITIES)
+    return Nav2Settings(
+        **({name: each for name, each in shape.items() if name != "given"} if shape else {}),
+        **limits,
+        warnings=tuple(doubts),
+        source=Source(path=str(path), format="nav2", sha256=document.sha256),
+    )
+
+
+def _node(root: Section, *names: str) -> Section | None:
+    """Return the parameters of a node, below its name once or twice, in a namespace or not; ``None`` without any."""
+    tops = [root, *(each for key in root if (each := root[key]).is_map and key not in names)]
+    for top in tops:
+        for path in (names, names[:1], ("/".join(names),), ("/" + "/".join(names),)):
+            found: Section | None = top
+            for key in (*path, "ros__parameters"):
+                found = found.get(key) if found is not None and found.is_map else None
+            if found is not None and found.is_map:
+                return found
+    return None
+
+
+# ---- shape -----------------------------------------------------------------------------------------
+
+
+def costmap_footprint(entry: Section) -> tuple[Pair, ...]:
+    """Return the corners of a footprint as Nav2 writes them: text of pairs in brackets; none for an empty one."""
+    if entry.is_list:
+        raise entry.error("be text, as the costmap reads it", "put quotes around it")
+    words = entry.text().strip()
+    if words.replace(" ", "") in ("", "[]"):
+        return ()
+    inner = re.fullmatch(r"\[(.*)\]", words, re.DOTALL)
+    found: list[Pair] = []
+    rest = "" if inner is None else inner[1]
+    for part in re.findall(r"\[[^\[\]]*\]?|[^\[\],\s]+", rest):
+        match = re.fullmatch(rf"\[\s*({_NUMBER})\s*,\s*({_NUMBER})\s*\]", part)
+        if match is None or not max(abs(float(match[1])), abs(float(match[2]))) < 1e6:
+            raise entry.error(f"be pairs of finite numbers [x, y], but holds {part[:40]}", code="footprint")
+        found.append((float(match[1]), float(match[2])))
+    if inner is None or not re.fullmatch(r"\s*\[[^\[\]]*\](?:\s*,\s*\[[^\[\]]*\])*\s*", rest):
+        raise entry.error("be pairs [x, y] with commas between them, in brackets", code="footprint")
+    if len(found) < 3:
+        raise entry.error("have three corners or more", code="footprint")
+    return tuple(found)
+
+
+def _shape(costmap: Section) -> dict[str, Any]:
+    """Return the shape of the robot in a costmap."""
+    entry, round_entry = costmap.get("footprint"), costmap.get("robot_radius")
+    corners = () if entry is None else costmap_footprint(entry)
+    radius = RADIUS if round_entry is None else _positive(round_entry)
+    padding_entry = costmap.get("footprint_padding")
+    padding = PADDING if padding_entry is None else padding_entry.number()
+    if padding < 0.0 and padding_entry is not None:
+        raise padding_entry.error("not be negative")
+    turns = (2.0 * math.pi * index / CORNERS for index in range(CORNERS))
+    outline = corners or tuple((radius * math.cos(turn), radius * math.sin(turn)) for turn in turns)
+    padded = tuple((_away(x, padding), _away(y, padding)) for x, y in outline)
+    layers = [each for key in costmap if (each := costmap[key]).is_map and "inflation_radius" in each]
+    layer = next((each for each in layers if each.path[-1] == "inflation_layer"), layers[0] if layers else None)
+    inflation = None if layer is None else layer["inflation_radius"].number()
+    scaling = None if layer is None else layer.get("cost_scaling_factor")
+    return {
+        "given": bool(corners) or round_entry is not None,
+        "footprint": corners or None,
+        "robot_radius": None if corners else radius,
+        "footprint_padding": padding,
+        "padded": padded,
+        "circumscribed_radius": max(math.hypot(x, y) for x, y in padded),
+        "inscribed_radius": min(_distance(a, b) for a, b in zip(padded, (*padded[1:], padded[0]), strict=True)),
+        "inflation_radius": inflation,
+        "cost_scaling_factor": None if scaling is None else scaling.number(),
+    }
+
+
+def _away(value: float, padding: float) -> float:
+    return value + math.copysign(padding, value) if abs(value) > SAME * SAME else value
+
+
+def _distance(first: Pair, last: Pair) -> float:
+    """Return the distance of a segment from the origin."""
+    (x, y), (u, v) = first, (last[0] - first[0], last[1] - first[1])
+    square = u * u + v * v
+    share = min(max(-(x * u + y * v) / square, 0.0), 1.0) if square else 0.0
+    return math.hypot(x + share * u, y + share * v)
+
+
+def _doubts_of_shapes(shapes: dict[str, dict[str, Any]], shape: dict[str, Any] | None) -> Iterator[ResultWarning]:
+    """Yield doubts about footprints and inflation."""
+    if shape is None:
+        return
+    if not shape["given"]:
+        message = f"no costmap gives a footprint or robot_radius: Nav2 takes a radius of {RADIUS} m"
+        yield ResultWarning("assumed", "robot_radius", message)
+    if len(shapes) == 2:
+        local, other = shapes["local_costmap"], shapes["global_costmap"]
+        if not _same(local["padded"], other["padded"]):
+            message = (
+                f"local and global costmap have other footprints, of circumscribed radius "
+                f"{local['circumscribed_radius']:.3g} and {other['circumscribed_radius']:.3g} m; "
+                f"{shape['circumscribed_radius']:.3g} m is taken: plans may lead through gaps that are too narrow"
+            )
+            yield ResultWarning("two_footprints", "footprint", message)
+    for name, each in shapes.items():
+        inflation = each["inflation_radius"]
+        if inflation is not None and inflation < each["circumscribed_radius"]:
+            message = (
+                f"inflation_radius {inflation:g} m of the {name} is less than the circumscribed radius "
+                f"{each['circumscribed_radius']:.3g} m: costs do not tell where a turning robot touches"
+            )
+            yield ResultWarning("inflation_below_circumscribed", "inflation_radius", message)
+
+
+def _same(one: Sequence[Pair], other: Sequence[Pair]) -> bool:
+    return len(one) == len(other) and all(math.dist(a, b) < SAME for a, b in zip(one, other, strict=True))
+
+
+# ---- limits ----------------------------------------------------------------------------------------
+
+
+def _limits(server: Section | None, smoother: Section | None) -> dict[str, Any]:
+    """Return the limits of the robot by the names of `Nav2Settings`."""
+    controllers = [] if server is None else _controllers(server)
+    smooth = {name: _smoothed(smoother, name, sign) for name, sign in _SMOOTHED}
+    forward = _strict(_most(controllers, _SPEED), smooth["max_velocity"][0])
+    lateral = _strict(_most(controllers, _LATERAL), smooth["max_velocity"][1])
+    reverse = _strict(_most(controllers, _REVERSE, sign=-1.0), _negated(smooth["min_velocity"][0]))
+    models = [each["motion_model"] for each in controllers if "motion_model" in each]
+    for model in models:
+        if model.text() not in _DRIVES:
+            raise model.error('be "DiffDrive", "Omni" or "Ackermann"', meant(model.text(), tuple(_DRIVES)))
+    drive = _DRIVES[models[0].text()] if models else "holonomic" if lateral else "two wheels"
+    return {
+        "max_speed": forward,
+        "min_speed": _negated(reverse),
+        "max_lateral_speed": lateral,
+        "max_turn_rate": _strict(_most(controllers, _TURN), smooth["max_velocity"][2]),
+        "max_acceleration": _strict(_most(controllers, _SPEED_UP), smooth["max_accel"][0]),
+        "max_deceleration": _strict(_least(controllers, _BRAKE), _negated(smooth["max_decel"][0])),
+        "max_turn_acceleration": _strict(_most(controllers, _TURN_UP), smooth["max_accel"][2]),
+        "drive": drive,
+    }
+
+
+def _smoothed(smoother: Section | None, name: str, sign: float) -> list[float] | tuple[None, None, None]:
+    """Return limits of x, y and turning that have a sign, as Nav2 wants it."""
+    if smoother is None or name not in smoother:
+        return None, None, None
+    found = smoother[name].numbers(3)
+    if any(sign * each < 0.0 for each in found):
+        raise smoother[name].error(f"be {'positive' if sign > 0.0 else 'negative'} or zero")
+    return found
+
+
+def _controllers(server: Section) -> list[Section]:
+    """Return the parameters of the controllers: those that are named, else FollowPath."""
+    named = server.get("controller_plugins")
+    names = ["FollowPath"] if named is None else named.texts()
+    found = [server[name] for name in names if name in server]
+    for each in found:
+        each.keys()
+    return found
+
+
+def _values(controllers: Sequence[Section], keys: Sequence[str], sign: float) -> Iterator[float]:
+    for controller in controllers:
+        entry = next((controller[key] for key in keys if key in controller), None)
+        if entry is not None:
+            value = entry.number()
+            speeds = keys in (_SPEED, _SPEED_UP)
+            if speeds and not value > 0.0:
+                raise entry.error("be positive")
+            yield sign * value if sign < 0.0 else abs(value)
+
+
+def _most(controllers: Sequence[Section], keys: Sequence[str], sign: float = 1.0) -> float | None:
+    return max(_values(controllers, keys, sign), default=None)
+
+
+def _least(controllers: Sequence[Section], keys: Sequence[str]) -> float | None:
+    return min(_values(controllers, keys, 1.0), default=None)
+
+
+def _strict(*limits: float | None) -> float | None:
+    """Return the smallest of the limits that there are."""
+    return min((each for each in limits if each is not None), default=None)
+
+
+def _negated(value: float | None) -> float | None:
+    return None if value is None else 0.0 - value
+
+
+def _positive(entry: Section) -> float:
+    value = entry.number()
+    if not value > 0.0:
+        raise entry.error("be finite and positive")
+    return value
