@@ -168,6 +168,7 @@ _COMMANDS: dict[str, str | Callable[[argparse.Namespace], None]] = {
     "ros": "ros:serve_world",
     "init": "init:write_starter",
     "validate": "validate:validate_files",
+    "zones": "zones:run_zones",
     "info": "info:print_info",
 }
 """What each command calls: a function, or where one stands that is loaded only then."""

@@ -16,6 +16,7 @@ __all__ = [
     "SIMULATE",
     "SWEEP",
     "VALIDATE",
+    "ZONES",
 ]
 
 REPRODUCE = """example:
@@ -112,6 +113,17 @@ VALIDATE = """examples:
   hrsafety validate robot.urdf --strict
 
 Each file is read as its command reads it, and nothing is run. The exit code is 2 if a file is invalid.
+"""
+
+ZONES = """examples:
+  hrsafety zones --footprint 0.22 --max-speed 0.5 --max-turn-rate 1.0 --deceleration 2.5 --reaction 0.15 \\
+      --error 0.02 --beam-step-deg 0.5 --command-fall 2.5 --turn-command-fall 3.2 --out cm.yaml
+  hrsafety zones check cm.yaml --footprint 0.22 --max-speed 0.5 --max-turn-rate 1.0 --deceleration 2.5 \\
+      --reaction 0.15 --error 0.02 --beam-step-deg 0.5 --out verdict --fail-on broken,not_covered
+
+The first writes polygons for a collision monitor of Nav2 that stop the robot before it touches a person, and prints
+their fields. The second attacks those of a file: broken means that the robot touched somebody while it moved toward the
+person. A check takes what it is not told from the default robot of Nav2, and says so.
 """
 
 INFO = """example:

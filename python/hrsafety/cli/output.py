@@ -168,7 +168,9 @@ def located(file: str) -> Iterator[None]:
         if error.argument == Path(file).name:
             raise error.renamed(file) from None
         # A reader knows the file, too: its name stands once.
-        inside = error.argument.removeprefix(f"{file}: ").removeprefix(f"{Path(file).name}: ")
+        inside = error.argument
+        for known in (file, Path(file).name):
+            inside = inside.removeprefix(f"{known}: ").removeprefix(f"{known}, ")
         raise error.renamed(f"{file}: {inside}") from None
 
 

@@ -126,6 +126,7 @@ def parser() -> argparse.ArgumentParser:
     _add_judge(commands)
     _add_benchmark(commands)
     _add_ros(commands)
+    _add_zones(commands)
     _add_init(commands)
     _add_validate(commands)
     _add_command(
@@ -504,6 +505,90 @@ def _add_ros(commands: Any) -> None:
         "--field-of-view", type=_number, default=360.0, metavar="DEG", help="of the lidar in degrees [%(default)s]"
     )
     topics.add_argument("--resolution", type=_number, default=0.05, metavar="M", help="of the map in m [%(default)s]")
+
+
+def _add_zones(commands: Any) -> None:
+    parser = _add_command(
+        commands,
+        "zones",
+        summary="write zones of a collision monitor that hold, or attack those of a file",
+        example=examples.ZONES,
+    )
+    parser.add_argument("action", nargs="?", choices=("check",), metavar="check", help="judge the zones of a file")
+    parser.add_argument("file", nargs="?", metavar="FILE.yaml", help="parameters of a collision monitor")
+    parser.add_argument("--out", metavar="PATH", help="FILE.yaml for zones; of check a folder for a page and pictures")
+    _add_shared(parser)
+
+    def numbers(title: str, options: dict[str, tuple[str, str]]) -> Any:
+        group = parser.add_argument_group(title)
+        for name, (metavar, words) in options.items():
+            group.add_argument(f"--{name}", type=_number, metavar=metavar, help=words)
+        return group
+
+    robot = numbers(
+        "robot",
+        {
+            "max-speed": ("V", "largest commanded speed in m/s"),
+            "min-speed": ("V", "largest speed backward in m/s, with its sign [0]"),
+            "max-turn-rate": ("W", "largest commanded turn rate in rad/s"),
+            "deceleration": ("A", "of a stop that is always reached, in m/s^2"),
+            "turn-deceleration": ("A", "of turns in rad/s^2 [deceleration at the rim]"),
+            "acceleration": ("A", "of the base in m/s^2 [deceleration]"),
+            "build-up": ("S", "time in which the brakes build up, in s [0]"),
+            "command-fall": ("A", "limit of falling commands in m/s^2, as a velocity smoother keeps it [none]"),
+            "turn-command-fall": ("A", "limit of falling turn rates in rad/s^2 [none]"),
+            "tracking-lag": ("S", "lag of the base behind its commands in s [0]"),
+        },
+    )
+    robot.add_argument("--footprint", metavar="R|CORNERS", help='radius in m, or corners as "[[x, y], ...]" in m')
+    robot.add_argument("--holonomic", action="store_true", help="the robot drives sideways, too")
+    numbers(
+        "delays",
+        {
+            "reaction": ("S", "from a leg in a zone until the robot begins to brake, at most, in s"),
+            "scan-period": ("S", "of the scanner, a part of the reaction, in s [a third of it]"),
+            "command-period": ("S", "of the commands, a part of the reaction, in s [a sixth of it]"),
+        },
+    )
+    scanner = numbers(
+        "scanner",
+        {
+            "beam-step-deg": ("DEG", "angle between beams in degrees"),
+            "error": ("M", "largest error of measured points in m"),
+            "min-range": ("M", "least range in m [0]"),
+            "max-range": ("M", "largest range in m [10]"),
+        },
+    )
+    scanner.add_argument("--scanner", nargs=2, type=_number, metavar=("X", "Y"), help="place in the base frame [0 0]")
+    numbers(
+        "people",
+        {
+            "person-speed": ("V", "largest speed of people in m/s [1.6]"),
+            "leg-radius": ("M", "radius of the thinnest leg in m [0.06]"),
+            "supplement": ("M", "distance in m to keep beyond, such as for what overhangs legs [0]"),
+        },
+    )
+    made = parser.add_argument_group("zones that are written")
+    made.add_argument("--ranges", type=_count, default=3, metavar="N", help="ranges of speed [%(default)s]")
+    made.add_argument("--turn-ranges", type=_count, default=1, metavar="N", help="1, or 3 [%(default)s]")
+    made.add_argument("--corners", type=_count, default=16, metavar="N", help="most corners of a zone [%(default)s]")
+    made.add_argument("--min-points", type=_count, default=4, metavar="N", help="points that stop [%(default)s]")
+    made.add_argument(
+        "--all-sides", action="store_true", help="nobody reaches the robot from any side before it stands"
+    )
+    made.add_argument("--report", metavar="DIR", help="folder for a page and a picture of the fields")
+    judged = parser.add_argument_group("zones that are checked")
+    judged.add_argument("--attacks", type=_count, metavar="N", help="attacks by chance [1000]")
+    judged.add_argument("--generations", type=_count, default=6, metavar="N", help="of the search [%(default)s]")
+    judged.add_argument("--seed", type=_count, default=0, metavar="N", help="of the attacks [%(default)s]")
+    judged.add_argument(
+        "--mend", metavar="FILE.yaml", help="write the file with zones made large enough, comments kept"
+    )
+    judged.add_argument(
+        "--fail-on",
+        metavar="WORDS",
+        help="exit with code 3 if the verdict is one of these: broken, not_covered, any; several with commas between",
+    )
 
 
 def _starter(word: str) -> str:

@@ -28,21 +28,24 @@ FAILURES = ("contact", "moving_contact", *_SHORT_OF_GOAL, "not_arrived", "any")
 """Words of ``--fail-on``; the help says what each means."""
 LOOKS = MappingProxyType({"FAILED": "bold red", "NOT CHECKED": "bold yellow", "NOTE": "yellow", "passed": "green"})
 """First words of the last line and their looks on a terminal."""
+_SUMMED = ("moving_contact", "not_arrived", "any")
 _OTHER_WORDS = {"collided": "contact", "collision": "contact", "timeout": "timed_out"}
 
 
-def failures_of(text: str | None) -> tuple[str, ...]:
+def failures_of(text: str | None, words: Sequence[str] = FAILURES) -> tuple[str, ...]:
     """Return the words of ``--fail-on``, each checked.
 
     Parameters
     ----------
     text : str or None
         Words between commas, as given.
+    words : sequence of str
+        Those of the command.
 
     Returns
     -------
     tuple of str
-        Among `FAILURES`; empty without the option.
+        Among the words; empty without the option.
 
     Raises
     ------
@@ -55,9 +58,9 @@ def failures_of(text: str | None) -> tuple[str, ...]:
     for given in text.split(","):
         plain = given.strip().lower().replace("-", "_")
         word = _OTHER_WORDS.get(plain, plain)
-        if word not in FAILURES:
-            near = meant(plain, [*FAILURES, *_OTHER_WORDS])
-            raise InvalidParameterError("--fail-on", f"be among {', '.join(FAILURES)}, with commas", given, near)
+        if word not in words:
+            near = meant(plain, [*words, *(_OTHER_WORDS if words is FAILURES else ())])
+            raise InvalidParameterError("--fail-on", f"be among {', '.join(words)}, with commas", given, near)
         found.append(word)
     return tuple(dict.fromkeys(found))
 
@@ -101,12 +104,19 @@ def sentence(said: str, counts: Counts, fail_on: Sequence[str], runs: int, doubt
         return f"NOT CHECKED  {said}, but with doubts that may lie on the unsafe side ({codes}); {code}"
     if not counts["any"]:
         return f"passed  {said}"
-    happened = ",".join(word for word in ("contact", *_SHORT_OF_GOAL) if counts[word])
+    happened = ",".join(word for word in counts if word not in _SUMMED and counts[word])
     note = "--fail-on does not name it" if fail_on else f"--fail-on {happened} makes it {FAILED_RUN}"
     return f"NOTE    {said}; exit code 0 all the same, {note}"
 
 
-def end(said: str, counts: Counts, found: Sequence[ResultWarning], options: argparse.Namespace, runs: int) -> None:
+def end(
+    said: str,
+    counts: Counts,
+    found: Sequence[ResultWarning],
+    options: argparse.Namespace,
+    runs: int,
+    words: Sequence[str] = FAILURES,
+) -> None:
     """Print warnings and the last line, and leave with the code that the options ask for.
 
     Parameters
@@ -121,6 +131,8 @@ def end(said: str, counts: Counts, found: Sequence[ResultWarning], options: argp
         Of ``hrsafety simulate``.
     runs : int
         How many there are.
+    words : sequence of str
+        Words of ``--fail-on`` of the command.
 
     Raises
     ------
@@ -128,7 +140,7 @@ def end(said: str, counts: Counts, found: Sequence[ResultWarning], options: argp
         With code 3 if a failure that ``--fail-on`` names happened, else with code 5 if ``--fail-on`` is given and a
         doubt may lie on the unsafe side, else with code 4 if there are warnings and ``--strict`` is given.
     """
-    fail_on = failures_of(options.fail_on)
+    fail_on = failures_of(options.fail_on, words)
     output.report_warnings(found, strict=False)
     print()
     doubts = unsafe_doubts(found)

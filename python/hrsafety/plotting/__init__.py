@@ -56,6 +56,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.plotting.style import MissingExtraError as MissingExtraError
     from hrsafety.plotting.sweeps.lines import sweep_lines as sweep_lines, sweep_map as sweep_map
     from hrsafety.plotting.sweeps.overviews import sweep_parallel as sweep_parallel, sweep_scatter as sweep_scatter
+    from hrsafety.plotting.zones import zone_attack as zone_attack, zone_fields as zone_fields
 else:
     __all__, __getattr__, __dir__ = names_of(
         __name__,

@@ -6,6 +6,21 @@ from hrsafety._namespace import names_of
 
 if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.errors import InfeasibleError as InfeasibleError, InvalidParameterError as InvalidParameterError
+    from hrsafety.zones.attacks import (
+        GENES as GENES,
+        Attacked as Attacked,
+        AttackRun as AttackRun,
+        attack as attack,
+        replay as replay,
+    )
+    from hrsafety.zones.checking import ShapeCheck as ShapeCheck, ZoneCheck as ZoneCheck, check as check
+    from hrsafety.zones.conditions import Conditions as Conditions
+    from hrsafety.zones.field_design import (
+        CommandRange as CommandRange,
+        Zone as Zone,
+        ZoneSet as ZoneSet,
+        design as design,
+    )
     from hrsafety.zones.formulas import (
         Extents as Extents,
         StoppingTravel as StoppingTravel,
@@ -24,5 +39,6 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
         MonitorPolygon as MonitorPolygon,
         VelocityRange as VelocityRange,
     )
+    from hrsafety.zones.monitor_text import mended as mended
 else:
     __all__, __getattr__, __dir__ = names_of(__name__)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import field
@@ -73,7 +74,7 @@ class VelocityRange:
             direction = np.where(along == 0.0, 0.0, np.arctan2(command[:, 1], command[:, 0]))
             after, before = direction >= self.direction_start_angle, direction <= self.direction_end_angle
             held &= after & before if self.direction_start_angle <= self.direction_end_angle else after | before
-        return held
+        return np.asarray(held)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -139,20 +140,20 @@ class MonitorPolygon:
 
     def covers(self, command: Array) -> Flags:
         """Return which commands (n, 3) a range holds; all of a polygon without ranges."""
-        return self.shapes(command, np.full(len(command), NO_SHAPE, dtype=np.intp)) != NO_SHAPE
+        return np.not_equal(self.shapes(command, np.full(len(command), NO_SHAPE, dtype=np.intp)), NO_SHAPE)
 
     def count_inside(self, x: Array, y: Array, seen: Flags, shape: Indices) -> Indices:
         """Return how many points (n, m) that are seen lie in the shape of each row."""
         if self.type == "circle":
             return np.asarray((seen & (x * x + y * y < self.radius * self.radius)).sum(axis=1))
         if self.type == "polygon":
-            held = np.zeros(x.shape, dtype=np.bool_) if self.corners is None else inside(self.corners, x, y)
-            return np.asarray((seen & held).sum(axis=1))
+            held = np.zeros(x.shape, dtype=np.bool_) if self.corners is None else inside(self.corners, x, y, seen)
+            return np.asarray(held.sum(axis=1))
         found = np.zeros(len(x), dtype=np.intp)
         for index, each in enumerate(self.ranges):
             rows = shape == index
             if rows.any():
-                found[rows] = (seen[rows] & inside(each.corners, x[rows], y[rows])).sum(axis=1)
+                found[rows] = inside(each.corners, x[rows], y[rows], seen[rows]).sum(axis=1)
         return found
 
     def collision_time(self, command: Array, x: Array, y: Array, seen: Flags, shape: Indices) -> Array:
@@ -399,8 +400,8 @@ class CollisionMonitor:
                 time = zone.collision_time(given, x[rows], y[rows], own, shape)
                 hit, share = np.isfinite(time), time / zone.time_before_collision
             else:
-                hit = (zone.count_inside(x[rows], y[rows], own, shape) >= zone.min_points) & (shape != NO_SHAPE)
-                share = _share(zone, given)
+                counted = zone.count_inside(x[rows], y[rows], own, shape) if own.any() else np.zeros_like(shape)
+                hit, share = (counted >= zone.min_points) & (shape != NO_SHAPE), _share(zone, given)
             acting = _debounced(zone, hit, state, rows, index)
             if zone.action == "approach":
                 acting &= hit  # without a collision ahead there is no time to hold
@@ -413,6 +414,41 @@ class CollisionMonitor:
             best[rows[lower]] = slowed[lower]
             by[rows[lower]] = index
         return best, by
+
+    def doubts(self, *, reaction_time: float, limits: tuple[Array, Array] | None = None) -> tuple[ResultWarning, ...]:
+        """Return what is wrong with the file whatever people do.
+
+        Parameters
+        ----------
+        reaction_time : float
+            Largest time T in s from a leg in a zone until the robot begins to brake.
+        limits : tuple of ndarray (3,) or None
+            Least and largest commands (m/s, m/s, rad/s) of the robot; ``None``: those that the ranges span.
+
+        Returns
+        -------
+        tuple of ResultWarning
+            ``uncovered_velocity`` for commands that no range of a velocity polygon holds, and
+            ``source_timeout_above_reaction``.
+        """
+        found = []
+        for zone in self.polygons:
+            gap = first_gap(zone, limits)
+            if gap is not None:
+                words = ", ".join(f"{each:.4g}" for each in gap)
+                message = (
+                    f"{zone.name} has no range for commands such as ({words}) m/s, m/s, rad/s: its last shape stays, "
+                    "or it has none; add a range that holds them"
+                )
+                found.append(ResultWarning("uncovered_velocity", zone.name, message))
+        if not 0.0 < self.source_timeout <= number("reaction_time", reaction_time) * (1.0 + 1e-9):
+            shown = f"{self.source_timeout:g} s" if self.source_timeout else "0, which lets a source be silent for good"
+            message = (
+                f"source_timeout is {shown}: a scanner that falls silent is noticed later than a leg in a zone "
+                f"({reaction_time:g} s); set it to at most that"
+            )
+            found.append(ResultWarning("source_timeout_above_reaction", "source_timeout", message))
+        return tuple(found)
 
     def uncovered(self, command: object) -> tuple[str, ...]:
         """Return the names of the velocity polygons none of whose ranges holds a command.
@@ -437,6 +473,42 @@ def _cloud(value: object) -> Array:
     """Return points (n, 2); an empty list holds none."""
     given = numbers("seen", value)
     return points("seen", given) if given.size else np.zeros((0, 2))
+
+
+def first_gap(zone: MonitorPolygon, limits: tuple[Array, Array] | None) -> tuple[float, ...] | None:
+    """Return a command that no range of a zone holds, ``None`` if there is none.
+
+    Ranges are boxes: between two neighboring borders either all commands are held or none.
+    """
+    if not zone.ranges:
+        return None
+    ranges = zone.ranges
+    linear = sorted({border for each in ranges for border in (each.linear_min, each.linear_max)})
+    turns = sorted({border for each in ranges for border in (each.theta_min, each.theta_max)})
+    low, high = (linear[0], turns[0]), (linear[-1], turns[-1])
+    if limits is not None:
+        low, high = (0.0 if zone.holonomic else limits[0][0], limits[0][2]), (limits[1][0], limits[1][2])
+    speeds = _between(linear, low[0], high[0])
+    rates = _between(turns, low[1], high[1])
+    ways = [0.0]
+    if zone.holonomic:
+        borders = {way for each in ranges for way in (each.direction_start_angle, each.direction_end_angle)}
+        ways = _between(sorted(borders), -math.pi, math.pi)
+    grid = np.array([(v * math.cos(way), v * math.sin(way), w) for v in speeds for w in rates for way in ways])
+    missing = ~zone.covers(grid)
+    if zone.holonomic:  # a speed at a border, turned, may be rounded off it
+        missing &= ~zone.covers(grid * (1.0 - 1e-9))
+    if not missing.any():
+        return None
+    # The one nearest to the robot's straight way is the easiest to understand.
+    place = np.flatnonzero(missing)
+    return tuple(grid[place[np.argmin(np.abs(grid[place]).sum(axis=1))]].tolist())
+
+
+def _between(borders: Sequence[float], low: float, high: float) -> list[float]:
+    """Return limits, the borders between them, and the middles of their gaps."""
+    inner = sorted({low, high, *(each for each in borders if low < each < high)})
+    return sorted({*inner, *(0.5 * (first + last) for first, last in itertools.pairwise(inner))})
 
 
 def _share(zone: MonitorPolygon, command: Array) -> Array:

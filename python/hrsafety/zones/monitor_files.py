@@ -19,7 +19,7 @@ from hrsafety.zones.monitor import ACTIONS, MOST_STEPS, TYPES, CollisionMonitor,
 from hrsafety.zones.polygons import checked
 from hrsafety.zones.reach import footprint_of
 
-__all__ = ["load_monitor", "monitor_of", "node_of"]
+__all__ = ["corners_of_text", "load_monitor", "monitor_of", "node_of"]
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _POINT = re.compile(rf"\[\s*({NUMBER})\s*,\s*({NUMBER})\s*\]")
@@ -36,6 +36,13 @@ _POLYGON = (
     *("simulation_time_step", "sources_names", "velocity_polygons", "holonomic", "footprint_topic"),
     *("polygon_sub_topic", "polygon_subscribe_transient_local", "visualize", "polygon_pub_topic", "enabled"),
 )
+
+
+def corners_of_text(text: str) -> Array | None:
+    """Return corners (n, 2) from text such as ``"[[0.3, 0.2], [0.3, -0.2], ...]"``, ``None`` if it is none."""
+    if len(text) > 100 * MOST_CORNERS or not _POINTS.fullmatch(text):
+        return None
+    return np.array([[float(x), float(y)] for x, y in _POINT.findall(text)])
 
 
 def _word(keys: Section, key: str, words: Sequence[str], default: str | None = None) -> str:
@@ -87,9 +94,10 @@ def _corners(keys: Section, key: str = "points") -> Array:
     rule = 'be corners as "[[x, y], [x, y], ...]" or a flat list x, y, x, y, ...'
     value = keys[key].plain
     if isinstance(value, str):
-        if len(value) > 100 * MOST_CORNERS or not _POINTS.fullmatch(value):
+        read = corners_of_text(value)
+        if read is None:
             raise keys[key].error(rule)
-        place = np.array([[float(x), float(y)] for x, y in _POINT.findall(value)])
+        place = read
     elif isinstance(value, list) and len(value) <= 2 * MOST_CORNERS:
         pairs = all(isinstance(each, list) and len(each) == 2 for each in value)
         flat = [part.number() for each in keys[key].values() for part in (each.values() if pairs else [each])]

@@ -82,16 +82,28 @@ def area(corners: Array) -> float:
     return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
 
 
-def inside(corners: Array, x: Array, y: Array) -> npt.NDArray[np.bool_]:
-    """Return which points a polygon holds: those from which a ray along x crosses its edges an odd number of times."""
+def inside(corners: Array, x: Array, y: Array, among: npt.NDArray[np.bool_] | None = None) -> npt.NDArray[np.bool_]:
+    """Return which points a polygon holds: those from which a ray along x crosses its edges an odd number of times.
+
+    Only points among those that are wanted are looked at, and of them those in the box around the polygon.
+    """
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    near = (x >= low[0]) & (x <= high[0]) & (y >= low[1]) & (y <= high[1])
+    if among is not None:
+        near &= among
     found = np.zeros(np.shape(x), dtype=np.bool_)
+    if not near.any():
+        return found
+    at_x, at_y = x[near], y[near]
+    odd = np.zeros(at_x.shape, dtype=np.bool_)
     before = corners[-1]
     for corner in corners:
         if before[1] != corner[1]:
-            crossed = (y <= before[1]) == (y > corner[1])
-            at = before[0] + (y - before[1]) * (corner[0] - before[0]) / (corner[1] - before[1])
-            found ^= crossed & (at > x)
+            crossed = (at_y <= before[1]) == (at_y > corner[1])
+            at = before[0] + (at_y - before[1]) * (corner[0] - before[0]) / (corner[1] - before[1])
+            odd ^= crossed & (at > at_x)
         before = corner
+    found[near] = odd
     return found
 
 

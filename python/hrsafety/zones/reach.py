@@ -11,8 +11,10 @@ from hrsafety._arguments import Array, number, positive
 from hrsafety.errors import InvalidParameterError
 from hrsafety.zones.polygons import checked, convex
 
-__all__ = ["Footprint", "StoppingPaths", "footprint_of", "stopping_paths", "supports"]
+__all__ = ["TOWARD", "Footprint", "StoppingPaths", "footprint_of", "stopping_paths", "supports"]
 
+TOWARD = 1e-3
+"""Speed in m/s of the robot's surface toward a person above which a contact is its fault."""
 ROUND = 48
 """Directions of the boundary of a disc."""
 
@@ -253,7 +255,7 @@ def supports(
         if leading:
             outward = (velocity[:, :1] - velocity[:, 2:] * place[:, 1]) * normals[:, 0]
             outward = outward + (velocity[:, 1:2] + velocity[:, 2:] * place[:, 0]) * normals[:, 1]
-            counts = outward + spread[0] * left[:, np.newaxis] > 0.0
+            counts = outward + spread[0] * left[:, np.newaxis] > 0.5 * TOWARD
             # A face that moved until the end of a step touches what is there at its end.
             counts[1:] |= counts[:-1]
             x, y, radius = x[counts], y[counts], radius[counts]

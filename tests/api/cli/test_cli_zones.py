@@ -1,0 +1,109 @@
+"""``hrsafety zones`` and ``hrsafety zones check`` as a user calls them: files, pages, exit codes and errors."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from hrsafety import zones
+from hrsafety.cli import main
+
+ROBOT = (
+    *("--footprint", "0.22", "--max-speed", "0.4", "--max-turn-rate", "0.5", "--deceleration", "2.5"),
+    *("--reaction", "0.15", "--error", "0.02", "--beam-step-deg", "0.5"),
+)
+CHECKED = ("--attacks", "60", "--generations", "0")
+DEFAULT = """collision_monitor:
+  ros__parameters:
+    source_timeout: 0.1
+    polygons: ["Stop"]
+    Stop: {type: "circle", radius: 0.3, action_type: "stop"}  # as delivered
+    observation_sources: ["scan"]
+    scan: {type: "scan"}
+"""
+
+
+def test_zones_are_written_and_their_own_check_holds(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file, page, values = tmp_path / "cm.yaml", tmp_path / "page", tmp_path / "zones.json"
+    given = ["zones", *ROBOT, "--command-fall", "2.5", "--turn-command-fall", "3"]
+    assert main([*given, "--ranges", "2", "--out", str(file), "--report", str(page), "--json", str(values)]) == 0
+    told = capsys.readouterr().out
+    assert "forward_2" in told
+    assert "manuals        S_L" in told
+    assert (page / "zones.html").exists()
+    assert [each["name"] for each in json.loads(values.read_text())["zones"]] == ["forward_1", "forward_2"]
+    folder = tmp_path / "verdict"
+    checked = ["zones", "check", str(file), *given[1:], *CHECKED, "--fail-on", "any", "--out", str(folder)]
+    assert main(checked) == 0
+    assert "passed  holds: none of 60 attacks" in capsys.readouterr().out
+    assert {each.name for each in folder.iterdir()} == {
+        "zones.html",
+        "zones.png",
+        "worst_attack.png",
+        "worst_attack.csv",
+    }
+
+
+def test_a_broken_file_fails_is_mended_and_replayed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file, mended, values = tmp_path / "cm.yaml", tmp_path / "mended.yaml", tmp_path / "v.json"
+    file.write_text(DEFAULT)
+    call = ["zones", "check", str(file), *ROBOT, *CHECKED]
+    assert main([*call, "--fail-on", "broken", "--mend", str(mended), "--json", str(values)]) == 3
+    assert "--fail-on broken: exit code 3" in capsys.readouterr().out
+    assert main(call) == 0
+    assert "--fail-on broken makes it 3" in capsys.readouterr().out
+    assert "# as delivered" in mended.read_text()
+    found = json.loads(values.read_text())
+    assert found["verdict"] == "broken"
+    monitor = zones.CollisionMonitor.from_file(file)
+    conditions = zones.Conditions(**{name: value for name, value in found["conditions"].items() if value is not None})
+    again = zones.replay(monitor, conditions, list(found["worst"]["genes"].values()))
+    assert again.contact_speed == found["worst"]["contact_speed_m_per_s"]
+    assert main(["zones", "check", str(mended), *ROBOT, *CHECKED, "--fail-on", "any"]) == 0
+
+
+def test_a_check_that_is_not_told_the_robot_is_not_checked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "cm.yaml"
+    file.write_text(DEFAULT.replace("0.3", "2.0"))
+    assert main(["zones", "check", str(file), *CHECKED, "--fail-on", "any"]) == 5
+    told = capsys.readouterr()
+    assert "NOT CHECKED  holds" in told.out
+    assert "taken from the default robot of Nav2" in told.err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["zones"], "zones needs --footprint, --max-speed"),
+        (["zones", "check"], "zones check needs a FILE.yaml"),
+        (["zones", "check", "FILE", "--fail-on", "contact"], "--fail-on must be among broken, not_covered, any"),
+        (["zones", "check", "FILE", "--report", "x"], "--report goes with zones only"),
+        (["zones", "check", "FILE", "--footprint", "[[0, 0]"], "--footprint must be a radius"),
+        (["zones", "check", "FILE", "--min-speed", "0.1"], "--min-speed must not be positive"),
+        (["zones", "check", "FILE", "--reaction", "-1"], "--reaction must be finite and positive"),
+        (["zones", "check", "missing.yaml"], "path must name a readable file"),
+        (["zones", *ROBOT, "--attacks", "5"], "--attacks goes with zones check"),
+        (["zones", *ROBOT, "--out", "zones.txt"], "--out must end in .yaml or .yml"),
+        (["zones", *ROBOT, "--max-speed", "9"], "a max_speed of"),
+    ],
+)
+def test_errors_name_the_option(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
+) -> None:
+    file = tmp_path / "cm.yaml"
+    file.write_text(DEFAULT)
+    assert main([str(file) if each == "FILE" else each for each in arguments]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_an_error_in_a_file_names_the_file_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "cm.yaml"
+    file.write_text(DEFAULT.replace('"circle"', '"disc"'))
+    assert main(["zones", "check", str(file)]) == 2
+    told = capsys.readouterr().err
+    assert (
+        "line 5, collision_monitor.ros__parameters.Stop.type must be one of polygon, circle, velocity_polygon" in told
+    )
+    assert told.count("cm.yaml") == 1
