@@ -58,7 +58,7 @@ def serve_world(options: argparse.Namespace) -> None:
         try:
             bridge.run()
         except KeyboardInterrupt:
-            if not len(bridge.record.legs[0]):
+            if len(bridge.record.legs[0]) < 2:
                 raise
             print("stopped by Ctrl-C: the run so far is scored\n")
     _report(bridge.record, settings, options)
@@ -87,7 +87,8 @@ def _report(record: Record, settings: Settings, options: argparse.Namespace) -> 
     print(terminal.told(report))
     written = []
     if options.out is not None:
-        written = output.write_report(report, output.folder(options.out), _draw(record), [])
+        plays = [output.player(leg.trajectory) for leg in record.legs]
+        written = output.write_report(report, output.folder(options.out), _draw(record), [], plays=plays)
     output.say_written(written, report, options)
     contacts = record.contacts
     touched = (

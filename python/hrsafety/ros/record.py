@@ -182,8 +182,11 @@ class Record:
 
     def begin(self, reason: str) -> None:
         """Begin another leg, with the next instant that is noted."""
-        self.legs[-1].superseded = True
-        self.legs.append(Leg(self.legs[-1].world, reason))
+        last = self.legs[-1]
+        last.superseded = True
+        if len(last) < 2:
+            self.legs.pop()  # nothing has happened in it
+        self.legs.append(Leg(last.world, reason))
 
     def aim(self, goal: Pair) -> None:
         """Take another goal, with a leg of its own if the robot has gone somewhere."""
@@ -198,11 +201,11 @@ class Record:
         self.legs[-1].arrived = False
 
     def end(self, counts: Mapping[str, int], *, late: float, several: bool) -> None:
-        """Keep what was counted on the bus, and close the last leg."""
+        """Keep what was counted on the bus, and leave out a last leg in which nothing has happened."""
         self.counts = Counter(counts)
         self.late, self.several = late, several
-        if len(self.legs[-1]) < 2:
-            del self.legs[1 if len(self.legs) == 1 else -1 :]
+        if len(self.legs[-1]) < 2 and len(self.legs) > 1:
+            self.legs.pop()
 
     @property
     def arrived(self) -> bool:

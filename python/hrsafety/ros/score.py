@@ -60,8 +60,8 @@ def report_of(record: Record, settings: Settings, source: str) -> Report:
         good=not touched and record.legs[-1].outcome == "arrived",
         sections=[
             Section("Legs", [_legs(record)]),
-            Section("Social metrics", [_metrics(record)]),
             Section("On the bus", [_counts(record)]),
+            Section("Social metrics", [_metrics(record)]),
         ],
         warnings=record.warnings,
         source=source,
@@ -116,7 +116,8 @@ def _facts(record: Record, settings: Settings, source: str) -> Iterator[tuple[st
     stepped = f"lock-step of {settings.period:g} s, computing takes no time{delay}"
     paced = f"{settings.speed:g} times real time{delay}"
     yield "world", source
-    yield "people", f"{len(world.people)} at the start, {len(world.sources)} sources of more; seed {world.seed}"
+    more = f", more from {len(world.sources)} {'door' if len(world.sources) == 1 else 'doors'}" if world.sources else ""
+    yield "people", f"{len(world.people)} in the file{more}; seed {world.seed}"
     yield "clock", stepped if settings.lockstep else paced
     yield "lidar", f"{lidar.beams} beams up to {lidar.range_max:g} m"
     yield "simulated", f"{time:.2f} s"
@@ -176,7 +177,7 @@ def _metrics(record: Record) -> ReportTable:
     legs = [f"leg {index}" for index in range(len(record.legs))]
     values = [leg.metrics.to_dict() for leg in record.legs]
     rows = [(metric.name, *(_number(each[metric.name]) for each in values), metric.unit) for metric in METRICS.values()]
-    return ReportTable(headers=(("metric", *legs, "unit"),), rows=rows, left=(0,))
+    return ReportTable(headers=(("metric", *legs, "unit"),), rows=rows, left=(0,), summary="all of them")
 
 
 def _counts(record: Record) -> ReportTable:

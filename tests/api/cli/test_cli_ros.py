@@ -71,6 +71,7 @@ def test_a_run_is_scored_and_written(world: Path, tmp_path: Path, capsys: pytest
     assert "Social metrics" in page
     assert "velocity commands executed" in page
     assert "<img" in page
+    assert (place / "player.html").exists()
 
 
 def test_fail_on_and_doubts_decide_the_exit_code(world: Path, bus: FakeBus) -> None:
