@@ -218,8 +218,8 @@ def test_the_same_seed_gives_the_same_attacks() -> None:
 
 def test_a_mended_file_keeps_its_comments_and_holds(tmp_path: Path, shared: Path) -> None:
     path = shared / "data" / "formats" / "cfg_collision_monitor.yaml"
-    rules = {"footprint": 0.25, "max_speed": 0.3, "max_turn_rate": 0.5, "deceleration": 2.0, "reaction_time": 0.2}
-    rules |= {"error": 0.01, "beam_step": math.radians(0.25), "person_speed": 1.0}
+    rules = {"footprint": 0.25, "max_speed": 0.5, "max_turn_rate": 0.5, "deceleration": 2.0, "reaction_time": 0.2}
+    rules |= {"error": 0.01, "beam_step": math.radians(0.25)}
     found = zones.check(path, attacks=40, generations=0, **rules)
     assert found.verdict == "broken"
     document = zones.mended(path, found)
