@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from api.fuzzing import right_files
+from fuzz.logs import add_logs
 from hrsafety import arms, contact, io, sweep
 from hrsafety import navigation as nav
 from hrsafety.benchmarks.results import Row, read_rows, row_text
@@ -40,6 +41,7 @@ def readers(folder: Path) -> dict[str, tuple[Path, Callable[[Path], Any]]]:
     _maps(folder, found)
     _tables(folder, found)
     _sweeps(folder, found)
+    add_logs(folder, found)
     return found
 
 

@@ -66,7 +66,13 @@ def judge_log(options: argparse.Namespace) -> None:
     walls = None if options.map is None else nav.StaticMap.from_map_server(options.map)
     goal = None if options.goal is None else tuple(options.goal)
     found = nav.metrics.judge(
-        log, map=walls, goal=goal, moments=options.moments, person_radius=options.person_radius, **given
+        log,
+        map=walls,
+        goal=goal,
+        moments=options.moments,
+        person_radius=options.person_radius,
+        view=options.view,
+        **given,
     )
     report = _report(options, log, found)
     print(terminal.told(report))
@@ -170,8 +176,8 @@ def _report(options: argparse.Namespace, log: io.RobotLog, found: Judgement) -> 
         Section("Worst moments", list(_moments(found))),
         Section("Rules of permission", list(_rules(found))),
         Section("Assumptions of the shield", list(_assumptions(found))),
-        Section("Social metrics", list(_metrics(found))),
         Section("What is not judged", list(_open(found))),
+        Section("Social metrics", list(_metrics(found))),
     ]
     return Report(
         title=f"Judgement of {Path(options.log).name}",

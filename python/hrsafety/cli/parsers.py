@@ -408,6 +408,7 @@ def _add_judge(commands: Any) -> None:
     robot.add_argument("--robot", metavar="ROBOT.toml", help="scenario file with the robot, and perhaps its shield")
     robot.add_argument("--params", metavar="NAV2.yaml", help="settings of Nav2 with footprint and limits")
     robot.add_argument("--robot-frame", metavar="NAME", help="frame of the robot, or topic of its poses [found]")
+    robot.add_argument("--view", type=_number, metavar="RAD", help="angle ahead in which it sees people [all around]")
     robot.add_argument("--goal", nargs=2, type=_number, metavar=("X", "Y"), help="where it was going, in m")
     place = parser.add_argument_group("people and place")
     place.add_argument("--people", metavar="FILE|TOPIC", help="recorded people, or the topic that reports them [found]")

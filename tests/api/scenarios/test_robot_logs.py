@@ -298,3 +298,28 @@ def test_people_of_another_clock_do_not_overlap(tmp_path: Path) -> None:
     moved = io.load_log(log, people=people, offset={"people": float(ORIGIN)})
     assert moved.people is not None
     assert moved.people.time_s[0] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_two_odometries_are_asked_for(tmp_path: Path) -> None:
+    make, rows = Messages(ros1=True), []
+    for step in range(20):
+        stamp = ORIGIN * 10**9 + step * 10**8
+        for topic, far in (("/wheels", 0.1), ("/fused", 0.2)):
+            pose = (far * step, 0.0, 0.0)
+            rows.append((topic, "nav_msgs/msg/Odometry", stamp, make.odometry(stamp, pose, (10 * far, 0.0))))
+    path = write_bag(tmp_path / "two.bag", "rosbag1", rows)
+    with pytest.raises(FileError) as caught:
+        io.load_log(path, frame="odom")
+    assert caught.value.code == "several_pose_topics"
+    log = io.load_log(path, frame="odom", robot="/fused")
+    assert log.position[-1, 0] == pytest.approx(3.8)
+    assert log.twist[0] == pytest.approx((2.0, 0.0, 0.0))
+
+
+def test_quaternions_may_stand_in_named_columns(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    half = np.sqrt(0.5)
+    path.write_text(
+        "timestamp tx ty tz qx qy qz qw\n" + "".join(f"{k / 10} {k} 0 0 0 0 {half} {half}\n" for k in range(5))
+    )
+    assert io.load_log(path).heading == pytest.approx(np.full(5, np.pi / 2))

@@ -173,7 +173,12 @@ class BagLog:
             if by_topic and topic != wanted:
                 continue
             rows = self.transforms[topic, parent, child]
-            if by_topic or child not in edges:
+            other = edges.get(child)
+            if other is not None and other.topic in self.odometry_frames and not by_topic:
+                shown = Shown(f"{other.topic} and {topic}")
+                remedy = f'name one of them: robot="{topic}"'
+                raise FileError(self.name, f"hold one odometry of {child}", shown, remedy, code="several_pose_topics")
+            if by_topic or other is None:
                 edges[child] = self._edge(topic, parent, child or "base_link", rows)
             base = base or child
         for (topic, parent, _), rows in self.transforms.items():

@@ -21,10 +21,11 @@ __all__ = ["PoseTable", "form_of", "read_poses"]
 
 _WORDS: Mapping[str, tuple[str, ...]] = {
     "time": ("t", "time", "timestamp", "stamp", "zeit", "sec", "secs"),
-    "x": ("x", "px", "pos_x", "position_x", "pose_x", "x_pos"),
-    "y": ("y", "py", "pos_y", "position_y", "pose_y", "y_pos"),
+    "x": ("x", "tx", "px", "pos_x", "position_x", "pose_x", "x_pos", "p_rs_r_x"),
+    "y": ("y", "ty", "py", "pos_y", "position_y", "pose_y", "y_pos", "p_rs_r_y"),
     "yaw": ("yaw", "theta", "heading", "psi", "phi", "orientation", "angle"),
     "v": ("v", "vx", "speed", "velocity", "v_x", "linear", "linear_x", "linear_velocity"),
+    **{f"q{axis}": (f"q{axis}", f"q_{axis}", f"orientation_{axis}", f"q_rs_{axis}") for axis in "xyzw"},
     "yaw_rate": ("yaw_rate", "yawrate", "w", "omega", "wz", "angular", "angular_z", "turn_rate", "angular_velocity"),
 }
 _UNITS: Mapping[str, Mapping[str, float]] = {
@@ -182,7 +183,7 @@ def _odometry(document: Document) -> PoseTable:
     if len(table) == 0:
         raise document.error("no_rows", "hold poses", Shown("a header only"))
     assumed = {"time": "s", "x": "m", "y": "m", "yaw": "rad", "v": "m/s", "yaw_rate": "rad/s"}
-    unclear = [f"{found[name][1]} in {assumed[name]}" for name in names if found[name][2] is None]
+    unclear = [f"{found[name][1]} in {unit}" for name, unit in assumed.items() if name in found and not found[name][2]]
     told = []
     if unclear:
         message = f"units are taken as {', '.join(unclear)}: name them in the header, as t_s,x_m,y_m,yaw_rad does"
@@ -190,7 +191,12 @@ def _odometry(document: Document) -> PoseTable:
     values = {name: table[:, index] * (found[name][2] or 1.0) for index, name in enumerate(names) if name != "time"}
     instants = _in_ns(document, lines_of, table[:, names.index("time")], found["time"][2] or 1.0)
     position = np.stack([values["x"], values["y"]], axis=1)
-    heading, more = _heading(values.get("yaw"), position, instants)
+    yaw = values.get("yaw")
+    if yaw is None and {"qx", "qy", "qz", "qw"} <= set(values):
+        quaternion = np.stack([values[f"q{axis}"] for axis in "xyzw"], axis=1)
+        places = (f"line {each}" for each in lines_of.tolist())
+        yaw = yaw_of(rotations(unit_quaternions(quaternion, document.name, places)))
+    heading, more = _heading(yaw, position, instants)
     nothing = np.full(len(position), np.nan)
     stored = "v" in values and "yaw_rate" in values
     twist = [values["v"], 0.0 * values["v"], values["yaw_rate"]] if stored else [nothing] * 3
@@ -203,7 +209,7 @@ def _meaning(title: str) -> tuple[str, float | None]:
     """Return the quantity of a column and the size of its unit, None without one; empty words for what is not used."""
     plain = re.sub(r"[\s\[\]()/.-]+", "_", title.lower()).strip("_").replace("_in_", "_")
     for quantity, words in _WORDS.items():
-        units = _UNITS["x" if quantity == "y" else quantity]
+        units = _UNITS.get("x" if quantity == "y" else quantity, {})
         for word in words:
             if plain == word:
                 return quantity, None

@@ -292,8 +292,10 @@ def _predicted(away: Array, relative: Array) -> Array:
 
 def _lead(time: Array, distance: Array, predicted: Array, clearance: float) -> tuple[float, float, bool]:
     """Return how long before the last instant, and how far, the clearance is there, and whether it always was."""
-    with np.errstate(invalid="ignore"):
-        short = np.flatnonzero(predicted < clearance)
+    # What is not known is as it was before, and too near at the start.
+    known = np.append(True, np.isfinite(predicted))
+    last = np.maximum.accumulate(np.where(known, np.arange(len(known)), 0))
+    short = np.flatnonzero(np.append(-np.inf, predicted)[last][1:] < clearance)
     if len(short) == 0:
         return float(time[-1] - time[0]), float(np.nanmax(distance)), True
     if short[-1] == len(time) - 1:

@@ -47,7 +47,7 @@ WORLD_METRICS: Mapping[str, Metric] = MappingProxyType(_WORLD)
 
 OF_GOAL = (
     *("arrived", "arrival_time", "final_goal_distance", "success", "path_length_ratio", "spl"),
-    *("longest_without_progress", "frozen"),
+    *("longest_without_progress", "frozen", "path_irregularity", "efficacy"),
 )
 """Metrics that say nothing without a goal."""
 
