@@ -477,6 +477,7 @@ def _add_ros(commands: Any) -> None:
     _add_shared(parser)
     parser.add_argument("--fail-on", metavar="WORDS", help="exit with code 3 after these, as of hrsafety simulate")
     parser.add_argument("--seed", type=_count, metavar="N", help="seed of the people [of the file]")
+    parser.add_argument("--params", metavar="NAV2.yaml", help="settings of Nav2 with footprint and limits of the robot")
     time = parser.add_argument_group("time")
     time.add_argument("--lockstep", action="store_true", help="every step waits for its velocity command")
     time.add_argument(

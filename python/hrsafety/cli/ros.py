@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.cli import output, terminal, verdict
+from hrsafety.io import read_nav2
 from hrsafety.ros.bridge import Bridge, Settings
 from hrsafety.ros.rcl import connected
 from hrsafety.ros.record import Record
@@ -39,6 +40,8 @@ def serve_world(options: argparse.Namespace) -> None:
         world = scenarios.load_world(options.world)
     if options.seed is not None:
         world = replace(world, seed=options.seed)
+    if options.params is not None:
+        world = _with_body(world, options.params)
     settings = settings_of(options)
     if options.drive:
         from hrsafety.ros.drive import Drive
@@ -62,6 +65,15 @@ def serve_world(options: argparse.Namespace) -> None:
                 raise
             print("stopped by Ctrl-C: the run so far is scored\n")
     _report(bridge.record, settings, options)
+
+
+def _with_body(world: nav.World, path: str) -> nav.World:
+    """Return the world with the robot that a parameter file of Nav2 describes."""
+    found = read_nav2(path)
+    with output.located(path):
+        body = found.robot()
+    robots = [replace(robot, body=body) for robot in world.robots]
+    return replace(world, robots=robots, doubts=(*world.doubts, *found.warnings))
 
 
 def settings_of(options: argparse.Namespace) -> Settings:

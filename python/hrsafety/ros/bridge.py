@@ -279,7 +279,9 @@ class Bridge:
         try:
             self.record.legs[-1].diverged = walk(self._world, self._part, self._meet)
         finally:
-            self.record.end(self._commands.counts, late=self._late, several=self._steering.several)
+            pace = None if self.settings.lockstep else self.settings.speed
+            several = self._steering.several
+            self.record.end(self._commands.counts, late=self._late, several=several, pace=pace)
         return self.record
 
     def _meet(self, time: float, crowd: Crowd) -> Pair | None:
@@ -435,7 +437,7 @@ class Bridge:
             else (0, "no contact so far")
         )
         values = {
-            "clearance_m": f"{record.clearance:.3f}",
+            "clearance_m": f"{record.nearest:.3f}",
             "people_touched": len(record.touched),
             "wall_touched": record.touched_wall,
             "speed_m_s": f"{math.hypot(*self._base.twist[:2]):.3f}",

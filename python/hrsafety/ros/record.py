@@ -153,6 +153,19 @@ class Record:
         The world; its step is the time between two instants.
     walls : StaticMap
         What stands.
+
+    Attributes
+    ----------
+    legs : list of Leg
+        The legs, in their order.
+    counts : Counter
+        What was counted on the bus, by name.
+    touched : set of int
+        Numbers of those whom the robot touched at an instant so far, and ``touched_wall`` whether it touched a wall.
+    nearest : float
+        Least clearance at the instants so far, in m.
+    late : float
+        By how much the world fell behind the clock of the wall in all, in s.
     """
 
     def __init__(self, world: World, walls: StaticMap) -> None:
@@ -162,8 +175,9 @@ class Record:
         self.counts: Counter[str] = Counter()
         self.touched: set[int] = set()
         self.touched_wall = False
-        self.clearance = math.inf
+        self.nearest = math.inf
         self.late, self.several = 0.0, False
+        self.pace: float | None = None
 
     @property
     def goal(self) -> Pair:
@@ -178,7 +192,7 @@ class Record:
         self.touched.update(crowd.number[gaps < 0.0].tolist())
         wall = float(self._walls.clearance(place)) - radius
         self.touched_wall |= wall < 0.0
-        self.clearance = min([self.clearance, wall, *gaps.tolist()])
+        self.nearest = min([self.nearest, wall, *gaps.tolist()])
 
     def begin(self, reason: str) -> None:
         """Begin another leg, with the next instant that is noted."""
@@ -200,12 +214,18 @@ class Record:
         self.legs[-1].world = replace(last.world, robots=[replace(robot, goal=goal)])
         self.legs[-1].arrived = False
 
-    def end(self, counts: Mapping[str, int], *, late: float, several: bool) -> None:
+    def end(self, counts: Mapping[str, int], *, late: float, several: bool, pace: float | None) -> None:
         """Keep what was counted on the bus, and leave out a last leg in which nothing has happened."""
         self.counts = Counter(counts)
-        self.late, self.several = late, several
+        self.late, self.several, self.pace = late, several, pace
         if len(self.legs[-1]) < 2 and len(self.legs) > 1:
             self.legs.pop()
+
+    @property
+    def clearance(self) -> float:
+        """Least clearance to people and walls in all legs, also between instants, in m."""
+        least = [each for leg in self.legs for each in (leg.metrics.min_clearance, leg.metrics.wall_clearance)]
+        return float(min([self.nearest, *(each for each in least if math.isfinite(each))]))
 
     @property
     def arrived(self) -> bool:
@@ -231,6 +251,9 @@ class Record:
         if self.several:
             message = "several publishers sent velocity commands: the score is that of their mixture"
             yield ResultWarning("several_publishers", "cmd_vel", message)
+        if self.pace is not None and self.pace < 1.0:
+            message = f"the world ran at {self.pace:g} times real time: the robot had more time to decide than it has"
+            yield ResultWarning("slow_clock", "speed", message)
         if counts["overrun"]:
             message = (
                 f"the world fell {self.late:.2f} s behind the clock of the wall in all: for so long the robot had more "

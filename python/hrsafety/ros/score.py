@@ -10,6 +10,7 @@ from typing import Any
 from hrsafety.navigation.metrics.declared import METRICS
 from hrsafety.pages import DASH
 from hrsafety.pages.report import Report, ReportTable, Section
+from hrsafety.ros.base import limits_of
 from hrsafety.ros.bridge import Settings
 from hrsafety.ros.record import Leg, Record
 
@@ -97,6 +98,9 @@ def _said(record: Record, walls: int) -> str:
     else:
         left = math.dist(last.trajectory.robot_position[-1, 0], last.world.robots[0].goal)
         end = f"ended {left:.2f} m from the goal"
+    if record.counts["initialpose"]:
+        count = record.counts["initialpose"]
+        end += f", carried {'once' if count == 1 else f'{count} times'}"
     if not parts:
         return f"{end} without a contact"
     fault = f" ({contacts.at_fault} at fault)" if contacts.at_fault else ""
@@ -120,6 +124,11 @@ def _facts(record: Record, settings: Settings, source: str) -> Iterator[tuple[st
     yield "people", f"{len(world.people)} in the file{more}; seed {world.seed}"
     yield "clock", stepped if settings.lockstep else paced
     yield "lidar", f"{lidar.beams} beams up to {lidar.range_max:g} m"
+    (robot,) = world.robots
+    limits = limits_of(robot.body)
+    kind = "in any direction" if limits.sideways else "on two wheels"
+    brakes = f"brakes at {limits.deceleration:g} m/s^2"
+    yield "robot", f"radius {robot.body.radius:.3g} m, up to {limits.speed:g} m/s {kind}, {brakes}"
     yield "simulated", f"{time:.2f} s"
     yield "clearance", f"{record.clearance:.3f} m at least" if math.isfinite(record.clearance) else "nobody was near"
 

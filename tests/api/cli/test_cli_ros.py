@@ -113,6 +113,23 @@ def test_wrong_options_are_told_before_the_run(
     assert part in error_line(capsys)
 
 
+NAV2 = """local_costmap: {local_costmap: {ros__parameters: {robot_radius: 0.3}}}
+velocity_smoother: {ros__parameters: {max_velocity: [0.4, 0.0, 1.0], max_accel: [2.5, 0.0, 3.2]}}
+"""
+
+
+def test_the_robot_may_be_that_of_nav2(world: Path, bus: FakeBus, tmp_path: Path) -> None:
+    params, file = tmp_path / "nav2.yaml", tmp_path / "score.json"
+    params.write_text(NAV2)
+    assert main(["ros", str(world), "--lockstep", "--params", str(params), "--json", str(file)]) == 0
+    score = json.loads(file.read_text())
+    assert score["counts"]["command_clipped"] > 100  # 0.5 m/s were told
+    assert score["legs"][0]["metrics"]["max_speed"] == pytest.approx(0.4)
+    assert bus.sent["/odom"][-1]["twist"]["twist"]["linear"]["x"] <= 0.4
+    params.write_text("local_costmap: {}\n")
+    assert main(["ros", str(world), "--lockstep", "--params", str(params)]) == 2
+
+
 @pytest.mark.usefixtures("bus")
 def test_a_wrong_file_names_its_key(world: Path, capsys: pytest.CaptureFixture[str]) -> None:
     world.write_text(WORLD.replace("route", "root"))

@@ -12,6 +12,7 @@ from api.ros.fake_bus import STAMPED, TWIST, FakeBus, pose, stamped, told, twist
 from api.ros.worlds import ahead, empty, hall, served
 from hrsafety import navigation as nav
 from hrsafety.ros import Bridge, Publisher, Settings
+from hrsafety.ros.score import report_of
 
 
 def speeds(record: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
@@ -146,6 +147,12 @@ def test_a_world_that_cannot_keep_up_says_so() -> None:
     assert told_once(bus, "cannot keep up")
 
 
+def test_a_clock_slower_than_real_time_is_a_doubt() -> None:
+    for speed, doubted in ((0.5, True), (1.0, False), (2.0, False)):
+        record, _ = served(empty(time_limit=1.0), ahead, lockstep=False, speed=speed)
+        assert ("slow_clock" in {each.code for each in record.warnings}) == doubted
+
+
 def put(at: float, message: Any, topic: str = "/initialpose") -> Any:
     """Answer every step, and say something once."""
     said: list[bool] = []
@@ -188,6 +195,7 @@ def test_a_place_on_somebody_is_refused() -> None:
 
 def test_a_robot_that_is_carried_begins_a_leg_and_keeps_its_odometry() -> None:
     record, bus = served(empty(time_limit=3.0), put(1.0, pose(5.0, 1.0, covariance=True)))
+    assert "carried once" in report_of(record, Settings(), "hall.toml").said
     assert [leg.reason for leg in record.legs] == ["start", "initialpose"]
     first, second = (leg.trajectory for leg in record.legs)
     assert first.time[-1] + second.time[-1] == pytest.approx(3.0)
