@@ -98,7 +98,7 @@ JUDGE = """examples:
   hrsafety judge run.bag --frame odom --people "/humans:agents[] id=id position=pose.position" --radius 0.3
 
 Nobody who was not seen counts as safe: what is not judged stands in a table with its times and reasons. A bag
-needs rosbags: pip install "hrsafety[bags]".
+needs rosbags: pip install rosbags.
 """
 
 INIT = """examples:

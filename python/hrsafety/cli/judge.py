@@ -6,6 +6,8 @@ import argparse
 import math
 import sys
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +22,7 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.judging.unjudged import REASONS
 from hrsafety.navigation.metrics import METRICS, Judgement
 from hrsafety.pages.report import Report, ReportCell, ReportTable, Section
-from hrsafety.plausibility import unsafe_doubts
+from hrsafety.plausibility import ResultWarning, unsafe_doubts
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -62,8 +64,8 @@ def judge_log(options: argparse.Namespace) -> None:
         frame=options.frame,
         offset=_offsets(options.offset),
     )
-    given = _robot(options)
-    walls = None if options.map is None else nav.StaticMap.from_map_server(options.map)
+    given, told = _robot(options)
+    walls = None if options.map is None else _map(options.map)
     goal = None if options.goal is None else tuple(options.goal)
     found = nav.metrics.judge(
         log,
@@ -74,6 +76,7 @@ def judge_log(options: argparse.Namespace) -> None:
         view=options.view,
         **given,
     )
+    found = replace(found, warnings=tuple(dict.fromkeys((*found.warnings, *told))))
     report = _report(options, log, found)
     print(terminal.told(report))
     written: list[Path] = []
@@ -108,9 +111,28 @@ def _offsets(given: Sequence[str] | None) -> dict[str, float] | None:
     return found or None
 
 
-def _robot(options: argparse.Namespace) -> dict[str, Any]:
-    """Return what is known of the robot: from a scenario file, from settings of Nav2, and from the command line."""
+def _map(path: str) -> nav.StaticMap:
+    """Return the walls of a map; the robot touches nothing where nobody knows what is there."""
+    try:
+        return io.load_map(path, unknown="free")
+    except InvalidParameterError as error:
+        if error.argument != "unknown":
+            raise
+    return io.load_map(path)  # a plan, which has no unknown cells
+
+
+def _robot(options: argparse.Namespace) -> tuple[dict[str, Any], tuple[ResultWarning, ...]]:
+    """Return what is known of the robot, and doubts: from settings of Nav2, a scenario file, and the command line."""
     given: dict[str, Any] = {}
+    told: tuple[ResultWarning, ...] = ()
+    if options.params is not None:
+        with output.located(options.params):
+            settings = io.read_nav2(options.params)
+        told = settings.warnings
+        if settings.circumscribed_radius is not None:
+            given["robot_radius"] = settings.circumscribed_radius
+        with suppress(InvalidParameterError):  # it may not give all limits; the radius is enough
+            given["robot"] = settings.robot()
     if options.robot is not None:
         with output.located(options.robot):
             described = scenarios.load(options.robot)
@@ -123,7 +145,7 @@ def _robot(options: argparse.Namespace) -> dict[str, Any]:
     if not given.keys() & {"robot", "robot_radius"}:
         remedy = "give --radius M (of a footprint the radius of the circle around it), --robot or --params"
         raise InvalidParameterError("--radius", "be known", None, remedy)
-    return given
+    return given, told
 
 
 # ---- report -------------------------------------------------------------------------------------------------

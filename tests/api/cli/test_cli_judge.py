@@ -84,3 +84,26 @@ def test_robot_and_shield_of_a_file(tmp_path: Path, capsys: pytest.CaptureFixtur
     people = write_people(tmp_path, scene, origin=0.0)
     table = write_log(tmp_path, scene, "table")
     assert main(["judge", str(table), "--people", str(people), "--radius", "0.3", "--goal", "9", "1"]) == 0
+
+
+def test_map_and_settings_of_nav2(passing: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    settings, place = tmp_path / "nav2.yaml", tmp_path / "map.yaml"
+    settings.write_text(
+        "local_costmap: {local_costmap: {ros__parameters: {robot_radius: 0.4, footprint_padding: 0.0}}}\n"
+    )
+    cells = np.full((40, 160), 205, dtype=np.uint8)
+    cells[10:30, :100] = 254
+    cells[20, 60] = 0
+    (tmp_path / "map.pgm").write_bytes(b"P5\n160 40\n255\n" + cells.tobytes())
+    place.write_text(
+        "image: map.pgm\nresolution: 0.1\norigin: [0.0, -2.0, 0.0]\nnegate: 0\n"
+        "occupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    )
+    call = ["judge", *passing[:3], "--params", str(settings), "--map", str(place)]
+    assert main([*call, "--json", str(tmp_path / "found.json"), "--fail-on", "wall_contact"]) == FAILED_RUN
+    found = json.loads((tmp_path / "found.json").read_text())
+    assert found["robot_radius_m"] == pytest.approx(0.4, abs=0.01)
+    assert [each["kind"] for each in found["contacts"]] == ["wall"]
+    (outside,) = (each for each in found["not_judged"] if each["reason"] == "outside_map")
+    assert outside["begin"] == pytest.approx(10.0, abs=0.11)
+    assert "wall" in capsys.readouterr().out

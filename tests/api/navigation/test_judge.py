@@ -128,7 +128,9 @@ def test_walls_are_touched_between_instants_too() -> None:
     assert [each.kind for each in found.contacts] == ["wall"]
     assert found.metrics.wall_contacts == 1
     assert found.metrics.wall_clearance < 0.0
-    assert "outside_map" in {each.reason for each in found.not_judged}
+    grid = nav.StaticMap.from_grid(np.zeros((40, 40), dtype=int), resolution=0.1, outside="unknown")
+    outside = judge(log_of(lambda t: (t, 1.0 + 0 * t), {}), map=grid, robot_radius=0.3)
+    assert "outside_map" in {each.reason for each in outside.not_judged}
 
 
 def test_without_people_nothing_is_judged() -> None:

@@ -143,7 +143,7 @@ def opened(path: Path) -> Iterator[Bag]:
         If rosbags is not installed.
     """
     if importlib.util.find_spec("rosbags") is None:
-        raise MissingExtraError('bags need rosbags: pip install "hrsafety[bags]"')
+        raise MissingExtraError("bags need rosbags: pip install rosbags")
     try:
         readers, form = _readers(path)
         begun = []

@@ -46,8 +46,8 @@ def load_log(
 ) -> RobotLog:
     r"""Read a log of a robot among people.
 
-    Bags of ROS 1 and 2 (SQLite or MCAP; a file, or a folder with or without ``metadata.yaml``; ``pip install
-    "hrsafety[bags]"``), trajectories of TUM (``t x y z qx qy qz qw``) and EuRoC (``ns,x,y,z,qw,qx,qy,qz``), and tables
+    Bags of ROS 1 and 2 (SQLite or MCAP; a file, or a folder with or without ``metadata.yaml``; they need
+    rosbags), trajectories of TUM (``t x y z qx qy qz qw``) and EuRoC (``ns,x,y,z,qw,qx,qy,qz``), and tables
     of odometry with a header (time, x, y, yaw; velocity and turn rate may follow). Contents decide, not names.
 
     In a bag the times are those of the headers. The robot is where the chain of transforms says, at the stamps of its

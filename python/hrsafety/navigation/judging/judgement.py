@@ -290,7 +290,12 @@ def judge(
         both, reach=reach, rules=rules, bound=bound, jumps=getattr(log, "pose_jumps", ()), doubtful=doubtful
     )
     brakes = None if robot is None else (robot.max_deceleration or robot.max_acceleration)
-    told = (*getattr(log, "warnings", ()), *metrics.warnings, *_doubts(parts, share, possible))
+    told = (
+        *getattr(log, "warnings", ()),
+        *getattr(walls, "warnings", ()),
+        *metrics.warnings,
+        *_doubts(parts, share, possible),
+    )
     return Judgement(
         time=both.time,
         position=both.position,

@@ -24,7 +24,7 @@ REASONS = {
     "out_of_view": "a person who may be near is outside the field of view",
     "clock": "clocks differ",
     "smoothing_edge": "accelerations are those of one side only",
-    "outside_map": "the robot is outside the map",
+    "outside_map": "the robot is outside the map, or where it is unknown: walls are not judged",
 }
 """What each reason means."""
 
@@ -100,11 +100,9 @@ def not_judged(
         Angle in rad in which the sensors of the robot see people, ahead of it; all around when ``None``.
     """
     found = [*_of_robot(both, log), *_of_people(both, log), *_lost(both, bound < reach, view)]
-    if walls is not None and walls.bounds is not None:
-        (left, low), (right, high) = walls.bounds
-        x, y = both.position.T
-        with np.errstate(invalid="ignore"):
-            outside = (x < left) | (x > right) | (y < low) | (y > high)
+    if walls is not None:
+        outside = np.zeros(len(both.time), dtype=np.bool_)
+        outside[both.known] = walls.unseen(both.position[both.known])
         found += [NotJudged(*_times(both, run), "outside_map") for run in runs_of(outside)]
     if any(each.code == "clock_offset" for each in getattr(log, "warnings", ())):
         found.append(NotJudged(float(both.time[0]), float(both.time[-1]), "clock"))
