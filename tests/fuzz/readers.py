@@ -13,6 +13,7 @@ import numpy as np
 
 from api.fuzzing import right_files
 from fuzz.logs import add_logs
+from fuzz.places import places
 from hrsafety import arms, contact, io, sweep
 from hrsafety import navigation as nav
 from hrsafety.benchmarks.results import Row, read_rows, row_text
@@ -42,7 +43,7 @@ def readers(folder: Path) -> dict[str, tuple[Path, Callable[[Path], Any]]]:
     _tables(folder, found)
     _sweeps(folder, found)
     add_logs(folder, found)
-    return found
+    return found | places(folder)
 
 
 def _maps(folder: Path, found: dict[str, tuple[Path, Callable[[Path], Any]]]) -> None:

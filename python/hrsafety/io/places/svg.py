@@ -40,6 +40,8 @@ _UNDRAWN = frozenset(
         "view",
     ]
 )
+LARGEST = 1e14
+"""Lengths in units of a drawing are smaller."""
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 
 
@@ -210,7 +212,7 @@ class _Plan:
         given = element.attributes.get(name, "0")
         match = re.fullmatch(rf"\s*({_NUMBER})(?:px)?\s*", given)
         value = float(match[1]) if match else math.inf
-        if not math.isfinite(value):
+        if not abs(value) < LARGEST:
             raise self.error("be a number in units of the drawing", given, element, name)
         return value
 
