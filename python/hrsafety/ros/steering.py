@@ -45,7 +45,7 @@ class Steering:
         self._heard, self._tell = heard, tell
         self._now: Publisher | None = None
         self._end: Callable[[], None] = lambda: None
-        self._next = -1.0
+        self._next, self._quiet = -1.0, False
         self.several = False
         if self._given is not None:
             self._listen(Publisher(self._given))
@@ -65,8 +65,11 @@ class Steering:
         for each in found:
             if each not in usable and self._given is not None:
                 self._tell(f"{self._topic} is {each.type}, not {self._given}: it is not heard")
-        if usable and self._now not in usable:
-            self._listen(usable[0])
+        # One that died without a word stays in the list for a while: whoever sends something else then is heard.
+        others = [each for each in usable if each != self._now]
+        if others and (self._now not in usable or self._quiet):
+            self._listen(others[0])
+        self._quiet = True
 
     def _listen(self, publisher: Publisher) -> None:
         """Listen to messages as a publisher sends them."""
@@ -77,7 +80,9 @@ class Steering:
         self._end = self._bus.subscribe(self._topic, publisher.type, quality, self._stamped if stamped else self._plain)
 
     def _stamped(self, message: Any) -> None:
+        self._quiet = False
         self._heard(twist_in(message.twist), seconds(message.header.stamp))
 
     def _plain(self, message: Any) -> None:
+        self._quiet = False
         self._heard(twist_in(message), None)

@@ -280,6 +280,34 @@ def test_a_publisher_that_vanishes_and_comes_back() -> None:
     assert speeds(record)[-1] == pytest.approx(0.5)
 
 
+def test_a_publisher_that_died_without_a_word_does_not_hold_back_another() -> None:
+    both = [Publisher(TWIST), Publisher(STAMPED)]
+
+    def answer(bus: FakeBus) -> None:
+        if bus.now < 1.0:
+            bus.say("cmd_vel", told(twist(0.5)), TWIST)
+        else:
+            bus.known = {"cmd_vel": both}  # the first one is still listed, and says nothing
+            bus.say("cmd_vel", stamped(bus.now, -0.3), STAMPED)
+
+    bus = FakeBus(publishers={"cmd_vel": both[:1]})
+    record, _ = served(empty(time_limit=6.0), answer, bus=bus, lockstep=False)
+    assert record.legs[0].trajectory.robot_velocity[-1, 0, 0] == pytest.approx(-0.3)
+    late = record.legs[0].trajectory.time[record.legs[0].trajectory.robot_velocity[:, 0, 0] < 0.0]
+    assert late[0] < 2.5
+
+
+def test_two_who_send_in_turn_do_not_take_each_other_the_word() -> None:
+    def answer(bus: FakeBus) -> None:
+        bus.say("cmd_vel", told(twist(0.5)), TWIST)
+        bus.say("cmd_vel", stamped(bus.now, -0.3), STAMPED)
+
+    bus = FakeBus(publishers={"cmd_vel": [Publisher(TWIST), Publisher(STAMPED)]})
+    record, _ = served(empty(time_limit=4.0), answer, bus=bus, lockstep=False)
+    assert record.several
+    assert (record.legs[0].trajectory.robot_velocity[:, 0, 0] >= 0.0).all()
+
+
 def test_people_wait_for_the_first_command() -> None:
     def answer(bus: FakeBus) -> None:
         if bus.wall() > 20.0 and bus.sent["/clock"]:
