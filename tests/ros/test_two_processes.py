@@ -73,8 +73,10 @@ def test_lock_step_drives_twice_with_the_same_score(surroundings: dict[str, str]
     assert first == second
 
 
-@pytest.mark.parametrize("kind", ["stamped", "plain"])
-def test_topics_and_commands_in_real_time(kind: str, surroundings: dict[str, str], tmp_path: Path) -> None:
+@pytest.mark.parametrize(("kind", "stop"), [("stamped", signal.SIGINT), ("plain", signal.SIGTERM)])
+def test_topics_and_commands_in_real_time(
+    kind: str, stop: signal.Signals, surroundings: dict[str, str], tmp_path: Path
+) -> None:
     file = tmp_path / "score.json"
     listener = str(Path(__file__).with_name("listener.py"))
     with (
@@ -83,7 +85,7 @@ def test_topics_and_commands_in_real_time(kind: str, surroundings: dict[str, str
     ):
         heard = json.loads(ended(node, 0).splitlines()[-1])
         time.sleep(1.0)  # without commands
-        bridge.send_signal(signal.SIGINT)
+        bridge.send_signal(stop)
         assert "stopped by Ctrl-C" in ended(bridge, 0)
     assert heard["qualities"] == {
         "/clock": [False, False, "rosgraph_msgs/msg/Clock"],

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import argparse
 import math
+import signal
+import threading
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -46,7 +49,7 @@ def serve_world(options: argparse.Namespace) -> None:
     if options.drive:
         from hrsafety.ros.drive import Drive
 
-        with connected("hrsafety_drive") as bus:
+        with _stoppable(), connected("hrsafety_drive") as bus:
             Drive(
                 world,
                 bus,
@@ -56,7 +59,7 @@ def serve_world(options: argparse.Namespace) -> None:
                 complete=options.complete,
             ).run()
         return
-    with connected("hrsafety") as bus:
+    with _stoppable(), connected("hrsafety") as bus:
         bridge = Bridge(world, bus, settings)
         try:
             bridge.run()
@@ -65,6 +68,21 @@ def serve_world(options: argparse.Namespace) -> None:
                 raise
             print("stopped by Ctrl-C: the run so far is scored\n")
     _report(bridge.record, settings, options)
+
+
+@contextmanager
+def _stoppable() -> Iterator[None]:
+    """Let the signals of a launch file end a run as Ctrl-C does, also of one in the background of a script."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    kinds = (signal.SIGINT, signal.SIGTERM)
+    before = [signal.signal(kind, signal.default_int_handler) for kind in kinds]
+    try:
+        yield
+    finally:
+        for kind, handler in zip(kinds, before, strict=True):
+            signal.signal(kind, signal.SIG_DFL if handler is None else handler)
 
 
 def _with_body(world: nav.World, path: str) -> nav.World:
