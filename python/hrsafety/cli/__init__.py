@@ -164,6 +164,7 @@ _COMMANDS: dict[str, str | Callable[[argparse.Namespace], None]] = {
     "arm": _arm,
     "contact": "cell.command:report_cell",
     "judge": _judge,
+    "record": "record:judge_records",
     "benchmark": "benchmark:run_suite",
     "ros": "ros:serve_world",
     "init": "init:write_starter",

@@ -11,6 +11,7 @@ __all__ = [
     "INIT",
     "JUDGE",
     "OPTIMIZE",
+    "RECORD",
     "REPRODUCE",
     "ROS",
     "SIMULATE",
@@ -18,6 +19,14 @@ __all__ = [
     "VALIDATE",
     "ZONES",
 ]
+
+RECORD = """examples:
+  hrsafety record drop_1.csv drop_2.csv drop_3.csv --kind head --hic15 275 --filter 1000 --out drops
+  hrsafety record hand_1.csv hand_2.csv hand_3.csv --kind force --transient 280 --quasi-static 140 --device device.toml
+
+Files are tables as devices write them, or channels, folders and archives of ISO-MME. Loads are those of the whole
+record. Several files are repetitions: with three or more, and their expanded uncertainty within the limit, it is kept.
+"""
 
 REPRODUCE = """example:
   hrsafety reproduce --out reproduction

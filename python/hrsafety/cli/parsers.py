@@ -124,6 +124,7 @@ def parser() -> argparse.ArgumentParser:
     _add_arm(commands)
     _add_contact(commands)
     _add_judge(commands)
+    _add_record(commands)
     _add_benchmark(commands)
     _add_ros(commands)
     _add_zones(commands)
@@ -286,6 +287,45 @@ def _add_foam(commands: Any) -> None:
     parser.add_argument("design", metavar="DESIGN.toml", help="foam design file")
     parser.add_argument("--out", metavar="DIR", default="foam", help="folder to write into [%(default)s]")
     _add_shared(parser)
+
+
+def _add_record(commands: Any) -> None:
+    parser = _add_command(
+        commands,
+        "record",
+        summary="judge measured contacts: acceleration of a head, contact force, pressure of a foil",
+        example=examples.RECORD,
+    )
+    parser.add_argument("files", nargs="+", metavar="FILE", help="records of one load; several are repetitions")
+    parser.add_argument("--kind", required=True, choices=("head", "force", "pressure"), help="what was measured")
+    parser.add_argument("--out", metavar="DIR", help="folder for a page and pictures")
+    _add_shared(parser)
+    files = parser.add_argument_group("what a file may not say")
+    files.add_argument("--time", metavar="COLUMN", help="column of times in s [found]")
+    files.add_argument("--columns", metavar="A,B,...", help="columns that are judged [those with a unit of the kind]")
+    files.add_argument("--unit", metavar="UNIT", help="unit of columns without one")
+    head = parser.add_argument_group("--kind head")
+    head.add_argument("--filter", type=_count, metavar="CFC", help="channel class: 60, 180, 600 or 1000 [none]")
+    head.add_argument("--peak-g", type=_number, metavar="G", help="limit of the peak in g")
+    head.add_argument("--hic15", type=_number, metavar="H", help="limit of HIC15")
+    head.add_argument("--hic36", type=_number, metavar="H", help="limit of HIC36")
+    head.add_argument("--clip-3ms-g", type=_number, metavar="G", help="limit of the level held for 3 ms in g")
+    force = parser.add_argument_group("--kind force")
+    force.add_argument("--transient", type=_number, metavar="N", help="limit of transient forces in N")
+    force.add_argument("--quasi-static", type=_number, metavar="N", help="limit of quasi-static forces in N")
+    force.add_argument("--free", action="store_true", help="the body part was free to move [clamped]")
+    force.add_argument("--device", metavar="DEVICE.toml", help="spring, range and uncertainty of the device")
+    force.add_argument("--region-spring", type=_number, metavar="K", help="spring constant of the region in N/m")
+    foil = parser.add_argument_group("--kind pressure")
+    foil.add_argument("--pitch", type=_number, metavar="M", help="distance of neighboring cells in m")
+    foil.add_argument("--row", type=_count, metavar="N", help="cells of a row")
+    foil.add_argument("--pressure", type=_number, metavar="PA", help="limit in Pa")
+    foil.add_argument("--patch", action="store_true", help="judge the mean over 1 cm2, not the largest cell")
+    every = parser.add_argument_group("all kinds")
+    every.add_argument("--full-scale", type=_number, metavar="X", help="full scale of the channel in SI units")
+    every.add_argument(
+        "--uncertainty", type=_number, metavar="U", help="standard uncertainty of the device [that of --device, or 0]"
+    )
 
 
 def _add_optimize(commands: Any) -> None:

@@ -45,6 +45,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
         impact_study as impact_study,
         measured_impact as measured_impact,
     )
+    from hrsafety.plotting.impacts.traces import measured_records as measured_records
     from hrsafety.plotting.players import player as player
     from hrsafety.plotting.runs.animation import animate as animate
     from hrsafety.plotting.runs.energies import energy as energy

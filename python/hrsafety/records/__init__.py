@@ -11,6 +11,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.records.forces import ForceRecord as ForceRecord
     from hrsafety.records.forces import MeasuredContact as MeasuredContact
     from hrsafety.records.forces import force as force
+    from hrsafety.records.forces import load_device as load_device
     from hrsafety.records.pressures import PressureRecord as PressureRecord
     from hrsafety.records.pressures import pressure as pressure
     from hrsafety.records.record import Record as Record

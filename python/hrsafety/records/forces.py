@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from os import PathLike
+from pathlib import Path
 from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from hrsafety import _keys as kind
 from hrsafety._arguments import Array, columns, flag, not_negative, positive
 from hrsafety._display import displayed
+from hrsafety._keys import Keys, checked, parsed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning, telling
@@ -17,7 +21,7 @@ from hrsafety.records import traces
 from hrsafety.records.units import in_unit
 from hrsafety.standards.verdicts import doubted, strictest
 
-__all__ = ["ForceDevice", "ForceRecord", "MeasuredContact", "force"]
+__all__ = ["ForceDevice", "ForceRecord", "MeasuredContact", "force", "load_device"]
 
 QUIET = 0.020
 """Length of the quiet part, and longest dip within a contact, in s."""
@@ -66,6 +70,40 @@ class ForceDevice:
                 positive(name, getattr(self, name))
         if self.uncertainty is not None:
             not_negative("uncertainty", self.uncertainty)
+
+
+_KEYS: Keys = {
+    **dict.fromkeys(("spring", "damping_shore", "range", "uncertainty"), kind.number),
+    "calibrated": kind.word,
+}
+
+
+def load_device(path: str | PathLike[str]) -> ForceDevice:
+    r"""Return the device of a TOML file.
+
+    Parameters
+    ----------
+    path : path-like
+        File with any of ``spring`` (N/m), ``damping_shore``, ``range`` (N), ``uncertainty`` (N), ``calibrated`` (text).
+
+    Returns
+    -------
+    ForceDevice
+        The device.
+
+    Raises
+    ------
+    InvalidParameterError
+        If the file cannot be read, has another key, or a value is out of range.
+
+    Examples
+    --------
+    >>> from hrsafety import records
+    >>> _ = open("device.toml", "w").write("spring = 75e3\nrange = 500.0\n")
+    >>> records.load_device("device.toml").range
+    500.0
+    """
+    return ForceDevice(**checked("", parsed(Path(path)), _KEYS))
 
 
 @displayed

@@ -2,6 +2,7 @@
 
 from hrsafety.plotting.impacts.boundaries import foam_boundaries, foam_map
 from hrsafety.plotting.impacts.histories import impact_histories, impact_study, measured_impact
+from hrsafety.plotting.impacts.traces import measured_records
 
 __all__ = [
     "foam_boundaries",
@@ -9,4 +10,5 @@ __all__ = [
     "impact_histories",
     "impact_study",
     "measured_impact",
+    "measured_records",
 ]

@@ -1,0 +1,58 @@
+"""``hrsafety record``: repetitions, limits, doubts and exit codes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hrsafety.cli import main
+
+
+def written(folder: Path, peak: float, name: str, *, rest: float = 60.0) -> str:
+    time = np.arange(0.0, 1.6, 5e-4)
+    force = np.where((time >= 0.2) & (time <= 0.26), peak * np.sin(np.pi * (time - 0.2) / 0.06), 0.0)
+    force += np.where(time > 0.23, rest * np.minimum(1.0, (time - 0.23) / 0.05), 0.0)
+    rows = "\n".join(f"{1e3 * t:.1f};{f:.2f}".replace(".", ",") for t, f in zip(time, force, strict=True))
+    place = folder / name
+    place.write_text(f"Device;A 7\nTime;Force\nms;N\n{rows}\n", encoding="utf-8")
+    return str(place)
+
+
+LIMITS = ["--kind", "force", "--transient", "280", "--quasi-static", "140"]
+
+
+def test_three_records_within_their_uncertainty_keep_a_limit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    files = [written(tmp_path, peak, f"hand_{peak:.0f}.csv") for peak in (110.0, 112.0, 111.0)]
+    out, told = tmp_path / "out", tmp_path / "told.json"
+    assert main(["record", *files, *LIMITS, "--out", str(out), "--json", str(told)]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == "passed  within limits"
+    found = json.loads(told.read_text(encoding="utf-8"))
+    assert found["verdict"] == "within_limits"
+    assert [each["contacts"][0]["ends"] for each in found["records"]] == ["clamped"] * 3
+    assert {path.name for path in out.iterdir()} == {"summary.html", "traces.png"}
+
+
+def test_what_is_not_known_keeps_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    files = [written(tmp_path, peak, f"hand_{peak:.0f}.csv") for peak in (110.0, 112.0, 111.0)]
+    # No limit; one limit of two; two records; a device that may be 20 N wrong.
+    assert main(["record", *files, "--kind", "force"]) == 5
+    assert main(["record", *files, "--kind", "force", "--transient", "280"]) == 5
+    assert main(["record", *files[:2], *LIMITS]) == 5
+    assert main(["record", *files, *LIMITS, "--uncertainty", "20"]) == 5
+    assert main(["record", *files, *LIMITS, "--free", "--uncertainty", "20"]) == 0
+    assert main(["record", *files, written(tmp_path, 300.0, "hard.csv"), *LIMITS]) == 3
+    assert "exceeds" in capsys.readouterr().out
+
+
+def test_wrong_options_are_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = written(tmp_path, 110.0, "hand.csv")
+    for more, said in (
+        (["--kind", "force", "--hic15", "700"], "--hic15"),
+        (["--kind", "head", "--hic15", "700"], "unit of acceleration"),
+        (["--kind", "pressure", "--pressure", "1e6", "--columns", "Force"], "--pitch"),
+    ):
+        assert main(["record", file, *more]) == 2
+        assert said in capsys.readouterr().err
