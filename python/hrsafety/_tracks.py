@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -44,6 +45,8 @@ NOISE_ACCELERATION = 3.0
 """Noise of accelerations per axis that is more than people do, in m/s^2."""
 LEAST_THIRDS = 10
 """Third differences from which a noise is estimated."""
+MOST_THIRDS = 400_000
+"""Of more rows every second, third, ... one is looked at."""
 MOST_PAIRS = 1_000_000
 """Pairs of people of an instant that are compared at once."""
 HINTS = ((0.001, "mm", "millimeters"), (0.01, "cm", "centimeters"))
@@ -155,7 +158,7 @@ class Ways(NamedTuple):
         sigma, gaps = position_noise(self), self.gaps(periods)
         told = list(found)
         if not found:
-            breaks = self._breaks(gaps, sigma)
+            breaks = self._breaks(gaps, sigma, lengths, speeds)
             told += self._switch_doubt(breaks.switches, named)
             told += self._jump_doubts(breaks, lengths, speeds, named)
         told += self._gap_doubt(spans, gaps, named)
@@ -165,12 +168,12 @@ class Ways(NamedTuple):
     def breaks(self) -> Breaks:
         """Return the steps that are no motion of one person: gaps, jumps and exchanges of ids."""
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            return self._breaks(self.gaps(self.periods()), position_noise(self))
+            return self._breaks(self.gaps(self.periods()), position_noise(self), *self._steps()[1:])
 
-    def _breaks(self, gaps: Flags, sigma: float) -> Breaks:
+    def _breaks(self, gaps: Flags, sigma: float, lengths: Array, speeds: Array) -> Breaks:
         switches = self._switches(gaps, sigma)
         exchanged = self._exchanged(switches)
-        return Breaks(gaps, switches, exchanged, *self._jumps(exchanged))
+        return Breaks(gaps, switches, exchanged, *self._jumps(exchanged, lengths, speeds))
 
     def median_speed(self) -> float:
         """Return the median speed in m/s of those who do not stand, 0 if all do."""
@@ -264,11 +267,11 @@ class Ways(NamedTuple):
         found[[row - 1 for pair in switches for row in pair]] = True
         return found
 
-    def _jumps(self, exchanged: Flags) -> tuple[Flags, Flags]:
+    def _jumps(self, exchanged: Flags, lengths: Array, speeds: Array) -> tuple[Flags, Flags]:
         """Return the steps to places that nobody can have got to, and those back from a single wrong one, (n - 1,)."""
-        _, lengths, speeds = self._steps()
-        same = self.same
-        fast = same & (speeds > JUMP_SPEED) & (lengths > JUMP_LENGTH) & ~exchanged
+        fast = self.same & (speeds > JUMP_SPEED) & (lengths > JUMP_LENGTH) & ~exchanged
+        if not fast.any():
+            return fast, fast.copy()
         before, after = np.zeros_like(speeds), np.zeros_like(speeds)
         before[1:], after[:-1] = speeds[:-1], speeds[1:]
         calm_before, calm_after = before < ORDINARY_SPEED, after < ORDINARY_SPEED
@@ -307,16 +310,23 @@ class Ways(NamedTuple):
     def _switches(self, gaps: Flags, sigma: float) -> list[tuple[int, int]]:
         """Return pairs of rows from which on two people go on where the other one was."""
         least = max(SWITCH_RESIDUAL, 10.0 * (sigma if np.isfinite(sigma) else 0.0))
-        spans, same = np.diff(self.time), self.same & ~gaps
-        rows = np.flatnonzero(same[1:] & same[:-1]) + 2
-        if len(rows) < 2:
+        if len(gaps) < 2:
             return []
-        place, last = self.position, self.position[rows - 1]
-        velocity = (last - place[rows - 2]) / spans[rows - 2, None]
-        expected = last + velocity * spans[rows - 1, None]
-        off = np.hypot(*(place[rows] - expected).T)
-        order = np.argsort(self.time[rows], kind="stable")
-        rows, expected, off = rows[order], expected[order], off[order]
+        usable = self.same & ~gaps
+        usable = usable[1:] & usable[:-1]
+        spans, ways, place = np.diff(self.time), np.diff(self.position, axis=0), self.position
+        ahead = ways[1:] - ways[:-1] * (spans[1:] / np.where(usable, spans[:-1], 1.0))[:, None]
+        apart_from = np.hypot(ahead[:, 0], ahead[:, 1])
+        wrong = usable & (apart_from >= 0.5 * least)
+        if not wrong.any():
+            return []
+        # Only people who are there at the same instant can have exchanged ids.
+        instants, now = np.unique(self.time[2:][wrong]), self.time[2:]
+        near = np.minimum(np.searchsorted(instants, now), len(instants) - 1)
+        some_rows = np.flatnonzero(usable & (instants[near] == now))
+        some_rows = some_rows[np.argsort(now[some_rows], kind="stable")]
+        rows, off = some_rows + 2, apart_from[some_rows]
+        expected = place[rows] - ahead[some_rows]
         now, begun = self.time[rows], self.time[rows - 1]
         doubtful = np.flatnonzero(off >= 0.5 * least)
         first, behind = np.searchsorted(now, now[doubtful], "left"), np.searchsorted(now, now[doubtful], "right")
@@ -383,13 +393,14 @@ def position_noise(ways: Ways) -> float:
 
     Robust, and blind to motions with constant acceleration: ``1.4826 median|third difference|/sqrt(20)``.
     """
-    spans, same = np.diff(ways.time), ways.same
-    if len(spans) < 3:
+    count = len(ways.time) - 3
+    if count < 1:
         return float("nan")
-    near = np.maximum(np.maximum(spans[:-2], spans[1:-1]), spans[2:]) <= 1.2 * np.minimum(
-        np.minimum(spans[:-2], spans[1:-1]), spans[2:]
-    )
-    rows = np.flatnonzero(same[:-2] & same[1:-1] & same[2:] & near)
+    rows = np.arange(0, count, max(count // MOST_THIRDS, 1))
+    times = [ways.time[rows + later] for later in range(4)]
+    spans = [after - before for before, after in itertools.pairwise(times)]
+    near = np.maximum(np.maximum(*spans[:2]), spans[2]) <= 1.2 * np.minimum(np.minimum(*spans[:2]), spans[2])
+    rows = rows[(ways.who[rows + 3] == ways.who[rows]) & near]
     if 2 * len(rows) < LEAST_THIRDS:
         return float("nan")
     place = ways.position

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import random
 import shutil
 from collections.abc import Callable
@@ -12,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from api.fuzzing import right_files
+from api.recorded_files import people_files, walk
 from fuzz.logs import add_logs
 from fuzz.places import places
 from hrsafety import arms, contact, io, sweep
@@ -43,7 +45,13 @@ def readers(folder: Path) -> dict[str, tuple[Path, Callable[[Path], Any]]]:
     _tables(folder, found)
     _sweeps(folder, found)
     add_logs(folder, found)
+    for form, (path, call) in people_files(folder, walk(rows=8, people=2)).items():
+        found[f"load_people, {form}"] = (path, functools.partial(_people, call=call))
     return found | places(folder)
+
+
+def _people(path: Path, call: dict[str, Any]) -> Any:
+    return io.load_people(path, **call)
 
 
 def _maps(folder: Path, found: dict[str, tuple[Path, Callable[[Path], Any]]]) -> None:

@@ -79,7 +79,8 @@ def motion_of(
     where: Literal["stored", "fit", "differences"] = "differences" if fits is None else "fit"
     bandwidth = cutoff(rows, period) if smooth else DIFFERENCES / period if period > 0.0 else math.nan
     if stored is not None and _agrees(stored[order], differences):
-        velocity, where, bandwidth, noise = stored[order], "stored", math.nan, math.nan
+        velocity = np.where(np.isnan(stored[order]), velocity, stored[order])
+        where, bandwidth, noise = "stored", math.nan, math.nan
     found = np.empty_like(ways.position), np.empty_like(ways.position)
     for array, values in zip(found, (velocity, acceleration), strict=True):
         array[order] = values

@@ -141,9 +141,9 @@ def _read(
     values, names, texts, lines = [], [], [], []
     for part in _parts(document, delimiter, skip, columns):
         columns = part.count
-        values.append(part.numbers(numbers, decimal))
-        if ids is not None:
-            names.append(part.names(ids))
+        table, who = part.numbers_and_ids(numbers, ids, decimal)
+        values.append(table)
+        names.append(who)
         texts.append([part.words(each) for each in words])
         lines.append(part.lines)
     if not values:
@@ -187,23 +187,31 @@ class _Part:
 
     def __init__(self, document: Document, body: bytes, line: int, delimiter: str, columns: int | None) -> None:
         self.document, self.delimiter = document, delimiter
-        buffer = np.frombuffer(body, dtype=np.uint8)
-        self.buffer, self.lines = _without_comments(buffer, line)
+        self.buffer, self.lines = _without_comments(np.frombuffer(body, dtype=np.uint8), line)
+        self._bytes = body if len(body) == len(self.buffer) else self.buffer.tobytes()
         self.count = columns or 0
         if len(self.lines) == 0:
             return
-        starts, ends, newlines = self._divided()
+        starts, ends = self._divided()
+        ends_row = self.buffer[ends] == _NEWLINE
+        first_end = int(np.argmax(self.buffer == _NEWLINE))
+        self.count = int(np.searchsorted(starts, first_end, "right")) if columns is None else columns
+        regular = len(ends) == self.count * len(self.lines) and ends_row[self.count - 1 :: self.count].all()
+        if not regular or delimiter == " ":
+            self._check_counts(starts)
+        self._stripped = _strip(self.buffer, self._bytes, starts, ends)
+        self._starts, self._ends = starts.reshape(-1, self.count), ends.reshape(-1, self.count)
+
+    def _check_counts(self, starts: Places) -> None:
+        """Refuse rows with another number of cells."""
+        newlines = np.flatnonzero(self.buffer == _NEWLINE)
         counts = np.diff(np.searchsorted(starts, newlines, "right"), prepend=0)
-        self.count = int(counts[0]) if columns is None else columns
         wrong = np.flatnonzero(counts != self.count)
         if len(wrong):
-            row = int(wrong[0])
-            remedy = None
-            if delimiter == "," and counts[row] > self.count:
+            row, remedy = int(wrong[0]), None
+            if self.delimiter == "," and counts[row] > self.count:
                 remedy = "decimals need a point, not a comma, where commas divide the cells"
             raise self.error("unequal_rows", f"have {self.count} cells", int(counts[row]), remedy, row=row)
-        _strip(self.buffer, starts, ends)
-        self._starts, self._ends = starts.reshape(-1, self.count), ends.reshape(-1, self.count)
 
     def error(
         self, code: str, rule: str, value: object, remedy: str | None = None, *, row: int, name: str | None = None
@@ -212,28 +220,26 @@ class _Part:
         key = None if name is None else f"column {name}"
         return self.document.error(code, rule, value, remedy, line=int(self.lines[row]), key=key)
 
-    def _divided(self) -> tuple[Places, Places, Places]:
-        """Return where cells begin and end, and where rows end."""
+    def _divided(self) -> tuple[Places, Places]:
+        """Return where cells begin and end."""
         buffer = self.buffer
         newline = buffer == _NEWLINE
         if self.delimiter == " ":
             divides = newline | (buffer == _BLANK) | (buffer == _TAB)
         else:
             divides = newline | (buffer == ord(self.delimiter))
-        quotes = buffer == _QUOTE
-        if quotes.any():
-            inside = (np.cumsum(quotes, dtype=np.int64) & 1).astype(np.bool_)
+        if b'"' in self._bytes:
+            inside = (np.cumsum(buffer == _QUOTE, dtype=np.int64) & 1).astype(np.bool_)
             unclosed = np.flatnonzero(inside & newline)
             if len(unclosed):
                 row = int(np.count_nonzero(newline[: unclosed[0]]))
                 raise self.error("unreadable", "close each quote in its line", Shown("an open quote"), row=row)
             divides &= ~inside
-        rows = np.flatnonzero(newline)
         if self.delimiter == " ":
             before = np.concatenate([[True], divides[:-1]])
-            return np.flatnonzero(~divides & before), np.flatnonzero(divides & ~before), rows
+            return np.flatnonzero(~divides & before), np.flatnonzero(divides & ~before)
         ends = np.flatnonzero(divides)
-        return np.concatenate([[0], ends[:-1] + 1]), ends, rows
+        return np.concatenate([[0], ends[:-1] + 1]), ends
 
     def cell(self, row: int, column: int) -> str:
         """Return a cell as text."""
@@ -241,47 +247,64 @@ class _Part:
 
     def numbers(self, columns: Sequence[Cell], decimal: str) -> Array:
         """Return columns as numbers, NaN where a cell says that there is none."""
-        index = np.array([each.place for each in columns], dtype=np.intp)
-        order = np.argsort(index)
-        begin, end = self._starts[:, index[order]].ravel(), self._ends[:, index[order]].ravel()
+        table = self._values(columns, decimal)
+        if table is None:
+            raise self._unreadable(columns, decimal)
+        return table
+
+    def numbers_and_ids(
+        self, columns: Sequence[Cell], ids: Cell | None, decimal: str
+    ) -> tuple[Array, npt.NDArray[Any]]:
+        """Return columns of numbers, and ids: integers if all are written as such, words otherwise."""
+        if ids is None:
+            return self.numbers(columns, decimal), np.empty(0, dtype=np.int64)
+        if self._may_be_integers(ids):
+            # All at once is fastest.
+            table = self._values([*columns, ids], decimal)
+            found = self._values([ids], decimal) if table is None else table[:, -1:]
+            if found is not None and (np.abs(found) < _TRUE_ABOVE).all():
+                whole = found[:, 0].astype(np.int64)
+                if (whole == found[:, 0]).all():
+                    return self.numbers(columns, decimal) if table is None else table[:, :-1], whole
+        return self.numbers(columns, decimal), self.words(ids)
+
+    def _may_be_integers(self, ids: Cell) -> bool:
+        """Return whether ids begin like numbers, without zeros before them; refuse those that are empty or too long."""
+        begin, end = self._starts[:, ids.place], self._ends[:, ids.place]
+        width = end - begin
+        bad = np.flatnonzero((width <= 0) | (width > LONGEST_WORD))
+        if len(bad):
+            rule, row = f"name somebody in 1 to {LONGEST_WORD} letters", int(bad[0])
+            raise self.error("unreadable_number", rule, short(self.cell(row, ids.place)), row=row, name=ids.name)
+        first = self.buffer[begin]
+        padded = np.flatnonzero((first == ord("0")) & (width > 1))
+        second = self.buffer[begin[padded] + 1]
+        return bool(_NUMERIC[first].all() and not (_NUMERIC[second] & (second != ord("."))).any())
+
+    def _values(self, columns: Sequence[Cell], decimal: str) -> Array | None:
+        """Return columns as numbers, or none if a cell is no finite one."""
+        index, order = self._order(columns)
+        begin, end = self._starts[:, index].ravel(), self._ends[:, index].ravel()
         some = self._present(begin, end)
         if some.all():
             values = self._parsed(begin, end, decimal)
         else:
             values, found = np.full(len(begin), np.nan), self._parsed(begin[some], end[some], decimal)
             if found is None:
-                values = None
-            else:
-                values[some] = found
-        bad = self._first_bad(begin, end, some, decimal) if values is None else -1
-        if values is not None and np.isinf(values).any():
-            bad = int(np.flatnonzero(np.isinf(values))[0])
-        if values is None or bad >= 0:
-            row, place = divmod(bad, len(columns))
-            raise self._unreadable(row, columns[int(order[place])], decimal)
+                return None
+            values[some] = found
+        if values is None or np.isinf(values).any():
+            return None
         table = np.empty((len(self.lines), len(columns)))
         table[:, order] = values.reshape(len(self.lines), len(columns))
         return table
 
-    def names(self, column: Cell) -> npt.NDArray[Any]:
-        """Return ids: integers if all are written as such, words otherwise."""
-        begin, end = self._starts[:, column.place], self._ends[:, column.place]
-        width = end - begin
-        bad = np.flatnonzero((width <= 0) | (width > LONGEST_WORD))
-        if len(bad):
-            rule = f"name somebody in 1 to {LONGEST_WORD} letters"
-            row = int(bad[0])
-            raise self.error("unreadable_number", rule, short(self.cell(row, column.place)), row=row, name=column.name)
-        first = self.buffer[begin]
-        padded = (first == ord("0")) & (width > 1)
-        padded[padded] = _NUMERIC[self.buffer[begin[padded] + 1]] & (self.buffer[begin[padded] + 1] != ord("."))
-        if _NUMERIC[first].all() and not padded.any():
-            found = self._parsed(begin, end, ".")
-            if found is not None and (np.abs(found) < _TRUE_ABOVE).all():
-                whole = found.astype(np.int64)
-                if (whole == found).all():
-                    return whole
-        return self.words(column)
+    @staticmethod
+    def _order(columns: Sequence[Cell]) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+        """Return the places of columns from left to right, and which of the columns each of them is."""
+        place = np.array([each.place for each in columns], dtype=np.intp)
+        order = np.argsort(place, kind="stable")
+        return place[order], order
 
     def words(self, column: Cell) -> npt.NDArray[np.str_]:
         """Return a column as text."""
@@ -311,13 +334,16 @@ class _Part:
         """Return cells as numbers, or none if one of them is none."""
         if len(begin) == 0:
             return np.empty(0)
-        change = np.zeros(len(self.buffer) + 1, dtype=np.int8)
-        change[begin] += 1
-        change[end + 1] -= 1
         # The byte after each cell divides it from the next one.
-        text = self.buffer.copy()
-        text[end] = _BLANK
-        inside = text[np.cumsum(change[:-1], dtype=np.int8).view(np.bool_)].tobytes()
+        if len(begin) == self._starts.size and not self._stripped:
+            inside = self._bytes.replace(self.delimiter.encode(), b" ")
+        else:
+            text = self.buffer.copy()
+            text[end] = _BLANK
+            change = np.zeros(len(text) + 1, dtype=np.int8)
+            change[begin] += 1
+            change[end + 1] -= 1
+            inside = text[np.cumsum(change[:-1], dtype=np.int8).view(np.bool_)].tobytes()
         if decimal == ",":
             if b"." in inside:
                 return None
@@ -330,21 +356,21 @@ class _Part:
                 return None
         return found if len(found) == len(begin) else None
 
-    def _first_bad(self, begin: Places, end: Places, some: Flags, decimal: str) -> int:
-        """Return which of the cells is the first that is no number."""
-        places = np.flatnonzero(some)
+    def _unreadable(self, columns: Sequence[Cell], decimal: str) -> Exception:
+        """Return the error about the first cell that is no number, or what says that decimals may have commas."""
+        index, order = self._order(columns)
+        begin, end = self._starts[:, index].ravel(), self._ends[:, index].ravel()
+        places = np.flatnonzero(self._present(begin, end))
         low, high = 0, len(places)
         while high - low > 1:
             middle = (low + high) // 2
-            half = places[low:middle]
-            if self._parsed(begin[half], end[half], decimal) is None:
+            values = self._parsed(begin[places[low:middle]], end[places[low:middle]], decimal)
+            if values is None or np.isinf(values).any():
                 high = middle
             else:
                 low = middle
-        return int(places[low])
-
-    def _unreadable(self, row: int, column: Cell, decimal: str) -> Exception:
-        """Return the error about a cell that is no number, or what says that decimals may have commas."""
+        row, place = divmod(int(places[low]), len(columns))
+        column = columns[int(order[place])]
         text = self.cell(row, column.place)
         remedy = None
         if "," in text and self.delimiter != "," and decimal == ".":
@@ -378,11 +404,13 @@ def _without_comments(buffer: Bytes, line: int) -> tuple[Bytes, Places]:
     return buffer[np.cumsum(change[:-1], dtype=np.int8) == 0], lines[~drop]
 
 
-def _strip(buffer: Bytes, starts: Places, ends: Places) -> None:
-    """Move the ends of cells inward over blanks, tabs and one pair of quotes."""
+def _strip(buffer: Bytes, data: bytes, starts: Places, ends: Places) -> bool:
+    """Move the ends of cells inward over blanks, tabs and one pair of quotes; return whether there were any."""
+    done = False
     for letters in ((_BLANK, _TAB), (_QUOTE,), (_BLANK, _TAB)):
-        if not any((buffer == letter).any() for letter in letters):
+        if not any(letter in data for letter in letters):
             continue
+        done = True
         inner = np.zeros(256, dtype=np.bool_)
         inner[list(letters)] = True
         for places, step, offset in ((starts, 1, 0), (ends, -1, -1)):
@@ -391,3 +419,4 @@ def _strip(buffer: Bytes, starts: Places, ends: Places) -> None:
                 some = some[inner[buffer[places[some] + offset]]]
                 places[some] += step
                 some = some[starts[some] < ends[some]] if _QUOTE not in letters else some[:0]
+    return done

@@ -176,6 +176,6 @@ def reader_of(kind: str, document: Document, form: str | None = None) -> Reader:
     for reader in known:
         if reader.recognizes(document):
             return reader
-    first = document.head[:40]
+    first = document.head[:40].decode("utf-8", "replace")
     names = ", ".join(reader.name for reader in known)
     raise document.error("unknown_format", f"be of a known format ({names})", first, "name it with format=")

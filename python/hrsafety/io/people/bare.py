@@ -134,7 +134,11 @@ def _rows(
 def _read_bare(document: Document, request: Request) -> Rows:
     """Return the rows of columns a b x y, or a b x y z, of which one of the first two counts frames."""
     if request.columns is not None:
-        form = request.columns if isinstance(request.columns, str) else " ".join(request.columns)
+        form = " ".join(
+            request.columns.replace(",", " ").split() if isinstance(request.columns, str) else request.columns
+        )
+        if form.lower() == "frame id x y":
+            return _read_trajnet(document, request)
         return rows_of(document, request, form=form, guess=False)
     cells = len(_first_numbers(document))
     values, _, lines = _numbers(document, cells, [0, 1, 2, 3], 1)
@@ -158,6 +162,13 @@ def _frame_column(document: Document, values: Array) -> int:
     """
     ways = [_median_way(values[:, by], values[:, 1 - by], values[:, 2:4]) for by in (0, 1)]
     if all(way is None for way in ways):
+        broken = (values[:, :2] != np.floor(values[:, :2])).any(axis=0)
+        if broken.any():
+            names = "time id" if broken[0] else "id time"
+            remedy = f'name them, columns="{names} x y" if that column has times in s'
+            found = Shown(f"numbers that are not whole in column {1 + int(np.argmax(broken))}")
+            rule = "show which column counts frames and which names people"
+            raise document.error("ambiguous_columns", rule, found, remedy)
         raise _ambiguous(document, "neither of the first two columns counts frames")
     for by, other in ((0, 1), (1, 0)):
         mine, its = ways[by], ways[other]
@@ -179,7 +190,8 @@ def _median_way(frame: Array, who: Array, place: Array) -> float | None:
     frame, who, place = frame[order], who[order], place[order]
     same = who[1:] == who[:-1]
     steps = np.diff(frame)[same]
-    if len(steps) == 0 or not np.isfinite(steps).all() or not (frame == np.floor(frame)).all():
+    whole = (frame == np.floor(frame)).all() and (who == np.floor(who)).all()
+    if len(steps) == 0 or not np.isfinite(steps).all() or not whole:
         return None
     sizes, counts = np.unique(steps, return_counts=True)
     most = int(np.argmax(counts))

@@ -32,6 +32,12 @@ def _line(rows: Rows, row: int) -> int | None:
 
 
 def recording_of(document: Document, rows: Rows, request: Request) -> Recording:
+    """Return the recording of the rows of a file, see `_recording_of`; numbers that overflow are out of range."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return _recording_of(document, rows, request)
+
+
+def _recording_of(document: Document, rows: Rows, request: Request) -> Recording:
     """Return the recording of the rows of a file: units and clock known, sorted, equal rows once.
 
     Raises
@@ -134,13 +140,23 @@ def _of(rows: Rows, which: npt.NDArray[Any]) -> Rows:
     )
 
 
+def _order(rows: Rows) -> npt.NDArray[np.intp]:
+    """Return the order by time, then by id; rows that are nearly in it are sorted faster by one key."""
+    clock, person = rows.clock, rows.person
+    if person.dtype.kind == "i" and (clock[1:] >= clock[:-1]).all():
+        span = int(person.max()) - int(person.min()) + 1
+        if span < 2**62 // len(clock):
+            instant = np.concatenate([[0], np.cumsum(clock[1:] > clock[:-1])])
+            return np.argsort(instant * span + (person - person.min()), kind="stable")
+    return np.lexsort((person, clock))
+
+
 def _sorted(document: Document, rows: Rows) -> tuple[Rows, int]:
     """Return the rows by time, then by id, each once, and how many were there twice."""
     same_time = rows.clock[1:] == rows.clock[:-1]
     later = (rows.clock[1:] > rows.clock[:-1]) | (same_time & (rows.person[1:] > rows.person[:-1]))
     if not later.all():
-        order = np.lexsort((rows.person, rows.clock))
-        rows = _of(rows, order)
+        rows = _of(rows, _order(rows))
         same_time = rows.clock[1:] == rows.clock[:-1]
     twice = np.flatnonzero(same_time & (rows.person[1:] == rows.person[:-1])) + 1
     if len(twice) == 0:
@@ -151,7 +167,7 @@ def _sorted(document: Document, rows: Rows) -> tuple[Rows, int]:
         lines = [_line(rows, each) for each in (row - 1, row)]
         known = [each for each in lines if each is not None]
         word = "frame" if rows.frames else "time"
-        places = " and ".join(f"({x:g}, {y:g})" for x, y in rows.position[row - 1 : row + 1].tolist())
+        places = " and ".join(f"({x:.10g}, {y:.10g})" for x, y in rows.position[row - 1 : row + 1].tolist())
         found = Shown(f"person {rows.person[row]} at {places} in {word} {rows.clock[row]:.10g}")
         remedy = f"line {min(known)} has the other position" if known else None
         rule = "have one position of a person at one instant"

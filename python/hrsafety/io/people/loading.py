@@ -9,6 +9,7 @@ from typing import Any
 import numpy.typing as npt
 
 from hrsafety.datasets.recording import Recording
+from hrsafety.errors import Shown
 from hrsafety.io.people.building import recording_of
 from hrsafety.io.people.request import Request
 from hrsafety.io.reader import Document, reader_of
@@ -97,8 +98,8 @@ def load_people(
     given |= {"columns": columns, "classes": classes, "relabel": relabel}
     request = Request.checked(path, given)
     document = Document(path)
-    if not document.data.strip():
-        raise document.error("no_rows", "hold at least one row of a person", document.data[:20])
+    if not document.data or document.data.isspace():
+        raise document.error("no_rows", "hold at least one row of a person", Shown("an empty file"))
     reader = reader_of("people", document, request.format)
     recording = recording_of(document, reader.read(document, request), request)
     return recording.relabeled() if request.relabel else recording

@@ -84,7 +84,7 @@ def _read_thor(document: Document, _request: Request) -> Rows:
     _check_people(document, table, list(markers))
     wanted = [f"{who} - {number} {axis}" for who, numbers in markers.items() for number in numbers for axis in "XYZ"]
     columns = _values(document, table, ["Frame", *wanted])
-    places = columns.numbers[:, 1:].reshape(len(columns.lines), -1, 3)
+    places = columns.numbers[:, 1:].reshape(len(columns.lines), len(wanted) // 3, 3)
     lost = (places == 0.0).all(axis=2) | np.isnan(places).any(axis=2)
     chosen: dict[str, str] = {}
     ways: dict[str, Array] = {}

@@ -38,11 +38,15 @@ def _unreadable(document: Document, error: Exception, line: int | None = None) -
     if isinstance(error, json.JSONDecodeError):
         line = line if line is not None else error.lineno
         return document.error("unreadable", "be JSON", Shown(f"{error.msg} at column {error.colno}"), line=line)
-    return document.error("unreadable", "be JSON of moderate depth and size", Shown(type(error).__name__), line=line)
+    found = Shown(short(str(error)) if type(error) is ValueError else "brackets that are too deep")
+    return document.error("unreadable", "be JSON of finite numbers", found, line=line)
 
 
-def _refuse(word: str) -> None:
-    raise ValueError(word)
+def _constant(word: str) -> float:
+    """Return what is no number of JSON, but is written by many: nobody knows the place then."""
+    if word != "NaN":
+        raise ValueError(word)
+    return math.nan
 
 
 def _read_trajnetpp(document: Document, _request: Request) -> Rows:
@@ -90,14 +94,14 @@ def _entries(document: Document, lines: list[bytes], filled: list[int]) -> list[
     """Return the object of each line."""
     try:
         # All at once; where the lines are no objects the error is looked for.
-        entries = json.loads(b"[" + b",".join(lines[place] for place in filled) + b"]", parse_constant=_refuse)
+        entries = json.loads(b"[" + b",".join(lines[place] for place in filled) + b"]", parse_constant=_constant)
         if len(entries) == len(filled) and all(isinstance(each, dict) for each in entries):
             return list(entries)
     except (ValueError, RecursionError):
         pass
     for place in filled:
         try:
-            entry = json.loads(lines[place], parse_constant=_refuse)
+            entry = json.loads(lines[place], parse_constant=_constant)
         except json.JSONDecodeError as error:
             raise _unreadable(document, error, place + 1) from None
         except (ValueError, RecursionError) as error:
@@ -154,7 +158,7 @@ def _ids(document: Document, values: list[Any], lines: npt.NDArray[np.int64]) ->
 
 def _read_socnav(document: Document, _request: Request) -> Rows:
     try:
-        whole = json.loads(document.text, parse_constant=_refuse)
+        whole = json.loads(document.text, parse_constant=_constant)
     except (ValueError, RecursionError) as error:
         raise _unreadable(document, error) from None
     sequence = whole.get("sequence") if isinstance(whole, dict) else None
@@ -174,8 +178,8 @@ def _read_socnav(document: Document, _request: Request) -> Rows:
     index = np.array([place for place, _, _ in people], dtype=np.int64)
     entries = [(key, person) for _, key, person in people]
     ids = _ids(document, [person.get("id") for _, person in entries], np.zeros(len(entries), dtype=np.int64))
-    position = np.stack([_column(document, axis, entries) for axis in "xy"], axis=1).reshape(-1, 2)
-    origin = float(time[0]) if len(time) else 0.0
+    position = np.stack([_column(document, axis, entries, absent=True) for axis in "xy"], axis=1).reshape(-1, 2)
+    origin = float(time[index[0]]) if len(index) else 0.0
     details: dict[str, Any] = {"absent": _absent(index, ids, time - origin)}
     goal = sequence[0].get("goal") if sequence else None
     if isinstance(goal, dict) and "x" in goal:
@@ -192,7 +196,7 @@ def _read_socnav(document: Document, _request: Request) -> Rows:
         unit="m",
         format="socnavdata",
         walls=_walls(document, whole.get("walls", [])),
-        robot=_robot(document, sequence, time - (time[index[0]] if len(index) else origin)),
+        robot=_robot(document, sequence, time - origin),
         details=details,
     )
 
@@ -206,12 +210,16 @@ def _people(document: Document, sequence: list[Any]) -> Iterator[tuple[int, str,
             yield place, key, person
 
 
-def _column(document: Document, name: str, entries: list[tuple[str, Mapping[str, Any]]]) -> Array:
-    """Return a number of each object."""
+def _column(
+    document: Document, name: str, entries: list[tuple[str, Mapping[str, Any]]], *, absent: bool = False
+) -> Array:
+    """Return a number of each object; ``absent``: NaN and null say that nobody knows it."""
     found = np.empty(len(entries))
     for place, (key, entry) in enumerate(entries):
         value = entry.get(name)
-        if type(value) not in (int, float) or not abs(value) < 1e300:  # type: ignore[arg-type]  # a number
+        if absent and name in entry and (value is None or value != value):
+            value = math.nan
+        elif type(value) not in (int, float) or not abs(value) < 1e300:  # type: ignore[arg-type]  # a number
             shown = Shown("none") if value is None else short(str(value)[:60])
             raise document.error("unreadable_number", "be a finite number", shown, key=f"{key}.{name}")
         found[place] = value

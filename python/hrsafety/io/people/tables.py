@@ -27,8 +27,38 @@ ROLES = {
         *("id", "ids", "pid", "persid", "nummer", "personennummer", "name", *_PEOPLE),
         *(f"{each}{more}" for each in _PEOPLE for more in ("id", "ids", "no", "nr", "number", "index", "s")),
     ),
-    "x": ("x", "posx", "xpos", "positionx", "xposition", "xcoord", "xcoordinate", "px", "xest", "centerx", "xcenter"),
-    "y": ("y", "posy", "ypos", "positiony", "yposition", "ycoord", "ycoordinate", "py", "yest", "centery", "ycenter"),
+    "x": (
+        "x",
+        "posx",
+        "xpos",
+        "positionx",
+        "xposition",
+        "xcoord",
+        "xcoordinate",
+        "px",
+        "xest",
+        "centerx",
+        "xcenter",
+        "easting",
+        "east",
+        "utmx",
+    ),
+    "y": (
+        "y",
+        "posy",
+        "ypos",
+        "positiony",
+        "yposition",
+        "ycoord",
+        "ycoordinate",
+        "py",
+        "yest",
+        "centery",
+        "ycenter",
+        "northing",
+        "north",
+        "utmy",
+    ),
     "vx": ("vx", "velx", "xvel", "velocityx", "xvelocity", "vxest"),
     "vy": ("vy", "vely", "yvel", "velocityy", "yvelocity", "vyest"),
     "lat": ("lat", "latitude", "breite"),
@@ -36,7 +66,23 @@ ROLES = {
     "label": ("label", "type", "class", "category", "agenttype", "objecttype"),
 }
 _CITR = ({"id", "frame", "label", "x_est", "y_est"}, {"frame", "id", "x", "y", "type"})
-CLASS_NAMES = {"ped": "pedestrian", "peds": "pedestrian"}
+CLASS_NAMES = dict.fromkeys(("ped", "peds", "pedestrians", "person", "people", "human"), "pedestrian")
+_OTHERS = {
+    "car",
+    "cars",
+    "veh",
+    "vehicle",
+    "cart",
+    "truck",
+    "bus",
+    "van",
+    "robot",
+    "bicycle",
+    "bike",
+    "biker",
+    "cyclist",
+}
+"""Road users by whose name a column of a table is known to tell classes."""
 
 
 def _names(document: Document) -> set[str]:
@@ -46,23 +92,26 @@ def _names(document: Document) -> set[str]:
 
 def _is_citr(document: Document) -> bool:
     names = _names(document)
-    return any(each <= names for each in _CITR) and names <= _CITR[0] | _CITR[1] | {"vx_est", "vy_est"}
+    return _CITR[0] <= names or names == _CITR[1]
 
 
 def _is_table(document: Document) -> bool:
     header = header_of(document, {})
-    return header is not None and len(header.names) > 1
+    return header is not None and len(header.names) > 1 and header.names[0][:1] not in {"{", "["}
+
+
+def _class(label: str) -> str:
+    """Return the name of a class in small letters."""
+    return CLASS_NAMES.get(label.strip().lower(), label.strip().lower())
 
 
 def of_classes(
     labels: npt.NDArray[Any], request: Request, document: Document
 ) -> tuple[npt.NDArray[np.bool_], list[ResultWarning], dict[str, Any]]:
     """Return which rows are of the classes that are asked for, a warning about the others, and their counts."""
-    wanted = {CLASS_NAMES.get(each.lower(), each.lower()) for each in request.classes}
+    wanted = {_class(each) for each in request.classes}
     different, index = np.unique(labels, return_inverse=True)
-    known = np.array(
-        [CLASS_NAMES.get(each.lower(), each.lower()) in wanted for each in different.tolist()], dtype=np.bool_
-    )
+    known = np.array([_class(each) in wanted for each in different.tolist()], dtype=np.bool_)
     kept = known[index.ravel()] if len(different) else np.zeros(0, dtype=np.bool_)
     if kept.all():
         return kept, [], {}
@@ -163,7 +212,7 @@ def table_columns(document: Document, columns: object = None, *, labeled: bool =
         columns=len(header.names),
         numbers=[Cell(place[each], header.names[place[each]]) for each in wanted],
         ids=None if single else Cell(place["id"], header.names[place["id"]]),
-        words=[Cell(place["label"], "label")] if labeled else [],
+        words=[Cell(place["label"], "label")] if "label" in place else [],
     )
     return Table(
         clock=table.numbers[:, 0],
@@ -174,7 +223,7 @@ def table_columns(document: Document, columns: object = None, *, labeled: bool =
         person=table.ids,
         position=table.numbers[:, 1:3],
         velocity=table.numbers[:, 3:5] if moving else None,
-        label=table.words[:, 0] if labeled else None,
+        label=table.words[:, 0] if "label" in place and (labeled or _tells_classes(table.words[:, 0])) else None,
         lines=table.lines,
         unit=unit,
         details={"delimiter": DELIMITERS[header.delimiter], "decimal": table.decimal},
@@ -206,12 +255,13 @@ def rows_of(document: Document, request: Request, *, form: str, unit: str = "", 
         details |= counts
     clock, frames, rate = _clock(document, request, table)
     length = table.unit or unit
+    every = bool(which.all())
     return Rows(
-        clock=clock[which],
-        person=table.person[which],
-        position=table.position[which],
-        velocity=None if table.velocity is None else table.velocity[which],
-        lines=table.lines[which],
+        clock=clock if every else clock[which],
+        person=table.person if every else table.person[which],
+        position=table.position if every else table.position[which],
+        velocity=table.velocity if table.velocity is None or every else table.velocity[which],
+        lines=table.lines if every else table.lines[which],
         frames=frames,
         rate=rate,
         rate_from_velocity=labeled,
@@ -221,6 +271,12 @@ def rows_of(document: Document, request: Request, *, form: str, unit: str = "", 
         notes=tuple(notes),
         details=details,
     )
+
+
+def _tells_classes(labels: npt.NDArray[np.str_]) -> bool:
+    """Return whether a column holds road users, and nothing else with the same name."""
+    found = {_class(each) for each in np.unique(labels).tolist()}
+    return bool(found & {"pedestrian", *_OTHERS})
 
 
 def _clock(document: Document, request: Request, table: Table) -> tuple[Array, bool, float | None]:
