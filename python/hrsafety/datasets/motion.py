@@ -40,8 +40,7 @@ class RecordedMotion(NamedTuple):
     bandwidth : float
         Motions below this frequency stay, -3 dB there, in Hz; NaN of stored velocities.
     velocity_noise : float
-        Standard deviation per axis in m/s that the noise of the positions gives the velocities; NaN if it is not
-        known.
+        Standard deviation per axis, from the noise of the positions, in m/s; NaN if it is not known.
     acceleration_noise : float
         Likewise of the accelerations, in m/s^2.
     """
