@@ -18,7 +18,11 @@ SHOWN = re.compile(r"!\[[^\]]*\]\([\w./]*images/([\w.]+)\)")
 SAVED = re.compile(r"\"([\w.]+\.(?:png|gif))\"")
 GALLERY = "gallery.md"
 # Drawn from the source code by a script of its own.
-DRAWN = {"architecture.png": "make_architecture.py"}
+DRAWN = {
+    "architecture.png": "make_architecture.py",
+    "live.png": "make_views.py",
+    "player.png": "make_views.py",
+}
 
 
 def code_of(page: Path) -> str:

@@ -23,7 +23,7 @@ from hrsafety._replay.ground import ground_of
 from hrsafety._replay.packing import Block, Scale, block, counted
 from hrsafety._replay.record import VERDICTS, Decisions, PlayedRobot, Replay
 
-__all__ = ["LIMIT", "PlayerPage", "player_page"]
+__all__ = ["LIMIT", "PlayerPage", "digest", "player_page"]
 
 Array = npt.NDArray[np.float64]
 Rows = npt.NDArray[np.intp]
@@ -294,7 +294,7 @@ def _page(replay: Replay, rows: Rows) -> str:
     content = _Content(replay, rows)
     head = content.head()
     style, script, body = (_part(name) for name in ("player.css", "player.js", "player.html"))
-    rules = f"default-src 'none'; script-src '{_digest(script)}'; style-src '{_digest(style)}'; base-uri 'none'"
+    rules = f"default-src 'none'; script-src '{digest(script)}'; style-src '{digest(style)}'; base-uri 'none'"
     data = "".join(
         f'<script type="application/octet-stream" id="block-{each.name}" data-kind="{each.kind}" '
         f'data-rows="{each.shape[0]}" data-columns="{each.shape[1]}">{each.text}</script>\n'
@@ -321,7 +321,7 @@ def _part(name: str) -> str:
     return resources.files("hrsafety._replay").joinpath(name).read_text(encoding="utf-8").strip()
 
 
-def _digest(text: str) -> str:
+def digest(text: str) -> str:
     """Return the hash by which a page allows its own script or style, and nothing else."""
     return f"sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode('ascii')}"
 

@@ -778,6 +778,8 @@
     legend();
     tables();
     addEventListener("resize", resize);
+    // A scroll bar that appears makes the floor narrower, too.
+    new ResizeObserver(() => requestAnimationFrame(() => { if (Math.abs(floor.clientWidth - wide) > 1) resize(); })).observe($("stage"));
     fromAddress();
     show();
     body.dataset.playing = "no";

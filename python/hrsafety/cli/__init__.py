@@ -167,6 +167,7 @@ _COMMANDS: dict[str, str | Callable[[argparse.Namespace], None]] = {
     "record": "record:judge_records",
     "benchmark": "benchmark:run_suite",
     "ros": "ros:serve_world",
+    "play": "play:play_world",
     "init": "init:write_starter",
     "validate": "validate:validate_files",
     "zones": "zones:run_zones",

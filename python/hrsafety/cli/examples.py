@@ -12,6 +12,7 @@ __all__ = [
     "JUDGE",
     "OPTIMIZE",
     "RECORD",
+    "PLAY",
     "REPRODUCE",
     "ROS",
     "SIMULATE",
@@ -99,6 +100,13 @@ ROS = """examples:
 
 It publishes /clock, /tf, /odom, /scan, /map, /people and /hrsafety/verdict, and moves the robot by cmd_vel. Ctrl-C
 ends the run and scores it. rclpy comes with ROS 2: source its setup file first.
+"""
+
+PLAY = """examples:
+  hrsafety play
+  hrsafety play world.toml --no-browser
+
+Only this machine can ask the page, and only with the token in its address. It ends with its last tab, or by Ctrl-C.
 """
 
 JUDGE = """examples:

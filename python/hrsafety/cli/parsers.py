@@ -128,6 +128,7 @@ def parser() -> argparse.ArgumentParser:
     _add_benchmark(commands)
     _add_ros(commands)
     _add_zones(commands)
+    _add_play(commands)
     _add_init(commands)
     _add_validate(commands)
     _add_command(
@@ -633,9 +634,24 @@ def _add_zones(commands: Any) -> None:
     )
 
 
+def _add_play(commands: Any) -> None:
+    parser = _add_command(
+        commands,
+        "play",
+        summary="run a world on a page of this machine, on which people and the goal can be dragged",
+        example=examples.PLAY,
+    )
+    parser.add_argument(
+        "world", nargs="?", metavar="WORLD.toml", help="scenario file, which may have people who react [a hall]"
+    )
+    parser.add_argument("--seed", type=_count, metavar="N", help="seed of the people [of the file]")
+    parser.add_argument("--port", type=_count, default=0, metavar="N", help="port of the page [one that is free]")
+    parser.add_argument("--no-browser", dest="browser", action="store_false", help="only print the address of the page")
+
+
 def _starter(word: str) -> str:
     """Return the kind of file that a command reads, for those who name the command."""
-    return {"simulate": "scenario", "optimize": "gains", "ros": "world"}.get(word, word)
+    return {"simulate": "scenario", "optimize": "gains", "play": "world", "ros": "world"}.get(word, word)
 
 
 def _add_init(commands: Any) -> None:
