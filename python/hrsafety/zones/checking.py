@@ -31,6 +31,8 @@ ROUND = 72
 BATCH = 4000
 ROUNDING = 5e-4
 """Distance in m that corners lose in files."""
+SPEED_ROUNDING = 2e-3
+"""Speed in m/s within which a margin and its commands agree."""
 MOST_ATTACKS = 10_000_000
 EVOLUTIONS = 8
 POPULATION = 16
@@ -188,7 +190,7 @@ def check(
     rounds = count("generations", generations, least=0, most=10_000)
     told = callback("progress", progress)
     generator = np.random.Generator(np.random.PCG64(checked_seed("seed", seed)))
-    low, high = limits_of(conditions)
+    low, high = limits_of(conditions, 0.0)
     gaps = [(zone.name, first_gap(zone, (low, high))) for zone in monitor.polygons]
     shapes = tuple(_shapes(monitor, conditions))
     genes, severity, broken = _by_chance(
@@ -228,6 +230,7 @@ def check(
             *monitor.warnings,
             *monitor.doubts(reaction_time=conditions.reaction_time, limits=(low, high)),
             *_beyond_sight(beyond, shapes),
+            *_beyond_closed_form(monitor, shapes),
             *assumed,
             *conditions.warnings,
         ),
@@ -243,6 +246,22 @@ def _beyond_sight(names: list[str], shapes: tuple[ShapeCheck, ...]) -> tuple[Res
         "beyond the range of the scanner: finer beams, fewer min_points or a slower robot"
     )
     return (ResultWarning("blind_range", ", ".join(names), message),)
+
+
+def _beyond_closed_form(monitor: CollisionMonitor, shapes: tuple[ShapeCheck, ...]) -> tuple[ResultWarning, ...]:
+    """Doubt shapes whose margin is too small for their commands, where no zone slows the robot before."""
+    if any(zone.action in {"slowdown", "limit", "approach"} for zone in monitor.polygons):
+        return ()
+    found = []
+    for each in shapes:
+        fastest = max(abs(each.commands.linear_min), abs(each.commands.linear_max))
+        if each.walking_speed < fastest - SPEED_ROUNDING:
+            message = (
+                f"the margin of {each.name} holds up to {each.walking_speed:.3g} m/s, its commands reach {fastest:.3g} "
+                "m/s: attacks that do not break it are a sample; make it larger"
+            )
+            found.append(ResultWarning("beyond_closed_form", each.name, message))
+    return tuple(found)
 
 
 def _by_chance(
@@ -285,7 +304,7 @@ def _known() -> Array:
 
 def _shapes(monitor: CollisionMonitor, conditions: Conditions) -> list[ShapeCheck]:
     """Return every shape that stops beside the one that its commands need."""
-    low, high = limits_of(conditions)
+    low, high = limits_of(conditions, 0.0)
     found = []
     for zone in monitor.polygons:
         if zone.action != "stop":
@@ -321,7 +340,7 @@ def _shape(
 ) -> ShapeCheck:
     points = max(zone.min_points, 1)
     needed = needed_zone(conditions, commands, min_points=points)
-    margin = _margin(conditions, corners, -1.0 if commands.linear_max <= 0.0 else 1.0)
+    margin = min(_margin(conditions, corners, way) for way in _ways(commands, conditions.holonomic))
     speeds = [
         allowed_speed(
             margin,
@@ -357,18 +376,29 @@ def _shape(
     )
 
 
+def _ways(commands: CommandRange, holonomic: bool) -> list[float]:
+    """Return directions in rad in which commands of a range drive."""
+    if holonomic:
+        width = (commands.direction_end_angle - commands.direction_start_angle) % (2.0 * math.pi) or 2.0 * math.pi
+        return [commands.direction_start_angle + width * share for share in np.linspace(0.0, 1.0, 9)]
+    ahead, behind = commands.linear_max > SPEED_ROUNDING, commands.linear_min < -SPEED_ROUNDING
+    return [0.0] * (ahead or not behind) + [math.pi] * behind
+
+
 def _margin(conditions: Conditions, corners: Array, way: float) -> float:
-    """Return the least distance from the leading faces of the robot to the border of a shape along its way in m."""
+    """Return the least distance from the leading faces of the robot to the border of a shape along a way in m."""
+    turned = np.array([[math.cos(way), -math.sin(way)], [math.sin(way), math.cos(way)]])
     place, normals = conditions.body.boundary()
-    ahead = place[way * normals[:, 0] > 1e-9]
     if len(conditions.body.corners) == 1:  # on the disc, not about it
-        ahead = ahead * (conditions.body.rounding / np.linalg.norm(ahead, axis=1).max())
-    if distance_outside(corners, ahead).max() > 0.0:
+        place = place * (conditions.body.rounding / np.linalg.norm(place, axis=1).max())
+    border, place, normals = corners @ turned, place @ turned, normals @ turned
+    ahead = place[normals[:, 0] > 1e-9]
+    if distance_outside(border, ahead).max() > 0.0:
         return 0.0
-    start, end = corners, np.roll(corners, -1, axis=0)
+    start, end = border, np.roll(border, -1, axis=0)
     y = ahead[:, 1:]
     with np.errstate(divide="ignore", invalid="ignore"):
         at = start[:, 0] + (y - start[:, 1]) * (end[:, 0] - start[:, 0]) / (end[:, 1] - start[:, 1])
     crossed = (start[:, 1] <= y) != (end[:, 1] <= y)
-    gap = np.where(crossed, way * (at - ahead[:, :1]), math.inf)
+    gap = np.where(crossed, at - ahead[:, :1], math.inf)
     return float(np.where(gap >= -1e-12, np.maximum(gap, 0.0), math.inf).min())

@@ -284,12 +284,12 @@ def needed_zone(
     return _grown_for_legs(conditions, angles[kept], reach[kept], min_points)
 
 
-def limits_of(conditions: Conditions) -> tuple[Array, Array]:
-    """Return the least and the largest velocities of commands, and what rounding adds to them."""
-    side = conditions.max_speed + BORDER if conditions.holonomic else 0.0
-    turn = conditions.max_turn_rate + BORDER
-    low = np.array([conditions.slowest - BORDER, -side, -turn])
-    return low, np.array([conditions.max_speed + BORDER, side, turn])
+def limits_of(conditions: Conditions, border: float = BORDER) -> tuple[Array, Array]:
+    """Return the least and the largest velocities of commands, with what rounding may add to them."""
+    side = conditions.max_speed + border if conditions.holonomic else 0.0
+    turn = conditions.max_turn_rate + border
+    low = np.array([conditions.slowest - border, -side, -turn])
+    return low, np.array([conditions.max_speed + border, side, turn])
 
 
 def _motions(conditions: Conditions, commands: CommandRange) -> tuple[Array, Array]:

@@ -11,13 +11,16 @@ import numpy as np
 from hrsafety._arguments import Array
 from hrsafety.io.yaml import YamlDocument, read_yaml
 from hrsafety.zones.monitor_files import node_of
-from hrsafety.zones.polygons import convex
+from hrsafety.zones.polygons import trimmed
 
 if TYPE_CHECKING:
     from hrsafety.zones.checking import ZoneCheck
     from hrsafety.zones.field_design import ZoneSet
 
 __all__ = ["mended", "zone_text"]
+
+CORNERS = 24
+"""Most corners of a shape that is mended."""
 
 
 def shown_corners(corners: Array) -> str:
@@ -144,7 +147,7 @@ def mended(path: str | PathLike[str], found: ZoneCheck) -> YamlDocument:
         if "radius" in section and "points" not in section:
             changes[*keys, "radius"] = float(np.ceil(1e3 * np.linalg.norm(shape.needed, axis=1).max()) / 1e3)
             continue
-        whole = np.round(convex(np.concatenate([shape.corners, shape.needed])), 4)
+        whole = trimmed(np.concatenate([shape.corners, shape.needed]), CORNERS)
         old = section["points"].plain
         flat = isinstance(old, list) and not (old and isinstance(old[0], list))
         new = shown_corners(whole) if isinstance(old, str) else whole.ravel().tolist() if flat else whole.tolist()

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from hrsafety._arguments import Array, own, points
 from hrsafety.errors import InvalidParameterError, Shown
 
-__all__ = ["area", "checked", "convex", "distance_outside", "from_supports", "inside", "simplified"]
+__all__ = ["area", "checked", "convex", "distance_outside", "from_supports", "inside", "simplified", "trimmed"]
 
 
 def checked(name: str, value: object) -> Array:
@@ -178,6 +178,14 @@ def simplified(angles: Array, supports: Array, corners: int) -> npt.NDArray[np.i
         for near in (place - 1, place % len(kept)):
             costs[near] = added(near % len(kept))
     return np.array(kept)
+
+
+def trimmed(place: Array, corners: int) -> Array:
+    """Return a convex polygon around points with at most so many corners, rounded outward to 1 mm."""
+    angles = np.arange(72.0) * (2.0 * math.pi / 72.0)
+    reach = np.max(np.stack([np.cos(angles), np.sin(angles)], axis=1) @ place.T, axis=1) + 1e-3
+    kept = simplified(angles, reach, corners)
+    return np.round(from_supports(angles[kept], reach[kept]), 3)
 
 
 def _angle_between(first: float, second: float) -> float:
