@@ -481,11 +481,13 @@ def _fitted(time: Array, position: Array, window: float) -> Array:
         inside = index < high[some, None]
         index = np.minimum(index, len(time) - 1)
         ago = (time[index] - time[some, None]) / half
-        weight = inside.astype(np.float64)
-        powers = np.stack([np.ones_like(ago), ago, ago * ago], axis=-1)
-        moments = np.einsum("nk,nki,nkj->nij", weight, powers, powers)
-        right = np.einsum("nk,nki,nkd->nid", weight, powers, position[index])
-        found[some] = np.linalg.solve(moments, right)
+        powers = np.empty((5, *ago.shape))
+        powers[0] = inside
+        for power in range(1, 5):
+            np.multiply(powers[power - 1], ago, out=powers[power])
+        moments = powers.sum(axis=2).T[:, [[0, 1, 2], [1, 2, 3], [2, 3, 4]]]
+        right = [np.einsum("ink,nk->ni", powers[:3], each[index]) for each in position.T]
+        found[some] = np.linalg.solve(moments, np.stack(right, axis=2))
     found /= np.array([1.0, half, half * half])[:, None]
     return found
 

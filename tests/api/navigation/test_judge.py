@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from pathlib import Path
+from time import process_time
 from types import SimpleNamespace
 from typing import Any
 
@@ -207,6 +208,24 @@ def test_noise_makes_a_swerve_unmeasurable() -> None:
     log.heading = rng.normal(0.0, 0.5, len(log.time))
     (passing,) = judge(log, robot_radius=0.3).passings
     assert passing.no_swerve in ("not_measurable", "violated")
+
+
+def test_ten_minutes_with_fifty_people_take_few_seconds() -> None:
+    rng, time = np.random.default_rng(3), 0.1 * np.arange(6001)
+    turns = np.cumsum(rng.normal(0.0, 0.1, (len(time), 51)), axis=0)
+    ways = np.cumsum(0.1 * np.stack([np.cos(turns), np.sin(turns)], axis=2), axis=0) + rng.uniform(
+        -9.0, 9.0, (1, 51, 2)
+    )
+    places = 12.0 - np.abs((ways + 12.0) % 48.0 - 24.0)
+    people = datasets.Recording(
+        time_s=np.repeat(time, 50), person=np.tile(np.arange(50), len(time)), position=places[:, 1:].reshape(-1, 2)
+    )
+    log = SimpleNamespace(time=time, position=places[:, 0], heading=turns[:, 0], people=people)
+    begin = process_time()
+    found = judge(log, robot_radius=0.3)
+    # An hour in ten seconds.
+    assert process_time() - begin < 10.0 / 6.0
+    assert found.counts["contact"] > 0
 
 
 def test_what_judge_refuses() -> None:
