@@ -6,8 +6,8 @@ manipulator that hits a head, and designs the foam; `reactive` follows a sound a
 ultrasonic sensors see. `arms` reads arms from URDF and gives the masses of their points, `standards` holds
 limits of contact and separation distances, `records` judges measured contacts. `io` reads and writes the files of
 others,
-`zones` designs and attacks the zones of a collision monitor. Sub-modules load on
-first use, so importing the package costs little more than importing numpy.
+`zones` designs and attacks the zones of a collision monitor, `ros` puts people around a robot of ROS 2. Sub-modules
+load on first use, so importing the package costs little more than importing numpy.
 """
 
 from __future__ import annotations

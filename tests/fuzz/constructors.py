@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 import hrsafety
-from hrsafety import arms, contact, datasets, impact, plausibility, reactive, scenarios, standards, sweep
+from hrsafety import arms, contact, datasets, impact, plausibility, reactive, ros, scenarios, standards, sweep
 from hrsafety import gym as environments
 from hrsafety import navigation as nav
 from hrsafety.navigation.trajectory import Divergence
@@ -33,6 +33,8 @@ NO_CONSTRUCTORS: dict[type, str] = {
     nav.maps.Plan: "made by a map",
     **dict.fromkeys((standards.ContactLimit, standards.SpeedCurve), "made by functions of standards"),
     plausibility.ResultWarning: "made by the package",
+    ros.Bridge: "needs a bus",
+    **dict.fromkeys((ros.Record, ros.Leg), "made by a bridge"),
     sweep.SweepResult: "made by run and open",
     sweep.Design: "the base of designs",
 }
