@@ -73,6 +73,13 @@ FILES = {
     "blank.yaml": "resolution: 0.05\norigin: [0, 0, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.2\n",
     "cut.yaml": "image: cut.pgm\nresolution: 0.05\norigin: [0, 0, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.2\n",
     "cut.pgm": "P5\n3 2\n255\nabcde",
+    "twice.yaml": "image: map.pgm\nresolution: 0.05\nresolution: 0.5\n",
+    "degrees.geojson": '{"type": "LineString", "coordinates": [[8.41, 49.01], [8.42, 49.02]]}',
+    "pixels.svg": "<svg viewBox='0 0 200 100' width='800' height='400'><path d='M0 0L9 9'/></svg>",
+    "torn.dxf": "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\nWALLS\n",
+    "unitless.dxf": "0\nSECTION\n2\nENTITIES\n0\nENDSEC\n0\nEOF\n",
+    "nav2.yaml": "local_costmap:\n  ros__parameters:\n    footprint: '[[0.3, 0.2], [0.3, x], [-0.3, 0.2]]'\n",
+    "agents.yaml": "hunav_loader:\n  ros__parameters:\n    agents: [a]\n    a: {id: 1, behavior: 9, max_vel: 1.0}\n",
     "degrees.toml": "start = [3.9, 0.6]\ngoal = [0.0, 0.6]\nheading = 90.0\n",
 }
 """Files that lie beside the caller."""
@@ -372,6 +379,14 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "hypercube seed of 65 bits": "sweep.LatinHypercube([axis], 4, seed=2**64)",
     },
     "Files and pictures": {
+        "key that stands twice": 'io.load_map("twice.yaml")',
+        "degrees for meters": 'io.load_map("degrees.geojson")',
+        "drawing without a scale": 'io.load_map("pixels.svg")',
+        "plan that was cut off": 'io.load_map("torn.dxf", unit="m")',
+        "plan without its unit": 'io.load_map("unitless.dxf")',
+        "unit of a map of the map server": 'io.load_map("outside.yaml", unit="m")',
+        "corner of a footprint": 'io.read_nav2("nav2.yaml")',
+        "agent without a start": 'io.load_scene("agents.yaml")',
         "number with a separator of thousands": 'io.load_people("thousands.csv")',
         "column by an unknown name": 'io.load_people("columns.csv")',
         "people by frames without a rate": 'io.load_people("trajnet.txt")',

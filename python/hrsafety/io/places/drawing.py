@@ -18,7 +18,7 @@ __all__ = ["UNITS", "Drawing", "check_size"]
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254, "ft": 0.3048}
 """Meters of each unit of a plan."""
-MOST_BYTES = 1 << 27
+MOST_BYTES = 1 << 26
 LARGEST = 1e9
 """Coordinates in m are smaller: beyond, the rounding of numbers moves walls."""
 _NOTES = {"TEXT", "MTEXT", "DIMENSION", "LEADER", "MULTILEADER", "ATTDEF", "ATTRIB", "VIEWPORT", "POINT", "TOLERANCE"}

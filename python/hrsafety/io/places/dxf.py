@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 import re
 from collections.abc import Iterable, Iterator
+from io import StringIO
 from typing import NamedTuple
 
 from hrsafety._arguments import Pair, meant, not_negative, sequence, word
@@ -23,6 +23,9 @@ SAME = 1e-6
 """A line goes on where another one ends if its start is at most so far away, in m."""
 MOST_BULGE = 1e6
 _INSUNITS = {1: "inch", 2: "ft", 4: "mm", 5: "cm", 6: "m"}
+_READ = frozenset(("LINE", "LWPOLYLINE", "POLYLINE", "VERTEX", "ARC", "CIRCLE"))
+_PLACE = (8, 67)
+"""Groups of the layer and of the space, paper or model."""
 _CLOSED, _SURFACE, _SPLINE_FRAME = 1, 16 | 64, 16
 _BEGIN = re.compile(rb"\A(?:\xef\xbb\xbf)?(?:\s*999[ \t]*\r?\n[^\n]*\n)*\s*0[ \t]*\r?\n[ \t]*SECTION[ \t]*\r?\n")
 
@@ -65,13 +68,9 @@ def read_dxf(
         raise document.error("unreadable", "be DXF in text", Shown("binary DXF"), "save it as DXF in text (ASCII)")
     check_size(document)
     drawing = Drawing(document, thickness)
-    groups = list(_groups(document))
-    scale = _scale(drawing, groups, unit)
-    entities = list(_entities(document, groups))
-    if layers is not None:
-        entities = _on_layers(entities, layers)
-    walls = _Walls(drawing, scale)
-    for entity in entities:
+    walls = _Walls(drawing, _scale(drawing, unit))
+    entities = _entities(document)
+    for entity in entities if layers is None else _on_layers(entities, layers):
         walls.add(entity)
     walls.end()
     return drawing.map('unit="m", "cm", "mm", "inch" or "ft"')
@@ -79,21 +78,27 @@ def read_dxf(
 
 def _groups(document: Document) -> Iterator[Group]:
     """Yield the pairs of lines of a file up to its end."""
-    lines = document.lines
-    for index in range(0, len(lines) - 1, 2):
-        code, value = lines[index].strip(), lines[index + 1].strip()
+    lines = enumerate(StringIO(document.text, newline=None), start=1)
+    number = 0
+    for number, line in lines:
+        code, value = line.strip(), next(lines, (0, ""))[1].strip()
         if not re.fullmatch(r"-?\d{1,4}", code, re.ASCII):
-            raise document.error("unreadable", "be the number of a group, as every second line", code, line=index + 1)
-        yield Group(int(code), value, index + 2)
+            raise document.error("unreadable", "be the number of a group, as every second line", code, line=number)
+        yield Group(int(code), value, number + 1)
         if code == "0" and value == "EOF":
             return
-    raise document.error("unreadable", "end with 0 and EOF", Shown("the end of the file"), line=len(lines))
+    raise document.error("unreadable", "end with 0 and EOF", Shown("the end of the file"), line=number)
 
 
-def _scale(drawing: Drawing, groups: list[Group], unit: str | None) -> float:
+def _scale(drawing: Drawing, unit: str | None) -> float:
     """Return the meters of a unit, as told or as $INSUNITS says."""
     told = None if unit is None else word("unit", unit, tuple(UNITS))
-    value = next((b.value for a, b in itertools.pairwise(groups) if (a.code, a.value) == (9, "$INSUNITS")), "0")
+    value, named = "0", False
+    for group in _groups(drawing.document):
+        if named or (group.code, group.value) == (2, "ENTITIES"):
+            value = group.value if named else value
+            break
+        named = (group.code, group.value) == (9, "$INSUNITS")
     said = _INSUNITS.get(int(value)) if re.fullmatch(r"\d{1,3}", value, re.ASCII) else None
     if told is None and said is None:
         remedy = 'say it: unit="mm", for example'
@@ -104,38 +109,43 @@ def _scale(drawing: Drawing, groups: list[Group], unit: str | None) -> float:
     return UNITS[told or said or "m"]
 
 
-def _entities(document: Document, groups: list[Group]) -> Iterator[Entity]:
+def _entities(document: Document) -> Iterator[Entity]:
     """Yield the entities of the section of that name; vertices stay behind their polyline."""
-    section, entity = "", None
-    for before, group in zip([Group(-1, "", 0), *groups], groups, strict=False):
-        if group.code == 2 and (before.code, before.value) == (0, "SECTION"):
+    section, begins = "", False
+    entity: Entity | None = None
+    for group in _groups(document):
+        if begins and group.code == 2:
             section = group.value
+        begins = (group.code, group.value) == (0, "SECTION")
         if group.code == 0:
-            if entity is not None and section == "ENTITIES":
+            if entity is not None:
                 yield entity
             entity = Entity(group.value, group.line, []) if section == "ENTITIES" and group.value != "ENDSEC" else None
             section = "" if group.value == "ENDSEC" else section
-        elif entity is not None:
+        elif entity is not None and (entity.kind in _READ or group.code in _PLACE):
             entity.groups.append(group)
     if section:
         raise document.error("unreadable", "end every section with ENDSEC", Shown(f"{section} without"))
 
 
-def _on_layers(entities: list[Entity], layers: Iterable[str]) -> list[Entity]:
-    """Return the entities on some layers; vertices are on that of their polyline."""
-    rule = "be names of layers"
-    wanted = {each.casefold() if isinstance(each, str) else "" for each in sequence("layers", rule, layers)}
-    known = {each.text(8, "0") for each in entities}
+def _on_layers(entities: Iterable[Entity], layers: Iterable[str]) -> Iterator[Entity]:
+    """Yield the entities on some layers; vertices are on that of their polyline."""
+    given = sequence("layers", "be names of layers", layers)
+    wanted = {each.casefold() if isinstance(each, str) else "" for each in given}
+    known: set[str] = set()
+    inside = False
+    for entity in entities:
+        if entity.kind not in ("VERTEX", "SEQEND"):
+            name = entity.text(8, "0")
+            known.add(name)
+            inside = name.casefold() in wanted
+        if inside:
+            yield entity
     missing = wanted - {each.casefold() for each in known}
     if missing or not wanted:
-        shown = Shown(", ".join(sorted(known)[:20]) or "nothing")
+        shown = ", ".join(sorted(known)[:20]) or "none"
         guess = meant(min(missing), [each.casefold() for each in known]) if missing else None
-        raise InvalidParameterError("layers", f"be names of layers with entities, which are {shown}", layers, guess)
-    kept, inside = [], False
-    for entity in entities:
-        inside = inside if entity.kind in ("VERTEX", "SEQEND") else entity.text(8, "0").casefold() in wanted
-        kept += [entity] if inside else []
-    return kept
+        raise InvalidParameterError("layers", f"be names of layers with entities, which are {shown}", given, guess)
 
 
 class _Walls:
