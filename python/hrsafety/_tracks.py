@@ -11,7 +11,17 @@ import numpy.typing as npt
 
 from hrsafety.plausibility import RANGES, ResultWarning
 
-__all__ = ["Breaks", "Motion", "Ways", "cutoff", "fitted_rows", "motion_of_ways", "position_noise", "smoothed_ways"]
+__all__ = [
+    "Breaks",
+    "Motion",
+    "Ways",
+    "cutoff",
+    "fitted_rows",
+    "motion_of_ways",
+    "plausible_unit",
+    "position_noise",
+    "smoothed_ways",
+]
 
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.intp]
@@ -49,7 +59,17 @@ MOST_THIRDS = 400_000
 """Of more rows every second, third, ... one is looked at."""
 MOST_PAIRS = 1_000_000
 """Pairs of people of an instant that are compared at once."""
-HINTS = ((0.001, "mm", "millimeters"), (0.01, "cm", "centimeters"))
+HINTS = {"m": (1.0, "meters"), "cm": (0.01, "centimeters"), "mm": (0.001, "millimeters")}
+"""Units of positions: meters of one, and its name."""
+WALKING = 1.2
+"""Usual speed of people in m/s."""
+
+
+def plausible_unit(median: float) -> str | None:
+    """Return the unit of positions in which a median speed is most like that of people who walk, if any makes it so."""
+    speeds = {unit: factor * median for unit, (factor, _) in HINTS.items()}
+    likely = [unit for unit, speed in speeds.items() if MEDIAN_SPEED[0] <= speed <= MEDIAN_SPEED[1]]
+    return min(likely, key=lambda unit: max(speeds[unit] / WALKING, WALKING / speeds[unit]), default=None)
 
 
 def cutoff(rows: float, step: float) -> float:
@@ -236,9 +256,9 @@ class Ways(NamedTuple):
     def _cause(self, whole: bool, median: float, period: float, of_frames: str) -> str:
         """Return the mistake that would explain implausible times or speeds."""
         if median > MEDIAN_SPEED[1]:
-            for factor, unit, word in HINTS:
-                if MEDIAN_SPEED[0] <= factor * median <= MEDIAN_SPEED[1] and not (whole and period > SLOWEST_SAMPLING):
-                    return f"{word} (unit {unit}) or pixels given for meters?"
+            unit = plausible_unit(median)
+            if unit and not (whole and period > SLOWEST_SAMPLING):
+                return f"{HINTS[unit][1]} (unit {unit}) or pixels given for meters?"
             return "millimeters, centimeters or pixels given for meters?"
         if whole:
             other = ", or are they milliseconds?" if period >= MILLISECONDS else ""

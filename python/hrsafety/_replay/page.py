@@ -8,6 +8,7 @@ import html
 import json
 import math
 import os
+import re
 from collections.abc import Iterator, Sequence
 from functools import cache
 from importlib import resources
@@ -386,8 +387,12 @@ def _facts(content: _Content) -> str:
 
 
 def _warnings(replay: Replay) -> str:
-    found = list(dict.fromkeys(each.message for each in replay.warnings))
-    if not found:
+    """Return the doubts, of those that differ by numbers only the first one and how many there are more."""
+    kinds: dict[tuple[str, str], list[str]] = {}
+    for each in dict.fromkeys(replay.warnings):
+        kinds.setdefault((each.code, re.sub(r"\d+", "", each.subject)), []).append(each.message)
+    if not kinds:
         return ""
-    lines = "".join(f"<li>{html.escape(each)}</li>" for each in found)
+    told = (f"{first} ({len(more)} more of this kind)" if more else first for first, *more in kinds.values())
+    lines = "".join(f"<li>{html.escape(each)}</li>" for each in told)
     return f'<section class="doubts"><h2>Is this what was meant?</h2><ul>{lines}</ul></section>'

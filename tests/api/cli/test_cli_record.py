@@ -24,7 +24,9 @@ def written(folder: Path, peak: float, name: str, *, rest: float = 60.0) -> str:
 LIMITS = ["--kind", "force", "--transient", "280", "--quasi-static", "140"]
 
 
-def test_three_records_within_their_uncertainty_keep_a_limit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_three_records_within_their_uncertainty_keep_a_limit(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     files = [written(tmp_path, peak, f"hand_{peak:.0f}.csv") for peak in (110.0, 112.0, 111.0)]
     out, told = tmp_path / "out", tmp_path / "told.json"
     assert main(["record", *files, *LIMITS, "--out", str(out), "--json", str(told)]) == 0

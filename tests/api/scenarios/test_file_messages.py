@@ -96,8 +96,8 @@ def test_a_recording_in_other_units_is_doubted(scale: float, doubted: bool) -> N
     recording = datasets.Recording(time_s=time, person=[0, 1] * 100, position=walk)
     assert bool(recording.warnings) == doubted
     if doubted:
-        assert "millimeters" in recording.warnings[0].message
-        with pytest.raises(InvalidParameterError, match="millimeters"):
+        assert {100.0: "centimeters (unit cm)", 1000.0: "millimeters (unit mm)"}[scale] in recording.warnings[0].message
+        with pytest.raises(InvalidParameterError, match=r"(centi|milli)meters"):
             scenarios.crossings(recording, runs=1)
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from hrsafety._tracks import plausible_unit
 from hrsafety.datasets.recording import Recording
 from hrsafety.datasets.row_checks import FARTHEST, LONGEST
 from hrsafety.errors import InvalidParameterError, Shown
@@ -223,7 +224,7 @@ def _mapped(document: Document, rows: Rows, matrix: Array) -> tuple[Array, Array
 def unit_needed(document: Document, as_meters: Recording, why: str = "") -> Exception:
     """Return the error about a file that names no unit, with the unit that makes speeds plausible."""
     speed = as_meters.median_speed()
-    fitting = next((unit for unit in ("m", "cm", "mm") if 0.1 <= speed * LENGTHS[unit] <= 3.0), None)
+    fitting = plausible_unit(speed)
     found = f"no unit; median speed {speed:.4g} m/s as meters"
     if why:
         found += f" ({why})"

@@ -75,7 +75,8 @@ def _of_database(document: Document, connection: sqlite3.Connection) -> Rows:
     values = connection.execute("SELECT frame, id, pos_x, pos_y FROM trajectory_data").fetchall()
     table = _matrix(document, values, ("frame", "id", "pos_x", "pos_y"))
     _check_ids(document, table[:, 1])
-    shapes = connection.execute("SELECT wkt FROM geometry").fetchmany(1000)
+    has = connection.execute("SELECT count(*) FROM sqlite_master WHERE name = 'geometry'").fetchone()[0]
+    shapes = connection.execute("SELECT wkt FROM geometry").fetchmany(1000) if has else []
     return Rows(
         clock=table[:, 0],
         person=table[:, 1].astype(np.int64),
