@@ -65,7 +65,7 @@ def judge_log(options: argparse.Namespace) -> None:
         offset=_offsets(options.offset),
     )
     given, told = _robot(options)
-    walls = None if options.map is None else _map(options.map)
+    walls = log.map if options.map is None else _map(options.map)
     goal = None if options.goal is None else tuple(options.goal)
     found = nav.metrics.judge(
         log,

@@ -301,6 +301,20 @@ def test_people_of_another_clock_do_not_overlap(tmp_path: Path) -> None:
     assert moved.people.time_s[0] == pytest.approx(0.0, abs=1e-6)
 
 
+def test_people_of_a_file_stand_beside_a_bag(tmp_path: Path) -> None:
+    scene = Scene(3.0)
+    bag, people = write_log(tmp_path, scene, "mcap"), write_people(tmp_path, scene, origin=float(ORIGIN))
+    inside, beside = io.load_log(bag), io.load_log(bag, people=people)
+    assert inside.people is not None
+    assert beside.people is not None
+    assert beside.people.position == pytest.approx(inside.people.position, abs=1e-6)
+    assert beside.people.time_s == pytest.approx(inside.people.time_s, abs=1e-6)
+    assert beside.people_topic == ""
+    again = io.load_log(bag, people=io.load_people(people))
+    assert again.people is not None
+    assert again.people.time_s == pytest.approx(inside.people.time_s, abs=1e-6)
+
+
 def test_two_odometries_are_asked_for(tmp_path: Path) -> None:
     make, rows = Messages(ros1=True), []
     for step in range(20):

@@ -15,8 +15,10 @@ from hrsafety.io.logs.bags import Bag
 from hrsafety.io.logs.clocks import Clocks
 from hrsafety.io.logs.decoding import Decoder, Transform
 from hrsafety.io.logs.frames import Edge, Poses, Tree, unit_quaternions, yaw_of
+from hrsafety.io.logs.grids import map_of
 from hrsafety.io.logs.people_topics import Layout, Sighting, layout_of, sightings
 from hrsafety.io.logs.robot_log import Scan
+from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["BagLog", "lost_doubt"]
@@ -28,6 +30,7 @@ _POSES = ("geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PoseWithCovariance
 _TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 _SCAN, _CLOCK = "sensor_msgs/msg/LaserScan", "rosgraph_msgs/msg/Clock"
 _STAMPED = (_SCAN, "nav_msgs/msg/Path")
+_GRID = "nav_msgs/msg/OccupancyGrid"
 _BASES = ("base_footprint", "base_link", "base")
 _COMMANDS = ("cmd_vel", "cmd_vel_stamped", "cmd_vel_safe", "cmd_vel_smoothed", "cmd_vel_nav")
 
@@ -43,6 +46,8 @@ class BagLog:
         Frame of the robot, or a topic of its poses.
     people : str or None
         Topic of the people, or its description.
+    crowded : bool
+        Whether people are looked for in the bag.
     offsets : mapping of str to float
         What is added to the stamps of topics, in s.
     scans : bool
@@ -52,7 +57,15 @@ class BagLog:
     """
 
     def __init__(
-        self, bag: Bag, *, robot: str | None, people: str | None, offsets: Mapping[str, float], scans: bool, name: str
+        self,
+        bag: Bag,
+        *,
+        robot: str | None,
+        people: str | None,
+        crowded: bool,
+        offsets: Mapping[str, float],
+        scans: bool,
+        name: str,
     ) -> None:
         self.bag, self.name, self.robot = bag, name, robot
         self.decoder = Decoder(ros1=bag.ros1)
@@ -65,7 +78,8 @@ class BagLog:
         self.scans: list[Scan] = []
         self.keep_scans = scans
         self.warnings: tuple[ResultWarning, ...] = ()
-        self.people: tuple[Any, Layout] | None = layout_of(bag, people, name)
+        self._grid = b""
+        self.people: tuple[Any, Layout] | None = layout_of(bag, people, name) if crowded else None
         self._read()
 
     # ---- reading --------------------------------------------------------------------------------
@@ -75,6 +89,8 @@ class BagLog:
             topic.name: topic.type
             for topic in self.bag.of_type(_ODOMETRY, _TRANSFORMS, *_POSES, *_TWISTS, *_STAMPED, _CLOCK)
         }
+        # Costmaps are grids, too: a map is called one.
+        kinds |= {each.name: _GRID for each in self.bag.of_type(_GRID) if each.name.split("/")[-1] == "map"}
         if self.people is not None:
             kinds[self.people[0].name] = "people"
         if not any(kind in (_ODOMETRY, _TRANSFORMS, *_POSES) for kind in kinds.values()):
@@ -119,6 +135,8 @@ class BagLog:
             self.twists.setdefault(topic, []).append((record, self.clocks.take(topic, record, stamp), twist))
         elif kind == _CLOCK:
             self.clocks.tick(record, decoder.clock(raw))
+        elif kind == _GRID:
+            self._grid = raw
         elif kind == "people":
             self._people(topic, record, raw)
         elif kind == _SCAN and self.keep_scans:
@@ -150,6 +168,13 @@ class BagLog:
         for each in found:
             own = each.stamp + offset if each.stamp else stamp
             self.seen.append((record, each._replace(stamp=own)))
+
+    def map(self, frame: str) -> StaticMap | None:
+        """Return the last map that was recorded in a frame, ``None`` without one."""
+        if not self._grid:
+            return None
+        message = self.bag.decoded(_GRID, self._grid)
+        return map_of(message, f"{self.name}, map") if message.header.frame_id.lstrip("/") == frame else None
 
     # ---- frames ---------------------------------------------------------------------------------
 

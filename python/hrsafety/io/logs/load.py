@@ -140,9 +140,16 @@ def _from_bag(place: Path, source: Source, offsets: dict[str, float], scans: boo
     frame = given.get("frame", "map")
     beside = {} if topic is not None or people is None else {PEOPLE_OFFSET: offsets.pop(PEOPLE_OFFSET, 0.0)}
     with opened(place) as bag:
-        described = topic if people is None or topic is not None else "-"
-        found = BagLog(bag, robot=given.get("robot"), people=described, offsets=offsets, scans=scans, name=place.name)
-        form = bag.format
+        found = BagLog(
+            bag,
+            robot=given.get("robot"),
+            people=topic,
+            crowded=not beside,
+            offsets=offsets,
+            scans=scans,
+            name=place.name,
+        )
+        form, walls = bag.format, found.map(frame)
     tree, base, own = found.tree()
     told = found.clocks.cut(own)
     if told:
@@ -169,6 +176,7 @@ def _from_bag(place: Path, source: Source, offsets: dict[str, float], scans: boo
         beside=(people, beside) if beside else None,
         fields={
             **fields,
+            "map": walls,
             "commands": np.array(commands, dtype=np.float64).reshape(-1, 4),
             "delay": delays,
             "time_from": found.clocks.time_from(),

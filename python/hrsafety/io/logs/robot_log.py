@@ -14,6 +14,7 @@ from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.datasets.recording import Recording
 from hrsafety.io.reader import Source
+from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Delay", "PoseJump", "RobotLog", "Scan"]
@@ -112,6 +113,8 @@ class RobotLog:
         Time of the first pose as it stands in the log, in s.
     scans : tuple of Scan
         Laser scans, empty unless `load_log` is asked for them.
+    map : StaticMap or None
+        Walls of the last occupancy grid on a topic called ``map`` of a bag, in the same frame.
     source : Source
         Format, digest and arguments.
     warnings : tuple of ResultWarning
@@ -134,6 +137,7 @@ class RobotLog:
     time_factor: float | None = None
     time_origin: Annotated[float, "s"] = 0.0
     scans: tuple[Scan, ...] = ()
+    map: StaticMap | None = None
     warnings: tuple[ResultWarning, ...] = ()
 
     def __len__(self) -> int:
