@@ -189,6 +189,11 @@ SQUARE = COSTMAP.format('footprint: "[ [.2, .2],[.2,-.2], [-.2,-.2],[-.2,.2] ]",
             3.0,
             "holonomic",
         ),
+        (
+            "vx_max: 0.5, wz_max: 1.9, motion_model: own, own: {plugin: mppi::DiffDriveMotionModel}",
+            *(0.5, 1.9, None, None, "two wheels"),
+        ),
+        ("max_vel_x: 0.5, max_speed_xy: 0.4, acc_lim_x: 2.5", 0.4, None, 2.5, None, "two wheels"),
         ("vx_max: 0.5, motion_model: Ackermann", 0.5, None, None, None, "car"),
         ("desired_linear_vel: 0.4, max_angular_accel: 3.2", 0.4, None, None, None, "two wheels"),
         ("max_linear_vel: 0.6, desired_linear_vel: 0.4, max_angular_vel: 1.5", 0.6, 1.5, None, None, "two wheels"),
@@ -241,6 +246,16 @@ def test_a_round_robot_has_the_outline_that_nav2_makes_of_it(tmp_path: Path) -> 
     assert found.padded[0] == (0.31, 0.0)  # zero stays where it is
     assert found.circumscribed_radius == pytest.approx(0.3 + 0.01 * math.sqrt(2.0))
     assert codes(params(tmp_path, COSTMAP.format("resolution: 0.05"))) == ["assumed"]
+
+
+def test_dots_in_keys_are_maps(tmp_path: Path) -> None:
+    text = (
+        COSTMAP.format("robot_radius: 0.2, inflation_layer.inflation_radius: 0.1")
+        + "controller_server:\n  ros__parameters:\n    FollowPath.max_vel_x: 0.3\n    FollowPath.plugin: dwb\n"
+    )
+    found = params(tmp_path, text)
+    assert (found.inflation_radius, found.max_speed) == (0.1, 0.3)
+    assert codes(found) == ["inflation_below_circumscribed"]
 
 
 def test_namespaces_and_files_without_costmaps(tmp_path: Path) -> None:

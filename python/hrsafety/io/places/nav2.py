@@ -26,6 +26,8 @@ RADIUS = 0.1
 CORNERS = 16
 """Corners of the footprint that Nav2 makes of a radius."""
 SAME = 1e-6
+Parameters = dict[str, Section]
+"""Parameters of a node by their names with dots."""
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _QUANTITIES = {
     "circumscribed_radius": "robot_radius",
@@ -36,6 +38,7 @@ _QUANTITIES = {
 }
 _SMOOTHED = (("max_velocity", 1.0), ("min_velocity", -1.0), ("max_accel", 1.0), ("max_decel", -1.0))
 _DRIVES = {"DiffDrive": "two wheels", "Omni": "holonomic", "Ackermann": "car"}
+_COSTMAPS = ("local_costmap", "global_costmap")
 # What the controllers call a limit: DWB, MPPI, RPP and its older name.
 _SPEED = ("max_vel_x", "vx_max", "max_linear_vel", "desired_linear_vel")
 _REVERSE = ("min_vel_x", "vx_min")
@@ -212,9 +215,9 @@ def read_nav2(path: str | PathLike[str]) -> Nav2Settings:
     document = Document(path)
     root = YamlDocument(document.text, document.name).root
     doubts = list(document.warnings)
-    costmaps = {name: found for name in ("local_costmap", "global_costmap") if (found := _node(root, name, name))}
+    costmaps = {name: found for name in _COSTMAPS if (found := _node(root, name, name)) is not None}
     server, smoother = _node(root, "controller_server"), _node(root, "velocity_smoother")
-    if not (costmaps or server or smoother):
+    if not costmaps and server is None and smoother is None:
         keys = root.keys()
         alike = meant("controller_server", keys)
         rule = "hold the parameters of a costmap, controller_server or velocity_smoother"
@@ -233,7 +236,7 @@ def read_nav2(path: str | PathLike[str]) -> Nav2Settings:
     )
 
 
-def _node(root: Section, *names: str) -> Section | None:
+def _node(root: Section, *names: str) -> Parameters | None:
     """Return the parameters of a node, below its name once or twice, in a namespace or not; ``None`` without any."""
     tops = [root, *(each for key in root if (each := root[key]).is_map and key not in names)]
     for top in tops:
@@ -242,8 +245,22 @@ def _node(root: Section, *names: str) -> Section | None:
             for key in (*path, "ros__parameters"):
                 found = found.get(key) if found is not None and found.is_map else None
             if found is not None and found.is_map:
-                return found
+                parameters: Parameters = {}
+                for name, each in _flat(found, ""):
+                    if name in parameters:
+                        raise each.error(f"stand once, {name} stands in line {parameters[name].line}, too")
+                    parameters[name] = each
+                return parameters
     return None
+
+
+def _flat(section: Section, above: str) -> Iterator[tuple[str, Section]]:
+    """Yield parameters by their names with dots, as ROS knows them: maps and dots in keys are the same to it."""
+    for key in section:
+        if section[key].is_map:
+            yield from _flat(section[key], f"{above}{key}.")
+        else:
+            yield f"{above}{key}", section[key]
 
 
 # ---- shape -----------------------------------------------------------------------------------------
@@ -271,7 +288,7 @@ def costmap_footprint(entry: Section) -> tuple[Pair, ...]:
     return tuple(found)
 
 
-def _shape(costmap: Section) -> dict[str, Any]:
+def _shape(costmap: Parameters) -> dict[str, Any]:
     """Return the shape of the robot in a costmap."""
     entry, round_entry = costmap.get("footprint"), costmap.get("robot_radius")
     corners = () if entry is None else costmap_footprint(entry)
@@ -283,10 +300,9 @@ def _shape(costmap: Section) -> dict[str, Any]:
     turns = (2.0 * math.pi * index / CORNERS for index in range(CORNERS))
     outline = corners or tuple((radius * math.cos(turn), radius * math.sin(turn)) for turn in turns)
     padded = tuple((_away(x, padding), _away(y, padding)) for x, y in outline)
-    layers = [each for key in costmap if (each := costmap[key]).is_map and "inflation_radius" in each]
-    layer = next((each for each in layers if each.path[-1] == "inflation_layer"), layers[0] if layers else None)
-    inflation = None if layer is None else layer["inflation_radius"].number()
-    scaling = None if layer is None else layer.get("cost_scaling_factor")
+    layers = [key.rpartition(".")[0] for key in costmap if key.endswith(".inflation_radius")]
+    layer = "inflation_layer" if "inflation_layer" in layers else layers[0] if layers else ""
+    inflation, scaling = costmap.get(f"{layer}.inflation_radius"), costmap.get(f"{layer}.cost_scaling_factor")
     return {
         "given": bool(corners) or round_entry is not None,
         "footprint": corners or None,
@@ -295,7 +311,7 @@ def _shape(costmap: Section) -> dict[str, Any]:
         "padded": padded,
         "circumscribed_radius": max(math.hypot(x, y) for x, y in padded),
         "inscribed_radius": min(_distance(a, b) for a, b in zip(padded, (*padded[1:], padded[0]), strict=True)),
-        "inflation_radius": inflation,
+        "inflation_radius": None if inflation is None else inflation.number(),
         "cost_scaling_factor": None if scaling is None else scaling.number(),
     }
 
@@ -345,31 +361,41 @@ def _same(one: Sequence[Pair], other: Sequence[Pair]) -> bool:
 # ---- limits ----------------------------------------------------------------------------------------
 
 
-def _limits(server: Section | None, smoother: Section | None) -> dict[str, Any]:
+def _limits(server: Parameters | None, smoother: Parameters | None) -> dict[str, Any]:
     """Return the limits of the robot by the names of `Nav2Settings`."""
-    controllers = [] if server is None else _controllers(server)
+    controllers = [] if server is None else list(_controllers(server))
     smooth = {name: _smoothed(smoother, name, sign) for name, sign in _SMOOTHED}
-    forward = _strict(_most(controllers, _SPEED), smooth["max_velocity"][0])
-    lateral = _strict(_most(controllers, _LATERAL), smooth["max_velocity"][1])
-    reverse = _strict(_most(controllers, _REVERSE, sign=-1.0), _negated(smooth["min_velocity"][0]))
-    models = [each["motion_model"] for each in controllers if "motion_model" in each]
-    for model in models:
-        if model.text() not in _DRIVES:
-            raise model.error('be "DiffDrive", "Omni" or "Ackermann"', meant(model.text(), tuple(_DRIVES)))
-    drive = _DRIVES[models[0].text()] if models else "holonomic" if lateral else "two wheels"
+    forward = _strict(max(_values(controllers, _SPEED), default=None), smooth["max_velocity"][0])
+    lateral = _strict(max(_values(controllers, _LATERAL), default=None), smooth["max_velocity"][1])
+    reverse = _strict(max(_values(controllers, _REVERSE, -1.0), default=None), _negated(smooth["min_velocity"][0]))
+    turn = _strict(max(_values(controllers, _TURN), default=None), smooth["max_velocity"][2])
+    speed_up = _strict(max(_values(controllers, _SPEED_UP), default=None), smooth["max_accel"][0])
+    brake = _strict(min(_values(controllers, _BRAKE), default=None), _negated(smooth["max_decel"][0]))
+    turn_up = _strict(max(_values(controllers, _TURN_UP), default=None), smooth["max_accel"][2])
+    drives = [_drive(each) for each in controllers if "motion_model" in each]
     return {
         "max_speed": forward,
         "min_speed": _negated(reverse),
         "max_lateral_speed": lateral,
-        "max_turn_rate": _strict(_most(controllers, _TURN), smooth["max_velocity"][2]),
-        "max_acceleration": _strict(_most(controllers, _SPEED_UP), smooth["max_accel"][0]),
-        "max_deceleration": _strict(_least(controllers, _BRAKE), _negated(smooth["max_decel"][0])),
-        "max_turn_acceleration": _strict(_most(controllers, _TURN_UP), smooth["max_accel"][2]),
-        "drive": drive,
+        "max_turn_rate": turn,
+        "max_acceleration": speed_up,
+        "max_deceleration": brake,
+        "max_turn_acceleration": turn_up,
+        "drive": drives[0] if drives else "holonomic" if lateral else "two wheels",
     }
 
 
-def _smoothed(smoother: Section | None, name: str, sign: float) -> list[float] | tuple[None, None, None]:
+def _drive(controller: Parameters) -> str:
+    """Return the drive of a motion model of MPPI: a word, or the name of a plugin."""
+    model = controller["motion_model"]
+    name = controller.get(f"{model.text()}.plugin", model)
+    for word, drive in _DRIVES.items():
+        if word in name.text():
+            return drive
+    raise name.error('be "DiffDrive", "Omni" or "Ackermann"', meant(name.text(), tuple(_DRIVES)))
+
+
+def _smoothed(smoother: Parameters | None, name: str, sign: float) -> list[float] | tuple[None, None, None]:
     """Return limits of x, y and turning that have a sign, as Nav2 wants it."""
     if smoother is None or name not in smoother:
         return None, None, None
@@ -379,33 +405,26 @@ def _smoothed(smoother: Section | None, name: str, sign: float) -> list[float] |
     return found
 
 
-def _controllers(server: Section) -> list[Section]:
-    """Return the parameters of the controllers: those that are named, else FollowPath."""
+def _controllers(server: Parameters) -> Iterator[Parameters]:
+    """Yield the parameters of the controllers: those that are named, else FollowPath."""
     named = server.get("controller_plugins")
-    names = ["FollowPath"] if named is None else named.texts()
-    found = [server[name] for name in names if name in server]
-    for each in found:
-        each.keys()
-    return found
+    for name in ["FollowPath"] if named is None else named.texts():
+        if name in server:
+            raise server[name].error("be a map of keys and values")
+        yield {key[len(name) + 1 :]: each for key, each in server.items() if key.startswith(f"{name}.")}
 
 
-def _values(controllers: Sequence[Section], keys: Sequence[str], sign: float) -> Iterator[float]:
+def _values(controllers: Sequence[Parameters], keys: Sequence[str], sign: float = 1.0) -> Iterator[float]:
+    """Yield a limit of each controller that has one."""
     for controller in controllers:
-        entry = next((controller[key] for key in keys if key in controller), None)
-        if entry is not None:
-            value = entry.number()
-            speeds = keys in (_SPEED, _SPEED_UP)
-            if speeds and not value > 0.0:
+        entries = [controller[key] for key in keys if key in controller][:1]
+        if keys is _SPEED and "max_speed_xy" in controller:
+            entries.append(controller["max_speed_xy"])
+        for entry in entries:
+            if keys in (_SPEED, _SPEED_UP) and not entry.number() > 0.0:
                 raise entry.error("be positive")
-            yield sign * value if sign < 0.0 else abs(value)
-
-
-def _most(controllers: Sequence[Section], keys: Sequence[str], sign: float = 1.0) -> float | None:
-    return max(_values(controllers, keys, sign), default=None)
-
-
-def _least(controllers: Sequence[Section], keys: Sequence[str]) -> float | None:
-    return min(_values(controllers, keys, 1.0), default=None)
+        if entries:
+            yield min(sign * each.number() if sign < 0.0 else abs(each.number()) for each in entries)
 
 
 def _strict(*limits: float | None) -> float | None:
