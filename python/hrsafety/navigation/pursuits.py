@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from typing import Annotated, Any, Literal, cast
+from typing import TYPE_CHECKING, Annotated, Any, Literal, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +15,7 @@ from hrsafety._arguments import Array, callback, checked_seed, count, instance, 
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety._statistics import Share, wilson
-from hrsafety.errors import InvalidParameterError, SimulationError
+from hrsafety.errors import InvalidParameterError, Shown, SimulationError
 from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.obstacles.moving import MovingDisc
 from hrsafety.navigation.robots.as_built import AsBuilt
@@ -24,6 +24,9 @@ from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.navigation.warnings.shields import ASSUMES_LESS, shield_of
 from hrsafety.plausibility import ResultWarning, implausible, telling
 from hrsafety.tables import Columns, Table
+
+if TYPE_CHECKING:
+    from hrsafety.navigation.crowd.world import World
 
 __all__ = ["Falsification", "Pursuit", "falsify"]
 
@@ -150,7 +153,7 @@ class Falsification:
 
 @telling()
 def falsify(
-    scenario: Scenario,
+    scenario: Scenario | World,
     law: AnyLaw,
     property: Property | Callable[[Pursuit], float] = "at_fault",  # the word of the field
     *,
@@ -175,8 +178,9 @@ def falsify(
 
     Parameters
     ----------
-    scenario : Scenario
-        Where the robot goes, with whatever else there is.
+    scenario : Scenario or World
+        Where the robot goes, with whatever else there is; a world of one robot, in which the person keeps off walls and
+        people react to him as to anybody. Worlds have a step of their own, and take random persons only.
     law : law
         What drives it.
     property : {"at_fault", "clearance", "arrival", "speed"} or callable
@@ -228,7 +232,10 @@ def falsify(
     >>> nav.falsify(scene, law, episodes=20).broken
     False
     """
-    scene = instance("scenario", scenario, Scenario)
+    if not isinstance(scenario, Scenario):
+        given = property, method, least, most, person_radius, person_speed, built, step
+        return _in_world(scenario, law, given, (episodes, seed, threads, progress))
+    scene = scenario
     drives, own = as_law(law), callable(property)
     kind = "at_fault" if own else word("property", property, ("at_fault", "clearance", "arrival", "speed"))
     limit = _least(least) if kind == "clearance" else _most(most, scene) if kind == "speed" else 0.0
@@ -272,6 +279,74 @@ def falsify(
             *_of_turns(drives, fastest),
         ),
     )
+
+
+def _in_world(
+    scenario: World, law: AnyLaw, given: tuple[Any, ...], runs: tuple[int, int, int | None, Progress | None]
+) -> Falsification:
+    """Search in a world of people who react."""
+    # Here: searches in scenarios load nothing of it.
+    from hrsafety.navigation.crowd.pursuits import falsified
+    from hrsafety.navigation.crowd.world import World
+    from hrsafety.navigation.simulation import refuse_in_worlds
+
+    instance("scenario", scenario, Scenario, World)
+    world = scenario
+    if len(world.robots) != 1:
+        raise InvalidParameterError("scenario.robots", "be one to be pursued", Shown(str(len(world.robots))))
+    what, method, least, most, radius, speed, built, step = given
+    refuse_in_worlds({"built": built, "step": step})
+    if word("method", method, ("random", "cma_es")) != "random":
+        raise InvalidParameterError("method", 'be "random" in a world', method)
+    kind = "at_fault" if callable(what) else word("property", what, ("at_fault", "clearance", "arrival", "speed"))
+    fastest = world.robots[0].body.max_speed * (1.0 + 1e-9)
+    limit = _least(least) if kind == "clearance" else fastest if most is None else positive("most", most)
+    size, pace = positive("person_radius", radius), positive("person_speed", speed)
+    episodes, seed, threads, progress = runs
+    pursued = falsified(
+        world,
+        as_law(law),
+        (size, pace, world.robots[0].body.radius + size + ROOM),
+        (count("episodes", episodes, most=MOST_EPISODES), checked_seed("seed", seed)),
+        (thread_count(threads), callback("progress", progress)),
+    )
+    rows: dict[str, list[float]] = {name: [] for name in COLUMNS}
+    worst, lowest = None, math.inf
+    for index, (fields, doubts) in enumerate(pursued):
+        pursuit = Pursuit(**fields)
+        margin = number("margin of the property", what(pursuit)) if callable(what) else _margin(kind, pursuit, limit)
+        if math.isnan(margin):
+            name = f"margin of the property in episode {index}"
+            raise InvalidParameterError(name, "be a number, negative where it is broken", margin)
+        rows["margin"].append(margin)
+        for name in COLUMNS[1:]:
+            rows[name].append(getattr(pursuit, name))
+        if worst is None or margin < lowest:
+            worst, lowest, told = pursuit, margin, doubts
+    assert worst is not None  # there is at least one episode
+    return Falsification(
+        property_name="own" if callable(what) else kind,
+        **{name: np.array(values) for name, values in rows.items()},
+        episodes=episodes,
+        worst=worst,
+        warnings=(
+            *implausible({"person_radius": size, "person_speed": pace}, {"person_speed": "pursuer_speed"}),
+            *told,
+            *_of_turns(as_law(law), pace),
+        ),
+    )
+
+
+def _margin(kind: str, pursuit: Pursuit, limit: float) -> float:
+    """Return by how much a property held, negative where it was broken, as the core has it."""
+    if kind == "at_fault":
+        # A touch without depth is one.
+        return pursuit.least_toward if pursuit.least_toward > 0.0 else min(pursuit.least_toward, -1e-12)
+    if kind == "clearance":
+        return pursuit.min_clearance - limit
+    if kind == "speed":
+        return limit - pursuit.top_speed
+    return 1.0 if not math.isnan(pursuit.arrival_time) else -1.0
 
 
 def _of_turns(law: object, speed: float) -> Iterator[ResultWarning]:

@@ -149,7 +149,8 @@ def _standing(run: Run) -> list[StaticMap]:
     if run.scenario is None:
         return []
     solid: list[Any] = [each for each in run.scenario.obstacles if isinstance(each, Disc | Rectangle)]
-    return [StaticMap.from_obstacles(solid)] if solid else []
+    walls = [] if run.scenario.walls is None else [run.scenario.walls]
+    return [StaticMap.from_obstacles(solid), *walls] if solid else walls
 
 
 def _walls(world: Any) -> list[StaticMap]:

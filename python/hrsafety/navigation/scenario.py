@@ -13,6 +13,7 @@ from hrsafety._arguments import Pair, Parameters, assign, instance, pair, sequen
 from hrsafety._doubts import checked_doubts
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles.base import Obstacle
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.sensing.measurement import Measurement
@@ -51,6 +52,9 @@ class Scenario(Parameters):
         Noise and age of the measured positions; ``None``: everything is known exactly.
     seed : int
         Seed of the noise, 0 <= seed < 2**64.
+    walls : StaticMap or None
+        What stands beside the obstacles. Contacts with it count in runs (``map_contact_time``); laws know of it what
+        they have a map of, or what a lidar sees, and runs carry the warning ``"unknown_wall"`` where that is less.
     doubts : sequence of ResultWarning
         Why the obstacles may not be what they seem to, such as `Recording.warnings` of people who were recorded; the
         warnings of the scenario and of its runs hold them.
@@ -84,6 +88,7 @@ class Scenario(Parameters):
     rest_time: float = 5.0
     measurement: Measurement | None = None
     seed: int = 0
+    walls: StaticMap | None = None
     doubts: Sequence[ResultWarning] = field(default=(), repr=False, compare=False)
     _native: _hrsafety.Scenario = field(init=False, repr=False, compare=False)
     _warnings: tuple[ResultWarning, ...] | None = field(init=False, repr=False, compare=False, default=None)
@@ -104,15 +109,24 @@ class Scenario(Parameters):
             self._set(doubts=checked_doubts("doubts", self.doubts))
         given = _as_given(robot, self.obstacles, rules[0], measurement)
         noise = (None if measurement is None else measurement._native, seed)
+        walls = None if self.walls is None else self._standing(self.walls)
         try:
             natives = [obstacle._native for obstacle in given]
-            native = _hrsafety.Scenario(robot._native, (start, goal), natives, rules, noise)
+            native = _hrsafety.Scenario(robot._native, (start, goal), natives, rules, noise, walls)
         except InvalidParameterError as error:
             raise _naming_kinds(error, given) from None
         if start is not self.start or goal is not self.goal:
             self._set(start=start, goal=goal)
         assign(self, "obstacles", given)
         assign(self, "_native", native)
+
+    def _standing(self, walls: StaticMap) -> _hrsafety.StaticMap:
+        """Return the native walls; the robot must not start in contact with them."""
+        gap = float(instance("walls", walls, StaticMap).clearance(self.start)) - self.robot.radius
+        if gap < 0.0:
+            remedy = f"the bodies overlap by {-gap:.4f} m"
+            raise InvalidParameterError("start", "not be in contact with the walls", self.start, remedy)
+        return walls._native
 
     def _rules(self) -> tuple[float, float, float, float, float]:
         """Return the numbers of a run in the order of the core, as floats."""

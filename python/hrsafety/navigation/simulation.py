@@ -11,7 +11,7 @@ import numpy as np
 from hrsafety import _hrsafety
 from hrsafety._arguments import count, flag, instance, number, sequence, word
 from hrsafety._bounds import MOST_INTERVAL
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.navigation.performance import Performance, check_weights
 from hrsafety.navigation.robots.as_built import AsBuilt
@@ -207,8 +207,8 @@ def _kept(record: Sequence[str] | None) -> list[str]:
 
 @telling(of_scenarios)
 def evaluate(
-    scenario: Scenario,
-    law: AnyLaw,
+    scenario: Scenario | World,
+    law: AnyLaw | None = None,
     weights: Sequence[float] = (1 / 3, 1 / 3, 1 / 3),
     *,
     built: AsBuilt | None = None,
@@ -225,10 +225,11 @@ def evaluate(
 
     Parameters
     ----------
-    scenario : Scenario
-        Robot, start, goal, obstacles, measurement.
-    law : Law, callable or object
-        What drives the robot; see `PythonLaw` for laws of your own.
+    scenario : Scenario or World
+        Robot, start, goal, obstacles, measurement; or a world of one robot among people, whose ``d_s*`` is that of
+        their active regions at the speeds that they want.
+    law : Law, callable, object or None
+        What drives the robot; see `PythonLaw` for laws of your own. ``None``: the robot of a world has its own.
     weights : sequence of float
         Weights of time, distance and energy; not negative, sum 1.
     built, integrator, step, hold
@@ -252,7 +253,9 @@ def evaluate(
     >>> round(nav.evaluate(scenarios.configuration("c1"), nav.VirtualForceField()).total, 2)
     0.65
     """
-    instance("scenario", scenario, Scenario)
+    if not isinstance(scenario, Scenario):
+        refuse_in_worlds({"built": built, "integrator": integrator, "step": step, "hold": hold})
+        return _score_of_world(scenario, law, check_weights(weights))
     law = as_law(law)
     robot = as_built([scenario], built, integrator, hold=hold)
     if robot is not None:
@@ -273,6 +276,18 @@ def evaluate(
         trajectory=Trajectory(scenario=scenario, law=law, motion_step=float(step), **run),
         nominal=Trajectory(scenario=without_obstacles(scenario), law=law, motion_step=float(step), **nominal),
     )
+
+
+def _score_of_world(scenario: World, law: AnyLaw | None, weights: tuple[float, float, float]) -> Performance:
+    """Return the score of the robot of a world."""
+    # Here: runs of scenarios load nothing of it.
+    from hrsafety.navigation.crowd.performance import evaluated
+    from hrsafety.navigation.crowd.world import World
+
+    instance("scenario", scenario, Scenario, World)
+    if len(scenario.robots) != 1:
+        raise InvalidParameterError("scenario.robots", "be one to be scored", Shown(str(len(scenario.robots))))
+    return evaluated(scenario, None if law is None else as_law(law), weights)
 
 
 def as_built(

@@ -131,7 +131,8 @@ class Trajectory(Played, Table):
     arrival_time : float
         First entry into the tolerance circle, in s; NaN without arrival.
     energy : float
-        Electrical loss of the motors, in J; with wheels that have controllers, of their currents.
+        Electrical loss of the motors, in J; with wheels that have controllers, of their currents. In a world up to the
+        arrival, of currents at its steps.
     min_distance, min_clearance : ndarray, shape (m,)
         Least distance d, and least distance between the surfaces, in m; infinite for an
         obstacle that was never present.

@@ -115,6 +115,8 @@ class Settings(Parameters):
 
 def map_of(world: World) -> StaticMap:
     """Return the walls of a world as a map."""
+    if isinstance(world.walls, StaticMap):
+        return world.walls
     solid = [wall for wall in world.walls if isinstance(wall, (Disc, Rectangle))]
     lines = [wall for wall in world.walls if isinstance(wall, tuple)]
     return StaticMap.from_obstacles(solid) + StaticMap.from_polylines(lines)

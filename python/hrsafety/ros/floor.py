@@ -16,6 +16,7 @@ from hrsafety.navigation.crowd.agents import Robot
 from hrsafety.navigation.crowd.simulation import simulated
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.laws.situation import Situation
+from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.robots.bodies import HolonomicRobot
 from hrsafety.navigation.trajectory import Divergence
 
@@ -111,7 +112,8 @@ class _Put:
     def __init__(self, world: World, step: float, meet: Callable[[float, Crowd], Pair | None]) -> None:
         self._step, self._meet = step, meet
         self._people = len(world.people)
-        self._walls = sum(len(wall) - 1 if isinstance(wall, tuple) else 1 for wall in world.walls)
+        told = () if isinstance(world.walls, StaticMap) else world.walls
+        self._walls = sum(len(wall) - 1 if isinstance(wall, tuple) else 1 for wall in told)
         self._next = self._people
         self._guests = (np.empty(0, dtype=np.int64), np.empty((0, 2)))
 

@@ -237,7 +237,7 @@ def test_laws_are_compared_in_the_same_episodes() -> None:
     assert result.contacts_compared("field", "reciprocal").p_value == 1.0
     assert [each.law for each in result.standings()] == list(LAWS)
     with pytest.raises(InvalidParameterError, match="metric must be"):
-        result.difference("field", "reciprocal", "energy")
+        result.difference("field", "reciprocal", "performance_total")
 
 
 # ---- what is refused ------------------------------------------------------------------------

@@ -20,6 +20,7 @@ use vff_core::crowd::world::{
 };
 use vff_core::crowd::{Diverged, Model, Simulation, simulate_worlds};
 use vff_core::lanes::Vector2;
+use vff_core::run::pursuit::Pursuer;
 use vff_core::world::motion::Motion;
 use vff_core::world::shape::PlacedShape;
 
@@ -28,6 +29,7 @@ use crate::errors::{CoreError, CoreResult};
 use crate::keywords::{Keywords, taken};
 use crate::laws::Law;
 use crate::parameters::{Measurement, Obstacle, mover_of};
+use crate::robots::as_built::AsBuilt;
 use crate::watch::{Report, watched};
 
 /// A model of people.
@@ -93,8 +95,12 @@ fn traits_of(given: &Keywords<'_>) -> PyResult<Traits> {
     }))
 }
 
-/// The way of a person who follows a recording: instants and positions, if they are given.
+/// The way of a person who reacts to nobody, if there is one: that of an obstacle, or a recording of instants and
+/// positions.
 fn recording_of(given: &Keywords<'_>) -> PyResult<Option<Motion>> {
+    if let Some(obstacle) = given.take::<Option<PyRef<'_, Obstacle>>>("mover")? {
+        return Ok(Some(obstacle.core().motion.clone()));
+    }
     let recorded: Option<(Vec<f64>, Vec<[f64; 2]>)> = given.take("recording")?;
     let motion = recorded.map(|(time, position)| Motion::recorded(&time, &position));
     let motion = motion.transpose();
@@ -112,12 +118,52 @@ impl CrowdPerson {
     fn new(model: &CrowdModel, given: Option<Keywords<'_>>) -> PyResult<Self> {
         let given = given.unwrap_or_default();
         let person = taken!(given: PersonSetup {
-            start, velocity, enters, recorded = recording_of(&given)?, group,
+            start, velocity, enters, recorded = recording_of(&given)?, group, pursuer = None,
             traits = traits_of(&given)?,
         });
         given.done()?;
         person.check().map_err(CoreError::from)?;
         Ok(Self(person, model.0))
+    }
+
+    /// A person of a radius in m who pursues a robot on its way between two places, drawn from a seed; at most as fast
+    /// as a speed in m/s, and at least `free` m from the robot at the start.
+    #[staticmethod]
+    #[pyo3(signature = (model, drawn, ends, *, radius, speed, free))]
+    fn pursuing(
+        model: &CrowdModel,
+        drawn: (u64, u64),
+        ends: [[f64; 2]; 2],
+        radius: f64,
+        speed: f64,
+        free: f64,
+    ) -> PyResult<Self> {
+        let pursuer = Pursuer::random(drawn.0, drawn.1, ends, free, speed);
+        let traits = Traits {
+            radius,
+            desired_speed: Some(speed),
+            awareness: 1.0,
+            distracted_share: 0.0,
+            model: 0,
+            route: Route::to(pursuer.start),
+        };
+        let person = PersonSetup {
+            start: pursuer.start,
+            velocity: [0.0; 2],
+            enters: 0.0,
+            recorded: None,
+            pursuer: Some(pursuer),
+            group: None,
+            traits,
+        };
+        person.check().map_err(CoreError::from)?;
+        Ok(Self(person, model.0))
+    }
+
+    /// Where the person is at the start, in m.
+    #[getter]
+    fn start(&self) -> [f64; 2] {
+        self.0.start
     }
 }
 
@@ -150,17 +196,19 @@ pub struct CrowdRobot {
 #[pymethods]
 impl CrowdRobot {
     #[new]
-    #[pyo3(signature = (robot, law, measurement, **given))]
+    #[pyo3(signature = (robot, law, measurement, built, **given))]
     fn new(
         robot: &Bound<'_, PyAny>,
         law: Option<&Law>,
         measurement: Option<&Measurement>,
+        built: Option<&AsBuilt>,
         given: Option<Keywords<'_>>,
     ) -> PyResult<Self> {
         let given = given.unwrap_or_default();
         let setup = taken!(given: RobotSetup {
             mover = mover_of(robot)?, start, goal, heading, control_period, arrival_tolerance,
             sensing_range, measurement = measurement.map(Measurement::core),
+            built = built.map(|built| built.run(0.01, false)),
             law = law.map(|law| law.any.clone()),
         });
         given.done()?;
@@ -234,7 +282,7 @@ impl CrowdWorld {
         let core = taken!(given: vff_core::crowd::CrowdWorld {
             people = people, sources = sources.collect(),
             robots = robots.iter().map(|robot| robot.setup.clone()).collect(),
-            walls = walls.iter().map(|wall| wall.0.clone()).collect(), models = models,
+            walls = walls.iter().map(|wall| wall.0.clone()).collect(), untold, models = models,
             period = Period(given.take("period")?), step, time_limit, seed,
         });
         given.done()?;
@@ -281,10 +329,11 @@ fn fields_of(py: Python<'_>, mut ended: Simulation) -> PyResult<Bound<'_, PyDict
         .iter()
         .map(|each| each.arrival_position)
         .collect();
-    let arrivals = ended.robots().iter();
-    let robot_arrival_time = arrivals
-        .map(vff_core::crowd::robots::CrowdRobot::arrival_time)
-        .collect();
+    let of_robots = |value: fn(&vff_core::crowd::robots::CrowdRobot) -> f64| -> Vec<f64> {
+        ended.robots().iter().map(value).collect()
+    };
+    let robot_arrival_time = of_robots(vff_core::crowd::robots::CrowdRobot::arrival_time);
+    let robot_energy = of_robots(vff_core::crowd::robots::CrowdRobot::energy);
     let diverged = ended.divergence().map(|found| {
         let (kind, number) = match found.agent {
             Diverged::Person(number) => ("person", number),
@@ -305,6 +354,7 @@ fn fields_of(py: Python<'_>, mut ended: Simulation) -> PyResult<Bound<'_, PyDict
         vector person_arrival_time = column(&|index| all[index].arrival_time);
         array [people, 2] person_arrival_position = flat(&ends);
         vector robot_arrival_time = robot_arrival_time;
+        vector robot_energy = robot_energy;
         value wall_rescues = ended.wall_rescues();
         value max_person_speed = ended.max_person_speed();
         value diverged = diverged;

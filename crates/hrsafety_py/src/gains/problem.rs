@@ -65,6 +65,7 @@ impl GainProblem {
         let (require_arrival, cap_ratios) =
             (given.take("require_arrival")?, given.take("cap_ratios")?);
         let scorer: Option<Py<PyAny>> = given.take("scorer")?;
+        let whole: bool = given.take("whole")?;
         let scorer_constraints = given.take("scorer_constraints")?;
         let lanes: Option<usize> = given.take("lanes")?;
         given.done()?;
@@ -74,10 +75,11 @@ impl GainProblem {
         let alone = !is_metric.contains(&true) && constraints.is_empty();
         let scorer = scorer.map(|call| Scorer {
             call,
+            whole,
             scenarios: seeded(&scenarios, &seeds),
             law: law.any.clone(),
             options: batch_options(run, weights, width),
-            requires_arrival: require_arrival && alone,
+            requires_arrival: require_arrival && alone && !whole,
             raised: Mutex::new(None),
         });
         let mut metrics: Vec<String> = objectives.into_iter().flatten().collect();

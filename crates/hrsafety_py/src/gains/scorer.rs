@@ -3,7 +3,7 @@
 use std::sync::Mutex;
 
 use numeric::error::{Failure, Result};
-use numpy::PyReadonlyArray2;
+use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 use vff_core::run::{AnyLaw, BatchOptions, BatchTable, Outcome, run_batch};
@@ -14,8 +14,11 @@ use crate::run::batch::columns;
 
 /// A callable that turns the columns of batches, one batch for each seed, into values and margins.
 pub struct Scorer {
-    /// `(list of columns) -> (values (n, objectives), margins (n, constraints))`.
+    /// `(list of columns) -> (values (n, objectives), margins (n, constraints))`; of a scorer that makes its runs
+    /// itself `(gain sets (n, gains)) -> (values, margins, failed runs (n,))`.
     pub call: Py<PyAny>,
+    /// Whether the callable makes its runs itself.
+    pub whole: bool,
     /// Scenarios of each seed.
     pub scenarios: Vec<Vec<Scenario>>,
     /// Law whose gains are replaced.
@@ -31,6 +34,10 @@ pub struct Scorer {
 impl Scorer {
     /// Runs the gain sets and has them scored; the interpreter is held for the second part only.
     pub fn evaluate(&self, points: &[f64], into: &mut Evaluation<'_>) -> Result<()> {
+        if self.whole {
+            return Python::attach(|py| self.ask(py, points, into))
+                .map_err(|error| self.keep(error));
+        }
         let mut tables = Vec::with_capacity(self.scenarios.len());
         let mut failures = vec![0; into.failed.len()];
         for scenarios in &self.scenarios {
@@ -52,12 +59,34 @@ impl Scorer {
         for (failed, count) in into.failed.iter_mut().zip(&failures) {
             *failed |= *count > 0;
         }
-        Python::attach(|py| self.score(py, points, tables, &failures, into)).map_err(|error| {
-            if let Ok(mut slot) = self.raised.lock() {
-                slot.get_or_insert(error);
-            }
-            Failure::Interrupted
-        })
+        Python::attach(|py| self.score(py, points, tables, &failures, into))
+            .map_err(|error| self.keep(error))
+    }
+
+    /// Keeps what the callable raised, and stops the search.
+    fn keep(&self, error: PyErr) -> Failure {
+        if let Ok(mut slot) = self.raised.lock() {
+            slot.get_or_insert(error);
+        }
+        Failure::Interrupted
+    }
+
+    /// Has the callable run and score the gain sets.
+    fn ask(&self, py: Python<'_>, points: &[f64], into: &mut Evaluation<'_>) -> PyResult<()> {
+        let rows = points.chunks_exact(self.law.gain_names().len());
+        let sets: Vec<Vec<f64>> = rows.map(<[f64]>::to_vec).collect();
+        let asked = PyArray2::from_vec2(py, &sets)?;
+        let (values, margins, failures): (
+            PyReadonlyArray2<'_, f64>,
+            PyReadonlyArray2<'_, f64>,
+            Vec<usize>,
+        ) = self.call.bind(py).call1((asked,))?.extract()?;
+        fill(into.values, &values);
+        fill(into.margins, &margins);
+        for (failed, count) in into.failed.iter_mut().zip(failures) {
+            *failed |= count > 0;
+        }
+        Ok(())
     }
 
     fn score(

@@ -139,6 +139,11 @@ impl PersonState {
         if setup.enters > 0.0 {
             person.presence = Presence::Expected;
         }
+        if let Some(pursuer) = &setup.pursuer {
+            person.recorded = true;
+            person.desired_speed = pursuer.max_speed;
+            person.presence = Presence::Walking;
+        }
         if let Some(motion) = &setup.recorded {
             person.recorded = true;
             person.desired_speed = motion.max_initial_speed();

@@ -5,34 +5,74 @@ use crate::crowd::divergence::is_finite;
 use crate::crowd::neighbors::grid::Period;
 use crate::crowd::people::{PersonState, Purpose, stream_of};
 use crate::crowd::sight::{Known, Sight};
-use crate::crowd::world::CrowdWorld;
+use crate::crowd::world::{CrowdWorld, count_of};
 use crate::error::Result;
 use crate::lanes::Vector2;
 use crate::laws::BoxedLaw;
 use crate::laws::trace::Trace;
 use crate::laws::{Situation, Stop, force_toward};
-use crate::robots::drives::{MotorDrive, Order, PointMass, Reading};
+use crate::robots::drives::{MotorDrive, PointMass, Reading};
+use crate::run::as_built::sight::Sight as Sensors;
 use crate::run::as_built::{AsBuilt, robot_under};
-use crate::run::{Interrupted, Request};
+use crate::run::navigation::Known as Measured;
+use crate::run::{AnyLaw, Interrupted, Request};
 use crate::world::geometry::RobotState;
 use crate::world::scenario::{Rules, Scenario};
 
 /// Places for people of each source at first.
 const GUESTS: usize = 16;
 
+/// Longest motion step of a robot as built in s: its wheels are controlled more often than people decide.
+const BUILT_STEP: f64 = 0.01;
+
 /// What moves a robot.
 enum Chassis {
     /// A robot that accelerates in any direction; nobody asks here for the currents of its motors.
     Point(PointMass),
-    /// One with motors.
-    Motors(Box<dyn MotorDrive>),
+    /// One with motors, and its motion steps in each of the world.
+    Motors(Box<dyn MotorDrive>, usize),
+}
+
+/// Sensors of a robot as built.
+struct Sensing {
+    sensors: Sensors,
+    reading: Reading,
 }
 
 /// What drives a robot by itself: apart from it, for robots that are told what to do have none.
 struct Pilot {
     law: BoxedLaw,
-    /// What the law sees.
+    /// What the law sees, or what there is to be sensed.
     sight: Sight,
+    sensing: Option<Sensing>,
+}
+
+impl Pilot {
+    /// A law that knows what it can see of a scenario.
+    fn new(
+        law: &AnyLaw,
+        mut sight: Sight,
+        scenario: &Scenario,
+        built: Option<&AsBuilt>,
+    ) -> Result<Self> {
+        sight.size(scenario);
+        let sensing = match built {
+            Some(built) => Some(Sensing {
+                sensors: Sensors::new(scenario, built, &sight.bodies)?,
+                reading: Reading::at(&built.start_in(scenario)),
+            }),
+            None => None,
+        };
+        let known = match &sensing {
+            Some(sensing) => sensing.sensors.known(scenario),
+            None => scenario,
+        };
+        Ok(Self {
+            law: law.erased().steering(known)?,
+            sight,
+            sensing,
+        })
+    }
 }
 
 /// A robot at work.
@@ -51,15 +91,18 @@ pub struct CrowdRobot {
     /// Steps of the world between two commands.
     every: usize,
     interval: f64,
+    /// Electrical loss up to the arrival, in J; of motors that are modeled.
+    energy: f64,
 }
 
 impl CrowdRobot {
-    /// A robot of a world at its start; `part`: time between two motions in s.
+    /// A robot of a world at its start; `part`: time between two motions in s; `motors`: whether the currents of
+    /// its motors are looked at.
     pub(super) fn new(
         world: &CrowdWorld,
         people: &[PersonState],
         index: usize,
-        part: f64,
+        (part, motors): (f64, bool),
     ) -> Result<Self> {
         let setup = &world.robots[index];
         let sighted = match setup.law {
@@ -69,16 +112,20 @@ impl CrowdRobot {
         let (sight, known) =
             sighted.map_or((None, Vec::new()), |(sight, known)| (Some(sight), known));
         let scenario = scenario_of(world, index, known)?;
+        let substeps = match &setup.built {
+            Some(_) => count_of((part / BUILT_STEP - 1e-9).ceil()).max(1),
+            None => 1,
+        };
         let built = AsBuilt {
-            step: part,
-            ..AsBuilt::default()
+            step: part / substeps as f64,
+            ..setup.built.clone().unwrap_or_default()
         };
         let start = built.start_in(&scenario);
         let pilot = match (&setup.law, sight) {
-            (Some(law), Some(mut sight)) => {
-                sight.size(&scenario);
-                let law = law.erased().steering(&scenario)?;
-                Some(Box::new(Pilot { law, sight }))
+            (Some(law), Some(sight)) => {
+                let sensing = setup.sensing(world.step);
+                let pilot = Pilot::new(law, sight, &scenario, sensing.as_ref())?;
+                Some(Box::new(pilot))
             }
             _ => None,
         };
@@ -90,9 +137,11 @@ impl CrowdRobot {
             },
             _ => built,
         };
-        let chassis = match scenario.differential() {
-            None => Chassis::Point(PointMass::new(&start)),
-            Some(_) => Chassis::Motors(robot_under(&scenario, &built, setup.law.as_ref())?),
+        let chassis = if scenario.differential().is_none() && setup.built.is_none() && !motors {
+            Chassis::Point(PointMass::new(&start))
+        } else {
+            let drive = robot_under(&scenario, &built, setup.law.as_ref())?;
+            Chassis::Motors(drive, substeps)
         };
         let Reading { robot, heading, .. } = Reading::at(&start);
         Ok(Self {
@@ -108,6 +157,7 @@ impl CrowdRobot {
             request: Request::Law,
             every: setup.steps(world.step)?,
             interval: setup.control_period,
+            energy: 0.0,
         })
     }
 
@@ -141,6 +191,12 @@ impl CrowdRobot {
         !self.arrival_time.is_nan()
     }
 
+    /// Electrical loss up to the arrival, in J, of motors that are modeled.
+    #[must_use]
+    pub fn energy(&self) -> f64 {
+        self.energy
+    }
+
     /// What parts around the law did in the last control period, if there are any.
     #[must_use]
     pub fn trace(&self) -> Option<Trace> {
@@ -166,9 +222,19 @@ impl CrowdRobot {
     }
 
     /// Keeps what is measured late, and looks whether it has arrived, at a time in s.
-    pub(super) fn watch(&mut self, people: &[PersonState], robots: &[Agent], time: f64) {
+    pub(super) fn watch(
+        &mut self,
+        world: &CrowdWorld,
+        people: &[PersonState],
+        robots: &[Agent],
+        time: f64,
+    ) {
         if let Some(pilot) = &mut self.pilot {
             pilot.sight.watch(people, robots);
+            if let Some(Sensing { sensors, reading }) = &mut pilot.sensing {
+                pilot.sight.look(people, robots, world, self.interval);
+                sensors.show(time, reading, &pilot.sight.bodies);
+            }
         }
         let away = (self.goal - self.state.position).norm();
         if away <= self.tolerance && !self.has_arrived() {
@@ -189,16 +255,15 @@ impl CrowdRobot {
             return Ok(true);
         }
         self.make_room(world, people, index)?;
-        let mut known = self.state;
-        let mut clear = true;
+        let mut known = Measured::exactly(self.state);
         let mut situation = Situation {
             time,
             bodies: &[],
             ages: &[],
-            robot: known,
+            robot: known.robot,
             heading: match &self.chassis {
                 Chassis::Point(_) => self.heading,
-                Chassis::Motors(drive) => drive.known_heading(),
+                Chassis::Motors(drive, _) => drive.known_heading(),
             },
             interval: self.interval,
             stop: Stop(interrupted),
@@ -210,20 +275,36 @@ impl CrowdRobot {
             (Request::Force(force), _) => force.into(),
             (Request::Velocity(velocity), _) => toward(velocity.into(), &situation),
             (Request::Law, None) => toward(Vector2::zeros(), &situation),
-            (Request::Law, Some(Pilot { law, sight })) => {
+            (
+                Request::Law,
+                Some(Pilot {
+                    law,
+                    sight,
+                    sensing,
+                }),
+            ) => {
                 sight.look(people, robots, world, self.interval);
-                (known, clear) = (sight.own, sight.clear());
-                (situation.robot, situation.bodies) = (known, &sight.bodies);
+                if let Some(Sensing { sensors, reading }) = sensing {
+                    let seen = sensors.look(time, reading, situation.heading, &sight.bodies);
+                    known = Measured::of(&seen);
+                    let measured = known.fix.and_then(|fix| fix.heading);
+                    situation.heading = measured.unwrap_or(situation.heading);
+                    situation.bodies = sensors.bodies(&sight.bodies);
+                    situation.ages = sensors.ages();
+                } else {
+                    known = Measured {
+                        clear: sight.clear(),
+                        ..Measured::exactly(sight.own)
+                    };
+                    situation.bodies = &sight.bodies;
+                }
+                situation.robot = known.robot;
                 law.command(&situation).force
             }
         };
         match &mut self.chassis {
             Chassis::Point(point) => point.hold(force),
-            Chassis::Motors(drive) => drive.hold(&Order {
-                force,
-                fix: None,
-                clear,
-            }),
+            Chassis::Motors(drive, _) => drive.hold(&known.order(force)),
         }
         Ok(force.norm().is_finite())
     }
@@ -236,20 +317,23 @@ impl CrowdRobot {
         index: usize,
     ) -> Result<()> {
         // Without a law nothing of the world is read.
-        let Some(Pilot { law, sight }) = self.pilot.as_deref_mut() else {
+        let Some(pilot) = self.pilot.as_deref_mut() else {
             return Ok(());
         };
         let Some(kind) = &world.robots[index].law else {
             return Ok(());
         };
         let mut places = guests(world);
-        while !sight.admit(people) {
+        while !pilot.sight.admit(people) {
             places *= 2;
             let (more, known) = Sight::new(world, people, index, places)?;
             let scenario = scenario_of(world, index, known)?;
-            *sight = more;
-            sight.size(&scenario);
-            *law = kind.erased().steering(&scenario)?;
+            let reading = pilot.sensing.as_ref().map(|sensing| sensing.reading);
+            let built = world.robots[index].sensing(world.step);
+            *pilot = Pilot::new(kind, more, &scenario, built.as_ref())?;
+            if let Some((sensing, reading)) = pilot.sensing.as_mut().zip(reading) {
+                sensing.reading = reading;
+            }
         }
         Ok(())
     }
@@ -261,9 +345,18 @@ impl CrowdRobot {
                 point.advance();
                 self.state = point.state;
             }
-            Chassis::Motors(drive) => {
-                let Reading { robot, heading, .. } = drive.step();
-                (self.state, self.heading) = (robot, heading);
+            Chassis::Motors(drive, substeps) => {
+                let under_way = self.arrival_time.is_nan();
+                for _ in 0..*substeps {
+                    let reading = drive.step();
+                    (self.state, self.heading) = (reading.robot, reading.heading);
+                    self.energy += if under_way { reading.loss } else { 0.0 };
+                    if let Some(sensing) =
+                        self.pilot.as_mut().and_then(|pilot| pilot.sensing.as_mut())
+                    {
+                        sensing.reading = reading;
+                    }
+                }
             }
         }
     }

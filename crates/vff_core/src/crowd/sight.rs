@@ -134,8 +134,12 @@ impl Sight {
         for (number, (setup, state)) in world.people.iter().zip(people).enumerate() {
             let model = &world.models[setup.traits.model];
             slots.push(Slot::Person(number));
-            known.push(match &setup.recorded {
-                Some(motion) => {
+            known.push(match (&setup.recorded, &setup.pursuer) {
+                (None, Some(pursuer)) => {
+                    let speed = pursuer.max_speed;
+                    mover(setup.start, setup.traits.radius, speed, Some(speed))?
+                }
+                (Some(motion), _) => {
                     let speed = motion.max_initial_speed();
                     mover(
                         setup.start,
@@ -144,7 +148,7 @@ impl Sight {
                         motion.speed_bound(),
                     )?
                 }
-                None => person(&setup.traits, state.desired_speed, model, setup.start)?,
+                (None, None) => person(&setup.traits, state.desired_speed, model, setup.start)?,
             });
         }
         for (other, setup) in world.robots.iter().enumerate() {
@@ -161,7 +165,8 @@ impl Sight {
                 known.push(person(traits, fastest(traits), model, setup.low)?);
             }
         }
-        for wall in world.walls.iter().flat_map(standing) {
+        let told = world.walls.len().saturating_sub(world.untold);
+        for wall in world.walls[..told].iter().flat_map(standing) {
             slots.push(Slot::Wall);
             known.push(wall);
         }
@@ -170,8 +175,10 @@ impl Sight {
             guests,
             range: robot.sensing_range,
             index,
+            // A robot as built has sensors, of which its measurement is one.
             blur: robot
                 .measurement
+                .filter(|_| robot.built.is_none())
                 .map(|measurement| Blur::new(measurement, world, index, slots.len())),
             slots,
             bodies: Vec::new(),

@@ -100,7 +100,8 @@ impl CrowdParts {
         self.groups.fill(&self.people);
         self.robots.clear();
         for index in 0..world.robots.len() {
-            let robot = CrowdRobot::new(world, &self.people, index, part);
+            let motors = self.record.is_some();
+            let robot = CrowdRobot::new(world, &self.people, index, (part, motors));
             let robot = robot.map_err(|error| error.within(&format!("robots[{index}]")))?;
             self.robots.push(robot);
         }
@@ -182,14 +183,19 @@ impl CrowdParts {
         self.replays || !finite
     }
 
-    /// Moves those who follow a recording, to a time in s.
-    fn replay(&mut self, time: f64) {
+    /// Moves those who follow a recording or pursue the first robot, by a motion step.
+    fn replay(&mut self, clock: &Clock, step: usize) {
         if !self.replays {
             return;
         }
         for (person, setup) in self.people.iter_mut().zip(&self.world.people) {
             if let Some(motion) = &setup.recorded {
-                person.replay(motion, time);
+                person.replay(motion, clock.time(step + 1));
+            } else if let Some((pursuer, robot)) = setup.pursuer.zip(self.robots.first()) {
+                let from = person.position;
+                person.velocity = pursuer.velocity(clock.time(step), from, &robot.state());
+                person.position += person.velocity * clock.step;
+                person.keep_off(&self.world.walls, from);
             }
         }
     }
@@ -241,7 +247,7 @@ impl Parts for CrowdParts {
 
     fn travel(&mut self, clock: &Clock, step: usize) {
         let doubtful = self.move_people(clock.step);
-        self.replay(clock.time(step + 1));
+        self.replay(clock, step);
         for robot in &mut self.robots {
             robot.advance();
         }
@@ -281,7 +287,7 @@ impl Parts for CrowdParts {
             }
         }
         for robot in &mut self.robots {
-            robot.watch(&self.people, &self.bodies, time);
+            robot.watch(&self.world, &self.people, &self.bodies, time);
         }
         self.over |= self.is_settled();
         if !self.over {

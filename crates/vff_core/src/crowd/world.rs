@@ -7,6 +7,8 @@ use crate::crowd::walls::Wall;
 use crate::error::{Failure, Given, Result, at_most, finite, finite_pair, not_negative, positive};
 use crate::lanes::Vector2;
 use crate::run::AnyLaw;
+use crate::run::as_built::AsBuilt;
+use crate::run::pursuit::Pursuer;
 use crate::sensing::measurement::Measurement;
 use crate::world::motion::Motion;
 use crate::world::scenario::Mover;
@@ -189,6 +191,8 @@ pub struct PersonSetup {
     pub enters: f64,
     /// The way of a person who follows a recording and reacts to nobody.
     pub recorded: Option<Motion>,
+    /// What a person does who sees the first robot and wants it to do wrong, and reacts to nobody else.
+    pub pursuer: Option<Pursuer>,
     /// Members of a group have its number.
     pub group: Option<u32>,
     /// The rest.
@@ -259,6 +263,8 @@ pub struct RobotSetup {
     pub sensing_range: f64,
     /// Errors of what it sees.
     pub measurement: Option<Measurement>,
+    /// Wheels and sensors, if it is not ideal; their step is that of the world.
+    pub built: Option<AsBuilt>,
     /// What drives it; commands from outside where `None`.
     pub law: Option<AnyLaw>,
 }
@@ -309,6 +315,15 @@ impl RobotSetup {
         Ok(())
     }
 
+    /// Its sensors at a step of the world in s, if it is not ideal.
+    pub(super) fn sensing(&self, step: f64) -> Option<AsBuilt> {
+        let built = self.built.as_ref()?;
+        Some(AsBuilt {
+            step,
+            ..built.clone()
+        })
+    }
+
     /// Steps of the world between two commands.
     pub(super) fn steps(&self, step: f64) -> Result<usize> {
         let whole = (self.control_period / step).round();
@@ -333,6 +348,8 @@ pub struct CrowdWorld {
     pub sources: Vec<SourceSetup>,
     /// What stands.
     pub walls: Vec<Wall>,
+    /// Number of the last walls that laws are not told of: who knows them has a map, or sees them.
+    pub untold: usize,
     /// Models of the people.
     pub models: Vec<Model>,
     /// Lengths in m after which the world repeats itself, 0 for none.

@@ -31,7 +31,7 @@ pub(super) struct WorldLanes {
 pub(super) fn model_of(world: &CrowdWorld) -> Option<&Model> {
     let number = world.people.first()?.traits.model;
     let alone = |person: &PersonSetup| {
-        person.recorded.is_none()
+        person.recorded.is_none() && person.pursuer.is_none()
             && person.group.is_none()
             && person.traits.model == number
             // Where a line is nearest changes with every motion.
@@ -162,6 +162,7 @@ mod tests {
             velocity: draw(0.5),
             enters: if number == 4 { 0.6 } else { 0.0 },
             recorded: None,
+            pursuer: None,
             group: None,
             traits: Traits {
                 radius: 0.25 + 0.05 * draw(1.0)[0],
@@ -193,6 +194,7 @@ mod tests {
             arrival_tolerance: 0.3,
             sensing_range: 10.0,
             measurement: None,
+            built: None,
             law: None,
         });
         CrowdWorld {
@@ -200,6 +202,7 @@ mod tests {
             robots: robots.collect(),
             sources: Vec::new(),
             walls: Vec::new(),
+            untold: 0,
             models: vec![model],
             period: Period::default(),
             step: 0.25,

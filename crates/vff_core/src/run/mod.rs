@@ -8,7 +8,7 @@ mod episode;
 pub mod follower;
 pub(crate) mod lanes;
 pub mod metrics;
-mod navigation;
+pub(crate) mod navigation;
 mod nominal;
 mod options;
 mod outcome;

@@ -40,7 +40,7 @@ pub enum Request {
 
 /// State of the robot as measured at the last sample.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Known {
+pub(crate) struct Known {
     pub robot: RobotState<f64>,
     /// The pose, `None` where it is known exactly.
     pub fix: Option<Fix>,

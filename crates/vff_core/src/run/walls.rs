@@ -12,7 +12,7 @@ const AHEAD: f64 = 1.0;
 /// Room for rounding where a distance bound spares work, in m.
 const ROUNDING: f64 = 1e-9;
 
-/// The maps of a run: of the scenario, of its law and of its sensors.
+/// The maps of a run: walls and map of the scenario, of its law and of its sensors.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Maps(Vec<StaticMap>);
 
@@ -20,6 +20,7 @@ impl Maps {
     /// Of a scenario and a law that knows a map.
     pub fn of_law(scenario: &Scenario, known: Option<&StaticMap>) -> Self {
         let mut maps = Self::default();
+        maps.add(scenario.walls.as_ref());
         maps.add(scenario.map.as_ref());
         maps.add(known);
         maps

@@ -114,6 +114,7 @@ fn person(start: Vector, goal: Vector) -> PersonSetup {
         velocity: [0.0; 2],
         enters: 0.0,
         recorded: None,
+        pursuer: None,
         group: None,
         traits: Traits {
             radius: 0.25,
@@ -132,6 +133,7 @@ fn world(model: Model, people: Vec<PersonSetup>) -> CrowdWorld {
         robots: Vec::new(),
         sources: Vec::new(),
         walls: Vec::new(),
+        untold: 0,
         models: vec![model],
         period: Period::default(),
         step: STEP,
@@ -165,6 +167,7 @@ fn robot(start: [f64; 2], goal: [f64; 2], law: Option<AnyLaw>) -> RobotSetup {
         arrival_tolerance: 0.3,
         sensing_range: 10.0,
         measurement: None,
+        built: None,
         law,
     }
 }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -12,11 +12,16 @@ import numpy as np
 from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, Parameters, count, instance, number, pair, points, sequence, vector, word
 from hrsafety._records import dataclass
-from hrsafety.errors import ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.crowd.pedestrians import CollisionFreeSpeed, Pedestrian
 from hrsafety.navigation.laws.python_law import AnyLaw, as_law
+from hrsafety.navigation.maps.static_map import StaticMap
+from hrsafety.navigation.obstacles.moving import Human, MovingDisc
+from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
+from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.sensing.measurement import Measurement
+from hrsafety.navigation.sensing.robot_sensor import RobotSensor
 
 __all__ = ["FASTEST_DRAWN", "AtEnd", "Person", "Robot", "Source", "Waypoint", "middle_of", "points_of"]
 
@@ -123,6 +128,8 @@ class Person(Parameters):
     recording : tuple of (times, positions) or None
         A way over time in s and m, which the person follows without reacting to anybody: present between
         the first and the last instant, straight between two.
+    mover : Human, MovingDisc or None
+        An obstacle whose way the person follows without reacting to anybody; see `moving`.
     group : int or None
         Number of the group, of which `Moussaid` keeps the members together.
 
@@ -151,6 +158,7 @@ class Person(Parameters):
     distracted_share: float = 0.0
     enters: float = 0.0
     recording: tuple[Sequence[float], Sequence[Pair]] | None = None
+    mover: Human | MovingDisc | None = None
     group: int | None = None
     _native: _hrsafety.CrowdPerson = field(init=False, repr=False, compare=False)
 
@@ -162,8 +170,44 @@ class Person(Parameters):
         group = None if self.group is None else count("group", self.group, least=0, most=_MOST_GROUPS)
         own = {"group": group, "enters": number("enters", self.enters), "recording": _recording(self.recording)}
         self._set(**traits, **places, **own)
-        native = _hrsafety.CrowdPerson(self.model._native, **_told(traits), **places, **own)
+        if self.mover is not None:
+            instance("mover", self.mover, Human, MovingDisc)
+            if self.recording is not None:
+                raise InvalidParameterError("recording", "be None for somebody who moves as an obstacle", Shown("both"))
+        told = {**own, "mover": None if self.mover is None else self.mover._native}
+        if self.mover is not None:
+            del told["recording"]
+        native = _hrsafety.CrowdPerson(self.model._native, **_told(traits), **places, **told)
         self._set(_native=native)
+
+    @property
+    def reacts(self) -> bool:
+        """Whether the person decides by a model, not by a recording or as an obstacle moves."""
+        return self.recording is None and self.mover is None
+
+    @classmethod
+    def moving(cls, obstacle: Human | MovingDisc) -> Person:
+        """Return a person who moves as an obstacle does and reacts to nobody.
+
+        Parameters
+        ----------
+        obstacle : Human or MovingDisc
+            The obstacle.
+
+        Returns
+        -------
+        Person
+            With its start and radius.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav
+        >>> nav.Person.moving(nav.Human(start=(1, 2), velocity=(0.5, 0.0))).reacts
+        False
+        """
+        instance("obstacle", obstacle, Human, MovingDisc)
+        start = obstacle.start if isinstance(obstacle, Human) else obstacle.center
+        return cls(start=start, radius=obstacle.radius, mover=obstacle)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -243,6 +287,12 @@ class Robot(Parameters):
         Distance up to which it sees people and other robots, in m.
     measurement : Measurement or None
         Errors and age of what it sees; ``None``: everything is known exactly.
+    sensors : sequence of RobotSensor
+        Sensors on the robot, such as `Lidar` or `Ultrasonic`, beside those of ``built``. A lidar without a map sees
+        the `StaticMap` that stands in its world.
+    built : AsBuilt or None
+        How it is built: wheels with controllers, cameras, how a two-wheel robot follows its law. Sensors look once
+        a step of the world; wheels move in steps of 0.01 s.
 
     Raises
     ------
@@ -274,9 +324,15 @@ class Robot(Parameters):
     heading: float = 0.0
     sensing_range: float = 10.0
     measurement: Measurement | None = None
+    sensors: Sequence[RobotSensor] = ()
+    built: AsBuilt | None = None
 
     def __post_init__(self) -> None:
         """Check the values."""
+        given = sequence("sensors", "be a sequence of sensors, such as Lidar", self.sensors)
+        self._set(sensors=tuple(instance(f"sensors[{i}]", one, RobotSensor) for i, one in enumerate(given)))
+        if self.built is not None:
+            instance("built", self.built, AsBuilt)
         if self.law is not None:
             self._set(law=as_law(self.law))
         instance("body", self.body, HolonomicRobot, DifferentialDriveRobot)
@@ -288,12 +344,36 @@ class Robot(Parameters):
         self._set(start=pair("start", self.start), goal=pair("goal", self.goal))
         self._at_step(1.0)
 
-    def _at_step(self, step: float) -> _hrsafety.CrowdRobot:
-        """Return the native robot for a world with a step in s."""
+    def as_built(self, walls: StaticMap | None = None) -> AsBuilt | None:
+        """Return how the robot is built with all its sensors; ``None`` for an ideal one.
+
+        Parameters
+        ----------
+        walls : StaticMap or None
+            What stands in its world, which lidars without a map see.
+
+        Returns
+        -------
+        AsBuilt or None
+            Wheels and sensors.
+        """
+        if self.built is None and not self.sensors:
+            return None
+        built = AsBuilt() if self.built is None else self.built
+        sensors = [
+            replace(one, map=walls) if isinstance(one, Lidar) and one.map is None else one
+            for one in (*built.sensors, *self.sensors)
+        ]
+        return replace(built, sensors=sensors)
+
+    def _at_step(self, step: float, walls: StaticMap | None = None) -> _hrsafety.CrowdRobot:
+        """Return the native robot for a world with a step in s and a map that stands in it."""
+        built = self.as_built(walls)
         return _hrsafety.CrowdRobot(
             self.body._native,
             None if self.law is None else self.law._native,  # type: ignore[union-attr]  # made a Law above
             None if self.measurement is None else self.measurement._native,
+            None if built is None else built._native,
             start=self.start,
             goal=self.goal,
             heading=self.heading,

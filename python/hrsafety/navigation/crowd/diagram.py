@@ -174,7 +174,7 @@ def _density(name: str, world: object, width: float) -> float:
 def _between_walls(world: World) -> float | None:
     """Return the distance of the walls along x on both sides of all people; ``None`` without them."""
     across = [person.start[1] for person in world.people]
-    walls = [np.asarray(wall)[:, 1] for wall in world.walls if not isinstance(wall, Disc | Rectangle)]
+    walls = [np.asarray(wall)[:, 1] for wall in world.wall_shapes if not isinstance(wall, Disc | Rectangle)]
     along = [float(wall[0]) for wall in walls if (wall == wall[0]).all()]
     below, above = [y for y in along if y <= min(across)], [y for y in along if y >= max(across)]
     return min(above) - max(below) if below and above else None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,13 +12,30 @@ import numpy as np
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair
 from hrsafety.navigation.crowd.agents import FASTEST_DRAWN, Person, Robot, Source, middle_of
+from hrsafety.navigation.knowledge import warnings_of
 from hrsafety.navigation.laws.shield import Shield
+from hrsafety.navigation.maps.static_map import StaticMap
+from hrsafety.navigation.obstacles.moving import MovingDisc
 from hrsafety.navigation.robots.bodies import NUMBERS
-from hrsafety.navigation.warnings.shields import SEES_LESS, Motion, Mover, of_order, of_surroundings, shield_of
+from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.sensing.lidar import Lidar
+from hrsafety.navigation.warnings.scenarios import own_speed
+from hrsafety.navigation.warnings.shields import (
+    SEES_LESS,
+    Motion,
+    Mover,
+    of_built,
+    of_order,
+    of_surroundings,
+    shield_of,
+)
+from hrsafety.navigation.warnings.walls import unknown_walls
 from hrsafety.plausibility import RANGES, ResultWarning, gathered, implausible
 
-__all__ = ["of_numbers", "of_people", "of_robots", "of_walls"]
+__all__ = ["of_numbers", "of_people", "of_robots", "of_sensors", "of_unknown_walls", "of_walls"]
 
+MOST_TIME = 1e7
+"""Longest time of a world, in s."""
 KEPT = 0.1
 """Share of the radius of a person that the center keeps off walls."""
 
@@ -122,7 +140,7 @@ def of_walls(
     tuple of ResultWarning
         With the codes ``"start_in_wall"``, ``"goal_in_wall"`` and ``"recording_in_wall"``.
     """
-    acting = [(f"people[{index}]", person) for index, person in enumerate(people) if person.recording is None]
+    acting = [(f"people[{index}]", person) for index, person in enumerate(people) if person.reacts]
     # A center keeps a tenth of its radius off walls; on a line nobody knows on which side it is.
     starts = [(owner, "start", person.start, KEPT * person.radius) for owner, person in acting]
     walking: list[tuple[str, Person | Source]] = [*acting]
@@ -151,6 +169,77 @@ def of_walls(
         if person.recording is not None
     ]
     return (*gathered(inside, "starts"), *gathered(behind, "goals"), *gathered(through, "recordings"))
+
+
+def of_sensors(
+    people: Sequence[Person], robots: Sequence[Robot], step: float, walls: StaticMap | None
+) -> tuple[ResultWarning, ...]:
+    """Return the warnings of sensors that see less of a world than they must, the first of each kind.
+
+    Parameters
+    ----------
+    people, robots : sequence of Person, Robot
+        Who is in the world.
+    step : float
+        Its step in s, the control period of robots without one.
+    walls : StaticMap or None
+        What stands.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        Those of `nav.simulate` for a scenario with the same robot and people who move at their largest speeds.
+    """
+    found = []
+    for index, robot in enumerate(robots):
+        built = robot.as_built(walls)
+        if built is None or math.dist(robot.start, robot.goal) <= robot.arrival_tolerance:
+            continue
+        there = [person for person in people if person.enters <= 0.0]
+        scene = Scenario(
+            robot=robot.body,
+            start=robot.start,
+            goal=robot.goal,
+            obstacles=tuple(map(_mover_of, there)),
+            control_period=step if robot.control_period is None else robot.control_period,
+            arrival_tolerance=robot.arrival_tolerance,
+            measurement=robot.measurement,
+        )
+        told = warnings_of(scene, built)
+        found.append(
+            (f"robots[{index}]", tuple(replace(each, subject=f"robots[{index}].{each.subject}") for each in told))
+        )
+    return gathered(found, "robots")
+
+
+def _mover_of(person: Person) -> MovingDisc:
+    """Return a person as a disc that moves at the largest speed of the person."""
+    recorded = _recorded_speed(person)
+    speed = _largest_speed(person) if recorded is None else recorded
+    return MovingDisc(center=person.start, velocity=(min(speed, 1e3), 0.0), radius=person.radius)
+
+
+def of_unknown_walls(walls: StaticMap, robots: Sequence[Robot]) -> tuple[ResultWarning, ...]:
+    """Return a warning about laws that do not know the walls of their world, the first with how many follow.
+
+    Parameters
+    ----------
+    walls : StaticMap
+        What stands.
+    robots : sequence of Robot
+        The robots.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        With the code ``"unknown_wall"``.
+    """
+    found = []
+    for index, robot in enumerate(robots):
+        built = robot.as_built(walls)
+        own = () if built is None else tuple(each.map for each in built.sensors if isinstance(each, Lidar))
+        found.append((f"robots[{index}]", tuple(unknown_walls(walls, robot.law, own))))
+    return gathered(found, "robots")
 
 
 def _through_walls(
@@ -238,7 +327,11 @@ def of_robots(
         found += of_order(robot.law, f"robots[{index}].law")
         others = [each for each in _speeds(people, sources, robots) if each[0] != f"robots[{index}]"]
         fastest = max(others, key=lambda each: each[1], default=None)
-        motion = Motion(robot.body, step if robot.control_period is None else robot.control_period, step)
+        built = robot.as_built()
+        # Wheels of a robot as built move in steps of 0.01 s at most.
+        steps = step if built is None else min(step, 0.01)
+        motion = Motion(robot.body, step if robot.control_period is None else robot.control_period, steps)
+        found += [] if built is None else of_built(shield, built)
         found += of_surroundings(
             shield,
             # Everybody decides anew at each step, for any velocity up to the largest speed.
@@ -298,7 +391,9 @@ def _largest_speed(owner: Person | Source) -> float:
 
 
 def _recorded_speed(person: Person) -> float | None:
-    """Return the largest speed of a person who follows a recording, else ``None``."""
+    """Return the largest speed of a person who follows a recording or moves as an obstacle, else ``None``."""
+    if person.mover is not None:
+        return own_speed(person.mover, MOST_TIME)
     if person.recording is None:
         return None
     time, places = np.array(person.recording[0]), np.array(person.recording[1])

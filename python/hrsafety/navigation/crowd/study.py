@@ -15,6 +15,7 @@ from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.crowd.contacts import Contacts, contacts_of
 from hrsafety.navigation.crowd.episodes import outcome_of
+from hrsafety.navigation.crowd.performance import alone, scores
 from hrsafety.navigation.crowd.scores import episodes_of, world_metrics
 from hrsafety.navigation.crowd.simulation import driven, simulated
 from hrsafety.navigation.crowd.world import World
@@ -25,6 +26,7 @@ from hrsafety.navigation.metrics.declared import METRICS, WORLD_METRICS
 from hrsafety.navigation.metrics.scores import MetricTable, table_of
 from hrsafety.navigation.run_arguments import Progress
 from hrsafety.navigation.tables.runs import RunTable
+from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plausibility import ResultWarning, gathered
 
 __all__ = ["WorldStudy"]
@@ -58,6 +60,8 @@ class WorldStudy:
         Seeds of every world; its own when ``None``.
     people_alone : bool
         Whether the people are simulated without the robots, too.
+    weights : tuple of float or None
+        Weights of H, which is computed if they are given: every robot is run alone, too.
     """
 
     worlds: Mapping[str, World]
@@ -65,6 +69,8 @@ class WorldStudy:
     sets: Sequence[Array]
     seeds: list[int] | None
     people_alone: bool
+    weights: tuple[float, float, float] | None = None
+    _nominal: dict[tuple[int, int, int, int], Trajectory] = field(init=False, default_factory=dict)
     _places: tuple[World, ...] = field(init=False)
     _drivers: tuple[Law, ...] = field(init=False)
     _names: tuple[str, ...] = field(init=False)
@@ -144,7 +150,22 @@ class WorldStudy:
         except InvalidParameterError as error:
             raise self._renamed(error, part) from None
         without = dict(zip(alone, runs[len(part) :], strict=True))
-        return _Rows.of(part, runs[: len(part)], without, threads)
+        rows = _Rows.of(part, runs[: len(part)], without, threads)
+        if self.weights is not None:
+            own = [
+                scores(each, self._alone(job, index, run.scenario), self.weights)
+                for job, run in zip(part, runs, strict=False)
+                for index, each in enumerate(run.robots)
+            ]
+            rows.values.update({f"performance_{name}": np.array([each[name] for each in own]) for name in own[0]})
+        return rows
+
+    def _alone(self, job: Job, robot: int, world: World) -> Trajectory:
+        """Return the run of a robot of a world alone, under a law with a gain set; noise does not matter."""
+        key = job.scenario, robot, job.law, job.gains
+        if key not in self._nominal:
+            self._nominal[key] = alone(world, robot)
+        return self._nominal[key]
 
     def _world(self, job: Job) -> World:
         """Return the world of a job with its seed, its robots under the law with its gains."""
@@ -182,9 +203,7 @@ class WorldStudy:
         jobs = np.concatenate([part.jobs for part in parts])
         order = np.lexsort((jobs[:, 4], jobs[:, 3], jobs[:, 1], jobs[:, 0], jobs[:, 2]))
         scenario, seed, law, gain, robot = jobs[order].T
-        values = {
-            name: np.concatenate([part.values[name] for part in parts])[order] for name in (*METRICS, *WORLD_METRICS)
-        }
+        values = {name: np.concatenate([part.values[name] for part in parts])[order] for name in parts[0].values}
         contacts = np.concatenate([part.contacts for part in parts])[order]
         names = list(dict.fromkeys(name for each in self._drivers for name in each.GAIN_NAMES))
         gains = np.full((len(order), len(names)), np.nan)
@@ -220,6 +239,8 @@ class WorldStudy:
             path_length=values["path_length"],
             min_clearance=values["min_clearance"],
             wall_contacts=values["wall_contacts"],
+            energy=values.pop("energy"),
+            **{name: values.pop(name) for name in [each for each in values if each.startswith("performance_")]},  # type: ignore[arg-type]  # by name
             values=values,
             doubts=(*self._warnings(), *self._between(parts), *_of_robots(values["robot_contacts"][robot == 0])),
         )
@@ -257,7 +278,7 @@ class _Rows:
     outcome: np.ndarray[Any, np.dtype[np.str_]]
     end_time: Array
     contacts: np.ndarray[Any, np.dtype[np.int64]]
-    values: Mapping[str, np.ndarray[Any, np.dtype[Any]]]
+    values: dict[str, np.ndarray[Any, np.dtype[Any]]]
     doubts: Sequence[tuple[ResultWarning, ...]]
 
     @classmethod
@@ -283,6 +304,7 @@ class _Rows:
         worlds = [world_metrics(run).to_dict() for run in runs]
         values: dict[str, np.ndarray[Any, np.dtype[Any]]] = {name: getattr(table, name) for name in METRICS}
         values |= {name: np.array([each[name] for each in worlds])[owner] for name in WORLD_METRICS}
+        values["energy"] = np.array([runs[index].robot_energy[robot] for index, robot in robots])
         return cls(
             jobs=np.array([(*part[index], robot) for index, robot in robots], dtype=np.int64),
             outcome=np.array(

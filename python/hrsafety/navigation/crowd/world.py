@@ -12,7 +12,11 @@ from hrsafety._doubts import checked_doubts
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.crowd.agents import Person, Robot, Source
-from hrsafety.navigation.crowd.doubts import of_numbers, of_robots, of_walls
+from hrsafety.navigation.crowd.doubts import of_numbers, of_robots, of_sensors, of_unknown_walls, of_walls
+from hrsafety.navigation.maps.outlines import outlines
+from hrsafety.navigation.maps.static_map import StaticMap
+from hrsafety.navigation.obstacles.base import Obstacle
+from hrsafety.navigation.obstacles.moving import Human, MovingDisc
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.plausibility import ResultWarning
 
@@ -52,9 +56,23 @@ def _all(name: str, kind: type, given: Iterable[object]) -> tuple[Any, ...]:
     return tuple(instance(f"{name}[{index}]", member, kind) for index, member in enumerate(members))
 
 
+def _movers(obstacles: object) -> tuple[list[Person], list[Disc | Rectangle]]:
+    """Return the obstacles that move as people who react to nobody, and those that stand."""
+    movers: list[Person] = []
+    standing: list[Disc | Rectangle] = []
+    kinds = Human, MovingDisc, Disc, Rectangle
+    for index, each in enumerate(sequence("obstacles", "be a sequence of obstacles", obstacles)):
+        given: Any = instance(f"obstacles[{index}]", each, *kinds)
+        if isinstance(given, Disc | Rectangle):
+            standing.append(given)
+        else:
+            movers.append(Person.moving(given))
+    return movers, standing
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class World(Parameters):
-    """People and robots that react to each other.
+    """People and robots that react to each other, and whatever else moves or stands.
 
     At every instant sources add people, everybody decides from the same snapshot, and all move by a step.
     Models whose largest step is smaller split it into equal parts, in each of which people decide anew.
@@ -65,8 +83,13 @@ class World(Parameters):
         Who is there at the start; people may overlap.
     robots : sequence of Robot
         The robots. None may start in contact.
-    walls : sequence of Disc, Rectangle or sequence of points
-        What stands. Points are joined by segments. Every wall acts once, through its nearest point.
+    walls : StaticMap, or sequence of Disc, Rectangle or sequence of points
+        What stands. Points are joined by segments. Every wall acts once, through its nearest point. Laws are told of
+        the members of a sequence as obstacles that stand; of a map they know what they have a map of, or what their
+        sensors see, and results carry the warning ``"unknown_wall"`` where that is less.
+    obstacles : sequence of Obstacle
+        What moves as it is told and reacts to nobody, `Human` and `MovingDisc`, and what stands, `Disc` and
+        `Rectangle`, which are walls. They are kept among people and walls, and no more here.
     sources : sequence of Source
         Where more people come from.
     period : tuple of float
@@ -106,25 +129,36 @@ class World(Parameters):
 
     people: tuple[Person, ...] | Sequence[Person] = ()
     robots: tuple[Robot, ...] | Sequence[Robot] = ()
-    walls: tuple[WallShape, ...] | Sequence[WallShape | Sequence[Pair]] = ()
+    walls: StaticMap | tuple[WallShape, ...] | Sequence[WallShape | Sequence[Pair]] = ()
     sources: tuple[Source, ...] | Sequence[Source] = ()
     period: Pair = (0.0, 0.0)
     step: float = 0.05
     time_limit: float = 60.0
     seed: int = 0
     doubts: Sequence[ResultWarning] = field(default=(), repr=False, compare=False)
+    obstacles: Sequence[Obstacle] = ()
+    _shapes: tuple[WallShape, ...] = field(init=False, repr=False, compare=False)
     _native: _hrsafety.CrowdWorld = field(init=False, repr=False, compare=False)
     _warnings: tuple[ResultWarning, ...] | None = field(init=False, repr=False, compare=False, default=None)
 
     def __post_init__(self) -> None:
         """Check the values."""
         self._as_numbers("step", "time_limit")
-        given = sequence("walls", "be a sequence of walls", self.walls)
+        known = self.walls if isinstance(self.walls, StaticMap) else None
+        walls = [] if known is not None else sequence("walls", "be a StaticMap or a sequence of walls", self.walls)
+        told = [_wall(f"walls[{index}]", wall) for index, wall in enumerate(walls)]
+        movers, standing = _movers(self.obstacles)
+        if known is not None and standing:
+            known, standing = known + StaticMap.from_obstacles(standing), []
+        told += standing
+        shapes = tuple(told) if known is None else outlines(known)
         self._set(
-            people=_all("people", Person, self.people),
+            people=(*_all("people", Person, self.people), *movers),
             robots=_all("robots", Robot, self.robots),
             sources=_all("sources", Source, self.sources),
-            walls=tuple(_wall(f"walls[{index}]", wall) for index, wall in enumerate(given)),
+            walls=tuple(told) if known is None else known,
+            _shapes=shapes,
+            obstacles=(),
             period=pair("period", self.period),
             seed=checked_seed("seed", self.seed),
             doubts=checked_doubts("doubts", self.doubts),
@@ -133,15 +167,32 @@ class World(Parameters):
         step = self.step if 0.0 < self.step < float("inf") else 1.0
         native = _hrsafety.CrowdWorld(
             [person._native for person in self.people],
-            [robot._at_step(step) for robot in self.robots],
+            [robot._at_step(step, known) for robot in self.robots],
             [source._native for source in self.sources],
-            native_walls(self.walls),
+            native_walls(shapes),
+            untold=0 if known is None else len(shapes),
             period=self.period,
             step=self.step,
             time_limit=self.time_limit,
             seed=self.seed,
         )
         self._set(_native=native)
+        if known is not None:
+            self._check_starts(known)
+
+    def _check_starts(self, known: StaticMap) -> None:
+        """Refuse robots that start within what is filled."""
+        for index, robot in enumerate(self.robots):
+            gap = float(known.clearance(robot.start)) - robot.body.radius
+            if gap < 0.0:
+                rule = "not be in contact with the walls"
+                remedy = f"the bodies overlap by {-gap:.4f} m"
+                raise InvalidParameterError(f"robots[{index}].start", rule, robot.start, remedy)
+
+    @property
+    def wall_shapes(self) -> tuple[WallShape, ...]:
+        """The walls, or the outlines of the map that they are, as discs, rectangles and polylines."""
+        return self._shapes
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
@@ -149,9 +200,14 @@ class World(Parameters):
         found = self._warnings
         if found is None:
             own = tuple(self.people), tuple(self.sources), tuple(self.robots)
-            of_shields = of_robots(*own, self.step, walls=len(self.walls) > 0)
-            in_walls = of_walls(*own, self._native, self.walls) if self.walls else ()
-            found = (*self.doubts, *of_numbers(*own, self.time_limit), *in_walls, *of_shields)
+            shapes = self.wall_shapes
+            of_shields = of_robots(*own, self.step, walls=len(shapes) > 0)
+            in_walls = of_walls(*own, self._native, shapes) if shapes else ()
+            known = self.walls if isinstance(self.walls, StaticMap) else None
+            seen = of_sensors(own[0], own[2], self.step, known)
+            found = (*self.doubts, *of_numbers(*own, self.time_limit), *in_walls, *seen, *of_shields)
+            if isinstance(self.walls, StaticMap):
+                found = (*found, *self.walls.warnings, *of_unknown_walls(self.walls, own[2]))
             self._set(_warnings=found)
         return found
 

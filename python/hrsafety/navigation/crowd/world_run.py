@@ -22,7 +22,7 @@ from hrsafety.tables import Columns, plane
 __all__ = ["WorldRun"]
 
 _OF_ONE_ROBOT = (
-    *("law", "position", "velocity", "heading", "arrival_time"),
+    *("law", "position", "velocity", "heading", "arrival_time", "energy"),
     *("outcome", "distance", "min_distance", "min_clearance", "path_length"),
     *("contact_time", "contact_speed", "contact_toward", "contact_at_fault", "contact_apart"),
     *("map_contact_time", "map_contact_speed", "map_clearance"),
@@ -47,18 +47,21 @@ class WorldRun(Trajectory):
     def __init__(self, scenario: World, recorded: dict[str, Any], robot: int | None = None) -> None:
         if robot is None and len(scenario.robots) == 1:
             robot = 0
+        assign(self, "_recorded", recorded)
+        assign(self, "scenario", scenario)
         diverged = recorded["diverged"]
         values = {each.name: None if each.default is MISSING else each.default for each in fields(Trajectory)}
         values |= {name: value for name, value in recorded.items() if name in values}
         values |= {"scenario": scenario, "motion_step": scenario.step}
         values |= {"diverged": None if diverged is None else Divergence(*diverged)}
-        values |= {"_recorded": recorded, "_robot": robot}
+        values["_robot"] = robot
         for name in _OF_ONE_ROBOT:
             del values[name]  # their slots are filled when they are asked for, see `__getattr__`
         if robot is not None:
             values["law"] = scenario.robots[robot].law
             values |= {name: recorded[f"robot_{name}"][:, robot] for name in ("position", "velocity", "heading")}
             values["arrival_time"] = float(recorded["robot_arrival_time"][robot])
+            values["energy"] = float(self.robot_energy[robot])
         for name, value in values.items():
             assign(self, name, value)
 
@@ -99,6 +102,7 @@ class WorldRun(Trajectory):
     robot_position = property(lambda self: self._recorded["robot_position"])
     robot_velocity = property(lambda self: self._recorded["robot_velocity"])
     robot_heading = property(lambda self: self._recorded["robot_heading"])
+    robot_energy = property(lambda self: self._recorded.get("robot_energy", np.full(len(self.scenario.robots), np.nan)))
     robot_arrival_time = property(lambda self: self._recorded["robot_arrival_time"])
 
     def _met(self, robot: int) -> dict[str, Any]:

@@ -11,10 +11,15 @@ import numpy.typing as npt
 from hrsafety._arguments import Array, vector
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.navigation.batch import check_scenarios, simulate_batch
+from hrsafety.navigation.batch import simulate_batch
+from hrsafety.navigation.crowd.world import World
+from hrsafety.navigation.gains.settings import checked_places
+from hrsafety.navigation.gains.worlds import doubts_of, runs_of_sets
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
 from hrsafety.navigation.laws.python_law import law_with_gains
+from hrsafety.navigation.performance import check_weights
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.simulation import refuse_in_worlds
 from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.navigation.trajectory import Integrator
 from hrsafety.navigation.warnings import runs as run_warnings
@@ -87,6 +92,8 @@ class GainSensitivity(Table):
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why the numbers may not mean what they seem to: the first warning of each kind, and how many follow."""
+        if isinstance(self.scenarios[0], World):
+            return doubts_of(self.scenarios, self.law)
         return run_warnings.of_scenes(self.scenarios, [self.law])
 
     def largest_sensitivity(self) -> Array:
@@ -135,7 +142,7 @@ class GainSensitivity(Table):
         for index, scenario in enumerate(self.scenarios):
             for name in ("outcome", "arrival_time", "energy", "min_clearance", "performance"):
                 table[f"{name}_{index}"] = getattr(self, name)[:, :, index].ravel()
-            for obstacle in range(len(scenario.obstacles)):
+            for obstacle in range(0 if isinstance(scenario, World) else len(scenario.obstacles)):
                 table[f"min_distance_{index}_{obstacle}"] = self.min_distance[:, :, index, obstacle].ravel()
         table["mean_performance"] = self.mean_performance.ravel()
         table["relative_sensitivity"] = self.relative_sensitivity.ravel()
@@ -149,7 +156,7 @@ def _over_changes(statistic: Callable[[Array], np.floating], sensitivity: Array)
 
 @telling(of_scenarios)
 def gain_sensitivity(
-    scenarios: Sequence[Scenario],
+    scenarios: Sequence[Scenario] | Sequence[World],
     law: Law | None = None,
     changes: npt.ArrayLike = CHANGES_PERCENT,
     *,
@@ -164,8 +171,8 @@ def gain_sensitivity(
 
     Parameters
     ----------
-    scenarios : sequence of Scenario
-        Where.
+    scenarios : sequence of Scenario or of World
+        Where; worlds of one robot, which take no ``integrator``, ``step`` and ``hold``.
     law : Law or None
         The law and the gains that are changed; ``None``: the default law.
     changes : array_like, shape (c,)
@@ -207,7 +214,7 @@ def gain_sensitivity(
     >>> table.performance.shape, round(float(table.reference_performance.mean()), 4)
     ((4, 12, 3), 0.6641)
     """
-    scenes = check_scenarios(scenarios)
+    scenes = checked_places(scenarios)
     law = VirtualForceField() if law is None else law
     law = law_with_gains(law)
     percent = _changes(changes)
@@ -215,10 +222,15 @@ def gain_sensitivity(
     gains = np.tile(reference, (len(reference), len(percent), 1))
     for index in range(len(reference)):
         gains[index, :, index] *= 1.0 + percent / 100.0
+    sets = np.vstack([reference, gains.reshape(-1, len(reference))])
+    if isinstance(scenes[0], World):
+        refuse_in_worlds({"integrator": integrator, "step": step, "hold": hold})
+        table = runs_of_sets(scenes, law, sets, check_weights(weights), threads=threads, progress=progress)
+        return _collect(scenes, law, weights, percent, gains, table)
     table = simulate_batch(
         scenes,
         law,
-        np.vstack([reference, gains.reshape(-1, len(reference))]),
+        sets,
         weights=weights,
         integrator=integrator,
         step=step,
@@ -249,6 +261,9 @@ def _collect(
 ) -> GainSensitivity:
     """Return the rows of a batch, of which the first gain set is that of the law, by gain and change."""
     own, shape = len(scenes), (*gains.shape[:2], len(scenes))
+    if len(table) != own * (1 + int(np.prod(gains.shape[:2]))):
+        raise InvalidParameterError("scenarios", "have one robot each", Shown("a world of several robots"))
+    least = np.empty((len(table), 0)) if table.min_distance is None else table.min_distance
     performance = table.performance_total[own:].reshape(shape)
     outcome = table.outcome[own:].reshape(shape)
     reference = table.performance_total[:own]
@@ -264,7 +279,7 @@ def _collect(
         outcome=outcome,
         arrival_time=table.arrival_time[own:].reshape(shape),
         energy=table.energy[own:].reshape(shape),
-        min_distance=table.min_distance[own:].reshape(*shape, -1),
+        min_distance=least[own:].reshape(*shape, least.shape[1]),
         min_clearance=table.min_clearance[own:].reshape(shape),
         performance=performance,
         mean_performance=mean,

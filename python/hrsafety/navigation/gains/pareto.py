@@ -5,9 +5,11 @@ from __future__ import annotations
 from hrsafety._arguments import Array, count
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.gains.metrics import METRIC_UNITS
 from hrsafety.navigation.gains.problem import with_gains
 from hrsafety.navigation.gains.settings import SearchSettings
+from hrsafety.navigation.gains.worlds import doubts_of
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.plausibility import ResultWarning
@@ -63,6 +65,8 @@ class ParetoFront(Table):
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why the numbers may not mean what they seem to: the first warning of each kind, and how many follow."""
+        if isinstance(self.settings.scenarios[0], World):
+            return doubts_of(self.settings.scenarios, self.settings.law)
         return run_warnings.of_scenes(self.settings.scenarios, [self.settings.law], self.settings.step)
 
     def __len__(self) -> int:

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, numbers
-from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety._arguments import Array
+from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.gains.confidence import student_quantile
+from hrsafety.navigation.gains.scoring import judged, over_seeds
 from hrsafety.navigation.gains.settings import GainConstraint, Judge, SearchSettings
+from hrsafety.navigation.gains.worlds import WorldScorer
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.scenario import Scenario
-from hrsafety.navigation.tables.runs import RunTable, table_of_batch
+from hrsafety.navigation.tables.runs import table_of_batch
 
 __all__ = ["Scorer", "gain_problem", "lower_bound_factor", "noise_seeds", "with_gains"]
 
@@ -84,29 +85,10 @@ class Scorer:
         rows = int(batches[0].gain_index[-1]) + 1
         values, margins = np.empty((rows, len(self.objectives))), np.empty((rows, len(self.constraints)))
         for index, (name, objective) in enumerate(self.objectives.items()):
-            values[:, index] = self._over_seeds(judged(name, objective, batches, rows))
+            values[:, index] = over_seeds(judged(name, objective, batches, rows), self.factor)
         for index, (name, constraint) in enumerate(self.constraints.items()):
             margins[:, index] = judged(name, constraint, batches, rows).min(axis=0)
         return values, margins
-
-    def _over_seeds(self, values: Array) -> Array:
-        """Return the mean over the seeds, or its lower bound; worst of all where there is none."""
-        with np.errstate(invalid="ignore"):
-            mean = values.mean(axis=0)
-            if self.factor is not None:
-                mean = mean - self.factor * values.std(axis=0, ddof=1) / math.sqrt(len(values))
-        return np.where(np.isnan(mean), -np.inf, mean)
-
-
-def judged(name: str, judge: Judge, batches: Sequence[RunTable], rows: int) -> Array:
-    """Return what a callable says of the batch of each seed, (seeds, n)."""
-    found = []
-    for batch in batches:
-        values = numbers(name, judge(batch), "return numbers, one for each gain set")
-        if values.shape != (rows,):
-            raise InvalidParameterError(name, f"return an array of shape ({rows},)", Shown(f"shape {values.shape}"))
-        found.append(values)
-    return np.stack(found)
 
 
 def gain_problem(
@@ -126,6 +108,8 @@ def gain_problem(
     factor = lower_bound_factor(settings) if seeds is None else None
     if seeds is None:
         seeds = noise_seeds(settings, settings.seeds) if settings.seeds else []
+    if isinstance(settings.scenarios[0], World):
+        return _of_worlds(settings, WorldScorer(settings, seeds, factor))
     metrics = [entry if isinstance(entry, str) else None for entry in settings.objectives]
     objectives = {
         f"objectives[{index}]": entry for index, entry in enumerate(settings.objectives) if not isinstance(entry, str)
@@ -154,7 +138,30 @@ def gain_problem(
         cap_ratios=settings.cap_ratios,
         scorer=called if objectives or constraints else None,
         scorer_constraints=len(constraints),
+        whole=False,
         lanes=lanes,
+    )
+
+
+def _of_worlds(settings: SearchSettings, scorer: WorldScorer) -> _hrsafety.GainProblem:
+    """Return the native problem of settings whose runs are made and scored by a function."""
+    return _hrsafety.GainProblem(
+        scenarios=[],
+        law=settings.law._native,
+        weights=settings.weights,
+        integrator=settings.integrator,
+        step=settings.step,
+        hold=settings.hold,
+        seeds=[],
+        lower_bound_factor=None,
+        objectives=[None] * len(settings.objectives),
+        constraints=[],
+        require_arrival=False,
+        cap_ratios=settings.cap_ratios,
+        scorer=scorer,
+        scorer_constraints=scorer.constraints,
+        whole=True,
+        lanes=None,
     )
 
 

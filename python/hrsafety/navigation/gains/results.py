@@ -14,10 +14,12 @@ from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import InfeasibleError
 from hrsafety.navigation.batch import check_threads
+from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.gains.confidence import Confidence
 from hrsafety.navigation.gains.pareto import gain_columns
 from hrsafety.navigation.gains.problem import gain_problem
 from hrsafety.navigation.gains.settings import SearchSettings
+from hrsafety.navigation.gains.worlds import doubts_of
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.plausibility import ResultWarning
@@ -209,6 +211,8 @@ class GainSearch(Table):
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why the numbers may not mean what they seem to: the first warning of each kind, and how many follow."""
+        if isinstance(self.settings.scenarios[0], World):
+            return doubts_of(self.settings.scenarios, self.settings.law)
         return run_warnings.of_scenes(self.settings.scenarios, [self.settings.law], self.settings.step)
 
     @property

@@ -15,6 +15,7 @@ from hrsafety._arguments import Array, callback, count, word
 from hrsafety._bounds import MOST_EVALUATIONS
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.batch import check_threads, simulate_batch
+from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.gains.checkpoint import Checkpoint
 from hrsafety.navigation.gains.confidence import Confidence, confidence_of
 from hrsafety.navigation.gains.problem import gain_problem, noise_seeds, with_gains
@@ -29,6 +30,7 @@ from hrsafety.navigation.gains.settings import (
     SearchSettings,
     search_settings,
 )
+from hrsafety.navigation.gains.worlds import WorldScorer
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import Integrator
@@ -52,7 +54,7 @@ Progress = Callable[[str, int, int, float], object]
 
 @telling(of_scenarios)
 def optimize_gains(
-    scenarios: Sequence[Scenario],
+    scenarios: Sequence[Scenario] | Sequence[World],
     law: Law | None = None,
     *,
     bounds: Bounds | None = None,
@@ -87,8 +89,9 @@ def optimize_gains(
 
     Parameters
     ----------
-    scenarios : sequence of Scenario
-        Where; the objective is the mean over them.
+    scenarios : sequence of Scenario or of World
+        Where; the objective is the mean over them. In worlds the law drives every robot; they have a step of their own,
+        and take no ``integrator``, ``step`` and ``hold``.
     law : Law or None
         Mode of the stabilizing force and side rules; its gains are not used. ``None``: without
         stabilizing force, as the published tables were made.
@@ -337,6 +340,13 @@ def _convergence(found: dict[str, Any], rounds: Sequence[SearchRound], local: Se
 def _performance(settings: SearchSettings, law: Law, threads: int | None) -> Array:
     """Return H in each scenario, the mean over the seeds of the search."""
     seeds = noise_seeds(settings, settings.seeds) if settings.seeds else [None]
+    if isinstance(settings.scenarios[0], World):
+        own = np.array(law.gains)[None, :]
+        scorer = WorldScorer(settings, [], None)
+        runs = [scorer.table(own, each) for each in seeds]
+        scores = np.stack([each.performance_total for each in runs]).mean(axis=0)
+        where = runs[0].scenario_index
+        return np.array([scores[where == index].mean() for index in range(len(settings.scenarios))])
     scenes = [scene if seed is None else replace(scene, seed=seed) for seed in seeds for scene in settings.scenarios]
     table = simulate_batch(
         scenes,

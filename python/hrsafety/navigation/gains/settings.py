@@ -15,6 +15,7 @@ from hrsafety._arguments import (
     checked_seed,
     count,
     flag,
+    instance,
     numbers,
     positive,
     sequence,
@@ -23,8 +24,9 @@ from hrsafety._arguments import (
 from hrsafety._bounds import MOST_LOCAL_STARTS, MOST_POINTS, MOST_REFINEMENTS, MOST_SEEDS
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.batch import check_scenarios
+from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.gains.metrics import METRICS, check_metric
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
 from hrsafety.navigation.laws.planners import RapidlyExploringRandomTree
@@ -171,15 +173,37 @@ def check_law(law: Law | None) -> Law:
     return law_with_gains(law)
 
 
-def limited_scenarios(scenarios: Sequence[Scenario], time_limit: float | None) -> tuple[Scenario, ...]:
+def limited_scenarios(scenarios: Sequence[Any], time_limit: float | None) -> tuple[Scenario, ...]:
     """Return the scenarios with time limits that are no longer than the given one."""
     from dataclasses import replace
 
-    scenes = check_scenarios(scenarios)
+    scenes = checked_places(scenarios)
     if time_limit is None:
         return tuple(scenes)
     limit = positive("time_limit", time_limit)
     return tuple(scene if scene.time_limit <= limit else replace(scene, time_limit=limit) for scene in scenes)
+
+
+def checked_places(places: Sequence[Any]) -> Sequence[Any]:
+    """Return scenarios of point masses, or worlds, each with a robot.
+
+    Parameters
+    ----------
+    places : sequence of Scenario or of World
+        As given.
+
+    Returns
+    -------
+    sequence
+        At least one, all of one kind.
+    """
+    if not isinstance(places, Sequence) or not places or not isinstance(places[0], World):
+        return check_scenarios(places)
+    for index, world in enumerate(places):
+        if not instance(f"scenarios[{index}]", world, World).robots:
+            rule = "hold a robot for the law to drive"
+            raise InvalidParameterError(f"scenarios[{index}].robots", rule, Shown("none"))
+    return places
 
 
 def check_bounds(bounds: Bounds | None, law: Law) -> Array:
@@ -266,7 +290,7 @@ def check_clearance(
     objectives: Mapping[str, Objective], constraints: Sequence[Constraint], scenarios: Sequence[Scenario]
 ) -> None:
     """Refuse a clearance where there is nothing to be clear of."""
-    free = [index for index, scene in enumerate(scenarios) if not scene.obstacles]
+    free = [index for index, scene in enumerate(scenarios) if isinstance(scene, Scenario) and not scene.obstacles]
     rule = "not be a clearance in a scenario without obstacles"
     for name, objective in objectives.items():
         if objective == "min_clearance" and free:
@@ -287,13 +311,14 @@ def check_seeds(seeds: int | None, robustness: str, scenarios: Sequence[Scenario
         return 0
     # A lower bound needs a spread.
     number = count("seeds", seeds, least=2 if robustness == "lower_bound" else 1, most=MOST_SEEDS)
-    if all(scene.measurement is None for scene in scenarios) and not isinstance(law, RapidlyExploringRandomTree):
+    drawn = any(isinstance(scene, World) or scene.measurement is not None for scene in scenarios)
+    if not drawn and not isinstance(law, RapidlyExploringRandomTree):
         raise InvalidParameterError("seeds", "be None where nothing is measured and the law draws nothing", seeds)
     return number
 
 
 def search_settings(
-    scenarios: Sequence[Scenario],
+    scenarios: Sequence[Any],
     law: Law | None,
     *,
     bounds: Bounds | None,

@@ -189,8 +189,10 @@ def first_wall_contact(episode: Episode, arrival_time: float) -> tuple[float, fl
     return row * episode.step, speed
 
 
-def _map_of(walls: Sequence[Wall]) -> StaticMap:
+def _map_of(walls: Sequence[Wall] | StaticMap) -> StaticMap:
     """Return walls as a map, which knows distances of segments; a line without length is a disc of a nanometer."""
+    if isinstance(walls, StaticMap):
+        return walls
     solid = [wall for wall in walls if isinstance(wall, Disc | Rectangle)]
     lines = [np.asarray(wall, dtype=np.float64) for wall in walls if not isinstance(wall, Disc | Rectangle)]
     dots = [(*line[0], 1e-9) for line in lines if not np.ptp(line, axis=0).any()]

@@ -28,6 +28,8 @@ from hrsafety._doubts import checked_doubts
 from hrsafety._records import dataclass
 from hrsafety._tracks import WINDOW, Ways, smoothed_ways
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
+from hrsafety.navigation.maps.outlines import outlines
+from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.metrics.sights import unseen_instants
 from hrsafety.navigation.metrics.sources import at_instants, doubts_of_run, steps_of_run, without_noise
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
@@ -75,8 +77,8 @@ class Episode(Parameters):
         Radii of the people in m.
     groups : array_like of int, shape (n,)
         Who belongs together; below 0: to nobody. Empty: there are no groups.
-    walls : sequence of Disc, Rectangle, or array_like, shape (k, 2)
-        What stands still; arrays are polylines.
+    walls : StaticMap, or sequence of Disc, Rectangle, or array_like, shape (k, 2)
+        What stands still; arrays are polylines. A map is kept as its outlines.
     people_without : array_like, shape (U + 1, n, 2), or None
         The same people in the same world and with the same seed, without robots.
     person_goals : array_like, shape (n, 2)
@@ -146,7 +148,7 @@ class Episode(Parameters):
     people: npt.ArrayLike = ()
     person_radius: npt.ArrayLike = 0.25
     groups: npt.ArrayLike = ()
-    walls: Sequence[Wall] = ()
+    walls: Sequence[Wall] | StaticMap = ()
     people_without: npt.ArrayLike | None = None
     person_goals: npt.ArrayLike = ()
     person_arrivals: npt.ArrayLike = ()
@@ -189,7 +191,8 @@ class Episode(Parameters):
         missing = [name for name in _ARRIVALS if arrays[name].size == 0]
         if len(missing) == 1:
             raise InvalidParameterError(missing[0], "be given where the other arrivals are", Shown("none"))
-        walls = sequence("walls", "be a sequence of discs, rectangles and polylines", self.walls)
+        standing = outlines(self.walls) if isinstance(self.walls, StaticMap) else self.walls
+        walls = sequence("walls", "be a StaticMap or a sequence of discs, rectangles and polylines", standing)
         doubts = checked_doubts("warnings", self.warnings)
         flat: dict[str, Array | None] = {
             name: _rows(arrays[name]) for name in ("people", "people_without") if arrays[name] is not None

@@ -15,6 +15,7 @@ from hrsafety._tracks import Ways
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.free_space import distance
+from hrsafety.navigation.maps.outlines import outlines
 from hrsafety.navigation.metrics.sights import LOST
 from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
@@ -46,7 +47,10 @@ def steps_of_run(run: Trajectory) -> dict[str, Any]:
         "position": _whole_last_step(run.time, run.position, step),
         "people": _whole_last_step(run.time, run.obstacle_position[:, people], step),
         "person_radius": np.array(radii),
-        "walls": [each for each in obstacles if isinstance(each, (Disc, Rectangle))],
+        "walls": [
+            *(each for each in obstacles if isinstance(each, (Disc, Rectangle))),
+            *(() if scene.walls is None else outlines(scene.walls)),
+        ],
         "step": step,
         "goal": scene.goal,
         "robot_radius": scene.robot.radius,
@@ -80,7 +84,7 @@ def fields_in(world: World, robot: int, places: tuple[Array, Array, Array]) -> d
         "people": places[1],
         "person_radius": places[2],
         "groups": groups if any(group >= 0 for group in groups) else (),
-        "walls": world.walls,
+        "walls": world.wall_shapes,
         "step": world.step,
         "goal": own.goal,
         "robot_radius": own.body.radius,
@@ -97,7 +101,7 @@ def doubts_of_run(run: Trajectory, *, walls: bool, people: bool) -> Iterator[Res
     """
     if isinstance(run.scenario, World):
         return
-    if walls and math.isfinite(run.map_clearance):
+    if walls and run.scenario.walls is None and math.isfinite(run.map_clearance):
         touched = "" if math.isnan(run.map_contact_time) else f" and touched it at {run.map_contact_time:.2f} s"
         message = (
             f"the map that the law or a sensor knows is not scored as a wall: the robot came within "

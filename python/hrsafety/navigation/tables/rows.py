@@ -89,7 +89,7 @@ class RunRows(Table, ABC):
         found: Self = replace(table, **columns, **single)
         return found
 
-    def _kept(self, kept: npt.NDArray[np.bool_]) -> dict[str, Any]:
+    def _kept(self, kept: npt.NDArray[Any]) -> dict[str, Any]:
         """Return the fields that have a row for each run, for some of the runs."""
         table: Any = self
         found = {field.name: getattr(self, field.name) for field in fields(table)}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
@@ -13,8 +14,10 @@ from hrsafety.navigation.laws.safe_navigation import SafeNavigation
 from hrsafety.navigation.maps.unknown import over_unknown
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.warnings.scenarios import BELOW_SAFE, GOAL_IN_REGION, IN_CRITICAL_REGION
 from hrsafety.navigation.warnings.shields import ASSUMES_LESS, maps_of, of_order, of_shield, shield_of
+from hrsafety.navigation.warnings.walls import unknown_walls
 from hrsafety.plausibility import ResultWarning, gathered
 
 __all__ = ["of_commands", "of_run", "of_runs", "of_scenes", "of_way"]
@@ -47,10 +50,13 @@ def of_run(
     """
     brakes = law.law if isinstance(law, SafeNavigation) and law.shield is None else law
     by_regions = isinstance(brakes, VirtualForceField)
-    of_map = (each for map in maps_of(law) for each in map.warnings)
+    of_map: Iterable[ResultWarning] = (each for map in maps_of(law) for each in map.warnings)
     about_regions = () if by_regions else (BELOW_SAFE, IN_CRITICAL_REGION)
     # A law that cannot reach a goal in a region is refused, so whatever runs can.
     of_scene = (each for each in scenario.warnings if each.code not in (*about_regions, GOAL_IN_REGION))
+    if scenario.walls is not None:
+        own = () if built is None else tuple(each.map for each in built.sensors if isinstance(each, Lidar))
+        of_map = itertools.chain(of_map, scenario.walls.warnings, unknown_walls(scenario.walls, law, own))
     of_sensors = () if built is None else (*warnings_of(scenario, built), *_late(scenario, built, by_regions))
     shield, walls = shield_of(law)
     if shield is None:

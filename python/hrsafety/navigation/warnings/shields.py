@@ -31,6 +31,7 @@ __all__ = [
     "Motion",
     "Mover",
     "maps_of",
+    "of_built",
     "of_order",
     "of_shield",
     "of_surroundings",
@@ -209,21 +210,40 @@ def of_shield(
         motion=motion,
         walls=walls or any(isinstance(obstacle, Rectangle) for obstacle in scenario.obstacles),
     )
-    if built is not None and built.wheels is not None:
+    if built is not None:
+        yield from of_built(shield, built)
+
+
+def of_built(shield: Shield, built: AsBuilt) -> Iterator[ResultWarning]:
+    """Warn of wheels and sensors of a robot that a shield does not cover.
+
+    Parameters
+    ----------
+    shield : Shield
+        What is assumed.
+    built : AsBuilt
+        Wheels and sensors.
+
+    Yields
+    ------
+    ResultWarning
+        Codes ``"shield_assumes_less"`` and ``"shield_sees_less"``.
+    """
+    if built.wheels is not None:
         yield ResultWarning(
             ASSUMES_LESS,
             "wheels",
             "the shield plans for a robot that takes up each velocity evenly within a control period and then stands "
             "still; wheels with motors lag and slip, more than its margin covers: nothing is proved for this run",
         )
-    if built is not None and built.robot_vision is not None:
+    if built.robot_vision is not None:
         yield ResultWarning(
             ASSUMES_LESS,
             "robot_vision",
             f"margin of the shield is {shield.margin:.4g}, but a camera tells the robot its own place with noise and "
             "late: it may let the robot move into somebody; give a margin that covers noise and the way in between",
         )
-    if built is not None and (built.obstacle_vision is not None or built.sensors):
+    if built.obstacle_vision is not None or built.sensors:
         yield ResultWarning(
             SEES_LESS,
             "sensors",

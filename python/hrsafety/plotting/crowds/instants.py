@@ -47,7 +47,7 @@ def crowd_instant(world: World, *, time: float, robot: Body, people: Sequence[Bo
     driven = world.robots[0]
     ends = np.array([driven.start, driven.goal], dtype=np.float64)
     # Where nothing bounds the floor, as wide as long, with room for detours.
-    half = (0.5 if world.walls else 0.65) * max(float(np.abs(ends[0] - ends[1]).max()), 1.0)
+    half = (0.5 if world.wall_shapes else 0.65) * max(float(np.abs(ends[0] - ends[1]).max()), 1.0)
     square = np.array([ends.mean(axis=0) - half, ends.mean(axis=0) + half])
     place = world_scenes.Floor.cell(world).showing(world, square, near=FAR)
     handles = _handles(world)

@@ -81,6 +81,8 @@ def _group(person: Person) -> str:
 def _model(owner: Person | Source) -> str:
     if getattr(owner, "recording", None) is not None:
         return "recorded person"
+    if getattr(owner, "mover", None) is not None:
+        return "moves as told"
     return f"person, {owner.model.TITLE}"
 
 
@@ -152,7 +154,7 @@ class Floor:
             middle = points.mean(axis=0) if len(points) else self.low
             first = np.where(repeated, self.low, middle)
             points = np.concatenate([points, [first, np.where(repeated, first + self.period, middle)]])
-        standing = wall_points(world.walls, points, near)
+        standing = wall_points(world.wall_shapes, points, near)
         seen = np.concatenate([points, standing]) if len(points) + len(standing) else np.zeros((1, 2))
         return replace(self, limits=inputs.view_limits([seen], margin=MARGIN))
 
@@ -201,7 +203,7 @@ def wall_points(walls: Iterable[WallShape | Sequence[Pair]], points: Array, near
 
 def add_walls(axes: Axes, world: World, place: Floor) -> None:
     """Draw what stands, and the edges at which the floor repeats itself."""
-    draw_walls(axes, world.walls)
+    draw_walls(axes, world.wall_shapes)
     for line, axis in ((axes.axvline, 0), (axes.axhline, 1)):
         if np.isfinite(place.period[axis]):
             for edge in (place.low[axis], place.low[axis] + place.period[axis]):
@@ -223,7 +225,7 @@ def draw_walls(axes: Axes, walls: Iterable[WallShape | Sequence[Pair]]) -> None:
 def wall_handles(world: World) -> list[Artist]:
     """Return the entries of the legend for what stands and for edges."""
     found: list[Artist] = []
-    if world.walls:
+    if world.wall_shapes:
         found.append(floor.handle("wall", color=WALL_COLOR, linestyle="-", linewidth=2.0))
     if any(size > 0.0 for size in world.period):
         found.append(floor.handle("edge, where the floor repeats", linestyle=(0, (6, 4)), linewidth=0.9))

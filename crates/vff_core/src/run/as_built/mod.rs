@@ -8,7 +8,7 @@
 pub(super) mod history;
 mod many;
 mod run;
-pub(super) mod sight;
+pub(crate) mod sight;
 
 pub use crate::robots::drives::{PoseFusion, SteeringLaw};
 pub use history::AsBuiltTrajectory;

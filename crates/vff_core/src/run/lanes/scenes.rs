@@ -14,7 +14,8 @@ const MOST_LANES: usize = 16;
 /// exactly, and nothing else is around. Rectangles, maps and measurements take the kernel of one scene.
 pub(crate) fn fits(scenario: &Scenario) -> bool {
     let disc = |placed: &PlacedObstacle| matches!(placed.obstacle.shape, Shape::Disc { .. });
-    let alone = scenario.measurement.is_none() && scenario.map.is_none();
+    let alone =
+        scenario.measurement.is_none() && scenario.map.is_none() && scenario.walls.is_none();
     alone && scenario.obstacles.iter().all(disc)
 }
 

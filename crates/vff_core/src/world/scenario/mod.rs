@@ -63,6 +63,8 @@ pub struct Scenario {
     pub(crate) seed: u64,
     /// What planners of whole paths know of walls.
     pub(crate) map: Option<StaticMap>,
+    /// What stands beside the obstacles: touched, seen by sensors, and not told of to laws.
+    pub(crate) walls: Option<StaticMap>,
     /// Why laws that keep to regions cannot reach the goal, if they cannot.
     pub(crate) blocked: Option<Box<Failure>>,
 }
@@ -172,6 +174,7 @@ impl Scenario {
             measurement: sensing.measurement,
             seed: 0,
             map: None,
+            walls: None,
             blocked,
         })
     }
@@ -213,8 +216,16 @@ impl Scenario {
             measurement,
             seed: 0,
             map: None,
+            walls: None,
             blocked: None,
         })
+    }
+
+    /// The same scenario with walls that no law is told of; who knows them has a map, or sees them.
+    #[must_use]
+    pub fn with_walls(mut self, walls: StaticMap) -> Self {
+        self.walls = Some(walls);
+        self
     }
 
     /// The same scenario with noisy or late measurements drawn from a seed. Regions that were not
@@ -281,6 +292,7 @@ impl Scenario {
             measurement: None,
             seed: 0,
             map: self.map.clone(),
+            walls: None,
             blocked: None,
         }
     }
