@@ -29,6 +29,7 @@ MOST = {
     "A model of people": 7,
     "A social metric": 7,
     "A criterion of an impact": 8,
+    "A reader of files": 5,
 }
 """How many files an addition may touch."""
 
