@@ -23,6 +23,7 @@ from hrsafety.ros.commands import Commands
 from hrsafety.ros.floor import Crowd, largest_step, walk
 from hrsafety.ros.messages import Pose, Seen
 from hrsafety.ros.record import Record
+from hrsafety.ros.scanner import Scanner
 from hrsafety.ros.steering import Steering
 
 __all__ = ["Bridge", "Settings", "map_of"]
@@ -158,7 +159,7 @@ class Bridge:
         self._base = MovingBase(limits_of(robot.body), Pose(*robot.start, robot.heading))
         self._commands = Commands(self._base.limits, self.settings.delay, self._warn)
         self._map = map_of(world)
-        self._lidar = replace(self.settings.lidar, map=self._map)
+        self._scanner = Scanner(replace(self.settings.lidar, map=self._map))
         self._step = self.settings.period if self.settings.lockstep else _SCAN
         self._part = largest_step(world, self._step, at_most=_SCAN)
         # What is scored has the step of the bridge, and is under no law.
@@ -408,17 +409,13 @@ class Bridge:
         self._odometry(messages.odometry(now, pose, self._base.twist))
 
     def _publish_scan(self, time: float, period: float) -> None:
-        crowd, pose = self._crowd, self._base.pose
-        away = np.hypot(*(crowd.position - pose[:2]).T) - crowd.radius
-        near = away < self._lidar.range_max
-        discs = np.column_stack([crowd.position[near], crowd.radius[near]])
-        ranges = self._lidar.scan(pose[:2], pose.yaw, people=discs)
-        self._scan(messages.scan(self._offset + time, self._lidar, ranges, period))
+        ranges = self._scanner.scan(self._base.pose, self._crowd)
+        self._scan(messages.scan(self._offset + time, self._scanner.lidar, ranges, period))
 
     def _publish_crowd(self, time: float) -> None:
         crowd = self._crowd
-        rows = zip(crowd.number, crowd.position.tolist(), crowd.velocity.tolist(), crowd.radius.tolist(), strict=True)
-        seen = [Seen(str(who), x, y, vx, vy, radius) for who, (x, y), (vx, vy), radius in rows]
+        columns = (*crowd.position.T.tolist(), *crowd.velocity.T.tolist(), crowd.radius.tolist())
+        seen = list(map(Seen, map(str, crowd.number.tolist()), *columns))
         if self._as_people:
             self._people(messages.people(self._offset + time, seen))
             return

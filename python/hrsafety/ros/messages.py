@@ -144,8 +144,8 @@ def people(time: float, seen: Iterable[Seen]) -> Message:
         "people": [
             {
                 "name": each.name,
-                "position": _point(each.x, each.y),
-                "velocity": _point(each.vx, each.vy),
+                "position": {"x": each.x, "y": each.y, "z": 0.0},
+                "velocity": {"x": each.vx, "y": each.vy, "z": 0.0},
                 "reliability": 1.0,
                 "tagnames": ["radius"],
                 "tags": [f"{each.radius:g}"],

@@ -16,6 +16,9 @@ from api.ros.worlds import ROBOT, WALLS, ahead, empty, hall, served
 from hrsafety import navigation as nav
 from hrsafety.errors import InvalidParameterError
 from hrsafety.ros import Bridge, Publisher, Quality, Settings
+from hrsafety.ros.floor import Crowd
+from hrsafety.ros.messages import Pose
+from hrsafety.ros.scanner import Scanner
 
 PERSON = """string name
 geometry_msgs/Point position
@@ -337,3 +340,17 @@ def test_settings_are_checked() -> None:
     round_world = hall(period=(20.0, 0.0))
     with pytest.raises(InvalidParameterError, match=r"world\.period"):
         served(round_world, ahead)
+
+
+@pytest.mark.parametrize("lidar", [{}, {"beams": 1440}, {"field_of_view": 3.0}, {"beams": 361, "field_of_view": 4.7}])
+def test_sectors_of_a_lidar_read_what_the_whole_reads(lidar: dict[str, Any]) -> None:
+    generator = np.random.default_rng(4)
+    whole = nav.Lidar(**{"beams": 720, "range_max": 9.0, "map": nav.StaticMap.from_polylines(WALLS), **lidar})
+    scanner = Scanner(whole)
+    for turn in (0.0, 1.0, -2.5, 40.0):
+        position, radius = generator.uniform(-9.0, 9.0, (200, 2)), generator.uniform(0.05, 0.6, 200)
+        crowd = Crowd(np.arange(200), position, np.zeros((200, 2)), radius)
+        for place in ((0.0, 0.0), tuple(position[7] + 0.01), (3.0, -2.99)):
+            discs = np.column_stack([position, radius])
+            expected = whole.scan(place, turn, people=discs)
+            np.testing.assert_allclose(scanner.scan(Pose(*place, turn), crowd), expected, rtol=1e-9, atol=1e-9)
