@@ -136,8 +136,10 @@ def _simulate(options: argparse.Namespace) -> None:
 def _judge(options: argparse.Namespace) -> None:
     from hrsafety.cli.judge import judge_log
 
-    names = ("people", "frame", "map", "goal", "moments", "offset", "view")
-    with _as_options(*names, robot_radius="--radius", person_radius="--person-radius", robot="--robot-frame"):
+    names = ("people", "frame", "map", "goal", "moments", "offset", "view", "step")
+    with _as_options(
+        *names, robot_radius="--radius", person_radius="--person-radius", robot="--robot-frame", end="--time"
+    ):
         judge_log(options)
 
 

@@ -64,12 +64,15 @@ def judge_log(options: argparse.Namespace) -> None:
         frame=options.frame,
         offset=_offsets(options.offset),
     )
+    if options.time is not None:
+        log = log.part(*options.time)
     given, told = _robot(options)
     walls = log.map if options.map is None else _map(options.map)
     goal = None if options.goal is None else tuple(options.goal)
     found = nav.metrics.judge(
         log,
         map=walls,
+        step=options.step,
         goal=goal,
         moments=options.moments,
         person_radius=options.person_radius,

@@ -443,6 +443,8 @@ def _add_judge(commands: Any) -> None:
         help="exit with code 3, after everything was written, if one of these was found: contact, moving_contact, "
         "at_fault, wall_contact, possible_contact, broken_assumption, violated_rule, any; several with commas between",
     )
+    parser.add_argument("--time", nargs=2, type=_number, metavar=("FROM", "TO"), help="part that is judged, in s [all]")
+    parser.add_argument("--step", type=_number, default=0.1, metavar="S", help="between instants in s [%(default)s]")
     parser.add_argument("--moments", type=_count, default=5, metavar="N", help="number of worst moments [%(default)s]")
     robot = parser.add_argument_group("robot")
     robot.add_argument("--radius", type=_number, metavar="M", help="radius in m of a disc that covers the robot")

@@ -351,3 +351,16 @@ def test_a_bag_of_six_thousand_poses_is_read_in_a_quarter_of_a_second(tmp_path: 
     begin = process_time()
     assert len(io.load_log(path, frame="odom")) == 6000
     assert process_time() - begin < 0.25
+
+
+def test_a_part_of_a_log_is_judged_alone(tmp_path: Path) -> None:
+    log = io.load_log(write_log(tmp_path, Scene(), "mcap"))
+    part = log.part(3.0, 8.0)
+    assert (part.time[0], part.time[-1], len(part)) == (3.0, 8.0, 51)
+    assert part.people is not None
+    assert part.people.time_s[[0, -1]] == pytest.approx([3.0, 8.0])
+    whole, alone = (nav.metrics.judge(each, robot_radius=0.3) for each in (log, part))
+    rows = (whole.time >= 3.0 - 1e-9) & (whole.time <= 8.0 + 1e-9)
+    assert alone.clearance == pytest.approx(whole.clearance[rows], abs=1e-9)
+    with pytest.raises(InvalidParameterError, match="leave two poses or more"):
+        log.part(30.0, 40.0)

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
-from typing import Annotated, NamedTuple
+from dataclasses import field, replace
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import Array
+from hrsafety._arguments import Array, finite
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.datasets.recording import Recording
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.io.reader import Source
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.plausibility import ResultWarning
@@ -148,3 +149,61 @@ class RobotLog:
     def duration(self) -> float:
         """Time from the first to the last pose in s."""
         return float(self.time[-1] - self.time[0])
+
+    def part(self, begin: float, end: float) -> RobotLog:
+        r"""Return what was recorded from one time to another; times stay as they are.
+
+        Parameters
+        ----------
+        begin, end : float
+            In s.
+
+        Returns
+        -------
+        RobotLog
+            With two poses or more.
+
+        Raises
+        ------
+        InvalidParameterError
+            If fewer poses lie between both times.
+
+        Examples
+        --------
+        >>> import pathlib, tempfile
+        >>> from hrsafety import io
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     table = pathlib.Path(folder, "robot.csv")
+        ...     _ = table.write_text("t_s,x_m,y_m,yaw_rad\n" + "".join(f"{k / 10},{k / 20},0,0\n" for k in range(9)))
+        ...     log = io.load_log(table)
+        >>> log.part(0.2, 0.5).time.tolist()
+        [0.2, 0.3, 0.4, 0.5]
+        """
+        span = (finite("begin", begin) - 1e-9, finite("end", end) + 1e-9)
+
+        def inside(time: Array) -> npt.NDArray[np.bool_]:
+            return (time >= span[0]) & (time <= span[1])
+
+        rows = inside(self.time)
+        if rows.sum() < 2:
+            shown = Shown(f"{begin:g} to {end:g} s of {self.time[0]:g} to {self.time[-1]:g} s")
+            raise InvalidParameterError("end", "leave two poses or more", shown)
+        people = self.people
+        if people is not None:
+            seen = inside(people.time_s)
+            velocity = None if people.velocity is None else people.velocity[seen]
+            fields: dict[str, Any] = {
+                "time_s": people.time_s[seen],
+                "person": people.person[seen],
+                "position": people.position[seen],
+            }
+            people = replace(people, **fields, velocity=velocity) if seen.any() else None
+        return replace(
+            self,
+            **{name: getattr(self, name)[rows] for name in ("time", "position", "heading", "twist")},
+            people=people,
+            people_time=self.people_time[inside(self.people_time)],
+            commands=self.commands[inside(self.commands[:, 0])],
+            pose_jumps=tuple(each for each in self.pose_jumps if each.end > span[0] and each.begin < span[1]),
+            scans=tuple(each for each in self.scans if span[0] <= each.time <= span[1]),
+        )

@@ -270,14 +270,16 @@ def judge(
     rules = PermitRules() if rules is None else instance("rules", rules, PermitRules)
     _check_log(log)
     both = synchronized(log, step=step, window=window)
-    error = _error("pose_error", pose_error, 2.0 * both.noise.position)
+    own = _error("pose_error", pose_error, 2.0 * both.noise.position)
     between = 0.0 if np.isnan(both.person_period) else PERSON_ACCELERATION * both.person_period**2 / 8.0
-    error += _error("person_error", person_error, 2.0 * both.person_noise.position + between)
+    error = own + _error("person_error", person_error, 2.0 * both.person_noise.position + between)
     gaps = clearances(both, reach)
     sure, possible = people_touched(both, gaps, reach, error)
     away = np.full(len(both.time), np.nan)
     if walls is not None:
-        away, touched = walls_touched(both, walls, radius, 0.0 if pose_error is None else pose_error)
+        # A wall is anywhere within a cell.
+        cell = max((0.5 * grid.resolution for grid in walls.grids), default=0.0)
+        away, touched = walls_touched(both, walls, radius, own + cell)
         sure += [each for each in touched if each.kind == "wall"]
         possible += [each for each in touched if each.kind != "wall"]
     bound = nearest_unseen(both, PERSON_SPEED)

@@ -155,7 +155,7 @@ def synchronized(log: Logged, *, step: float, window: float) -> Synchronized:
     crowd = 0 if people is None else len(people.people())
     if count * max(crowd, 1) > MOST_PLACES:
         shown = Shown(f"{count} instants of {crowd} people")
-        remedy = "a larger step, or a part of the log"
+        remedy = "a larger step, or log.part(begin, end)"
         raise InvalidParameterError("step", f"leave at most {MOST_PLACES:,} places", shown, remedy)
     instants = time[0] + step * np.arange(count)
     cuts = _robot_cuts(log, time)
