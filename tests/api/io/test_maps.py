@@ -166,6 +166,30 @@ def test_what_a_plan_holds_beside_walls_is_counted_and_doubted(tmp_path: Path) -
         load_map(path, layers=["wals"])
 
 
+def test_blocks_are_read_where_they_are_placed(tmp_path: Path) -> None:
+    document = ezdxf.new()
+    document.units = 6
+    space = document.modelspace()
+    space.add_line((0, 0), (5, 5))
+    inner = document.blocks.new("LEAF")
+    inner.add_line((0, 0), (1, 0))
+    door = document.blocks.new("DOOR")
+    door.add_blockref("LEAF", (0, 0), dxfattribs={"xscale": 2.0, "yscale": 2.0})
+    door.add_circle((0, 0), 0.5)
+    space.add_blockref("DOOR", (10, 1), dxfattribs={"rotation": 90.0})
+    space.add_blockref("LEAF", (0, 9), dxfattribs={"column_count": 3, "column_spacing": 2.0})
+    path = written(tmp_path, "plan.dxf", saved(document))
+    (doubt,) = load_map(path).warnings
+    assert "2 INSERT; blocks=True" in doubt.message
+    found = load_map(path, blocks=True)
+    assert found.warnings == ()
+    assert len(found.walls) == 6
+    for place in ((10.0, 2.5), (10.5, 1.0), (0.5, 9.0), (2.5, 9.0), (4.5, 9.0), (1.0, 1.0)):
+        assert found.clearance(place) == pytest.approx(0.0, abs=1e-9)
+    with pytest.raises(FileError, match="EOF"):
+        load_map(written(tmp_path, "cut.dxf", saved(document)[:-8]), blocks=True)
+
+
 def test_the_unit_that_is_said_counts_and_is_doubted_where_the_file_says_another(tmp_path: Path) -> None:
     document = ezdxf.new()
     document.units = 1
@@ -361,8 +385,10 @@ def test_arguments_of_another_format_are_refused(shared: Path) -> None:
             load_map(path, **call)
     with pytest.raises(InvalidParameterError, match="occupied_from must be left out"):
         load_map(shared / FORMATS / "map_plan.svg", occupied_from=50)
-    with pytest.raises(FileError, match="known format"):
+    with pytest.raises(FileError, match="give the YAML file beside it"):
         load_map(shared / FORMATS / "map_a.pgm")
+    with pytest.raises(FileError, match="known format"):
+        load_map(shared / FORMATS / "log_tum.txt")
 
 
 def test_a_plan_that_is_cut_off_anywhere_is_an_error(shared: Path, tmp_path: Path) -> None:

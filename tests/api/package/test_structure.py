@@ -250,6 +250,7 @@ def test_plotting_computes_nothing_reactive(path: Path) -> None:
 def test_importing_the_package_loads_no_optional_dependency() -> None:
     optional = {"matplotlib", "PIL", "scipy", "polars", "xarray", "dask", "distributed", "numba", "pandas"}
     optional |= {
+        "ezdxf",
         "h5py",
         "rosbags",
         "foxglove",

@@ -101,19 +101,21 @@ class Drawing:
         """Return an error about a place in the file."""
         return self.document.error(code, rule, value, remedy, line=line, key=key)
 
-    def map(self, unit: str) -> StaticMap:
+    def map(self, unit: str, hint: str = "") -> StaticMap:
         """Return the map of the walls.
 
         Parameters
         ----------
         unit : str
             Argument that mends an implausible size, for messages.
+        hint : str
+            What reads more of the file.
         """
         doubts = [*self.document.warnings, *self.doubts]
         if self.skipped:
             kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(self.skipped.items()))
             notes = all(kind in _NOTES or " without length" in kind for kind in self.skipped)
-            message = f"{self.document.name} holds what is not read as walls: {kinds}"
+            message = f"{self.document.name} holds what is not read as walls: {kinds}{'; ' if hint else ''}{hint}"
             doubts.append(ResultWarning("skipped_entities", "path", message, safe_side=notes))
         if not self.walls:
             found = Shown(", ".join(f"{count} {kind}" for kind, count in self.skipped.items()) or "nothing")

@@ -6,10 +6,11 @@ import math
 import re
 from collections.abc import Iterable, Iterator
 from io import StringIO
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from hrsafety._arguments import Pair, meant, not_negative, sequence, word
-from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety._arguments import Pair, flag, meant, not_negative, sequence, word
+from hrsafety._bounds import MOST_WALL_POINTS
+from hrsafety.errors import FileError, InvalidParameterError, MissingExtraError, Shown
 from hrsafety.io.places.curves import arc_points, bulge_points
 from hrsafety.io.places.drawing import UNITS, Drawing, check_size
 from hrsafety.io.reader import Document
@@ -22,6 +23,8 @@ BINARY = b"AutoCAD Binary DXF"
 SAME = 1e-6
 """A line goes on where another one ends if its start is at most so far away, in m."""
 MOST_BULGE = 1e6
+MOST_NESTED = 16
+"""Blocks within blocks."""
 _INSUNITS = {1: "inch", 2: "ft", 4: "mm", 5: "cm", 6: "m"}
 _READ = frozenset(("LINE", "LWPOLYLINE", "POLYLINE", "VERTEX", "ARC", "CIRCLE"))
 _PLACE = (8, 67)
@@ -60,25 +63,59 @@ def read_dxf(
     *,
     unit: str | None = None,
     layers: Iterable[str] | None = None,
+    blocks: bool = False,
     radius: float = 0.0,
 ) -> StaticMap:
     """Return the walls of a DXF file; see `load_map`."""
     thickness = not_negative("radius", radius)
+    expands = flag("blocks", blocks)
     if document.head.startswith(BINARY):
         raise document.error("unreadable", "be DXF in text", Shown("binary DXF"), "save it as DXF in text (ASCII)")
     check_size(document)
     drawing = Drawing(document, thickness)
     walls = _Walls(drawing, _scale(drawing, unit))
-    entities = _entities(document)
+    entities = _entities(document, _expanded(document) if expands else document.text)
     for entity in entities if layers is None else _on_layers(entities, layers):
         walls.add(entity)
     walls.end()
-    return drawing.map('unit="m", "cm", "mm", "inch" or "ft"')
+    hint = "blocks=True reads what INSERT places" if drawing.skipped["INSERT"] else ""
+    return drawing.map('unit="m", "cm", "mm", "inch" or "ft"', hint)
 
 
-def _groups(document: Document) -> Iterator[Group]:
+def _expanded(document: Document) -> str:
+    """Return the text of a file with its blocks replaced by what they hold, by ezdxf."""
+    try:
+        import ezdxf.document
+    except ImportError:
+        raise MissingExtraError(f"the blocks of {document.name} need ezdxf: pip install 'hrsafety[plans]'") from None
+    for _ in _groups(document, document.text):  # errors in the file's own lines come first
+        pass
+    read: Any = ezdxf.document.Drawing.read
+    stream = StringIO()
+    try:
+        drawing = read(StringIO(document.text, newline=None))
+        space = drawing.modelspace()
+        for _ in range(MOST_NESTED):
+            for insert in space.query("INSERT"):
+                for part in insert.multi_insert() if insert.mcount > 1 else (insert,):
+                    for entity in part.virtual_entities():
+                        space.add_entity(entity)
+                        if len(space) > MOST_WALL_POINTS:
+                            rule = f"hold at most {MOST_WALL_POINTS} entities"
+                            raise document.error("too_large", rule, Shown("more"))
+                space.delete_entity(insert)
+        drawing.write(stream)
+    except FileError:
+        raise
+    except Exception as error:  # whatever a broken file makes of ezdxf
+        shown = Shown(str(error)[:120] or type(error).__name__)
+        raise document.error("unreadable", "have blocks that ezdxf reads", shown) from None
+    return stream.getvalue()
+
+
+def _groups(document: Document, text: str) -> Iterator[Group]:
     """Yield the pairs of lines of a file up to its end."""
-    lines = enumerate(StringIO(document.text, newline=None), start=1)
+    lines = enumerate(StringIO(text, newline=None), start=1)
     number = 0
     for number, line in lines:
         code, value = line.strip(), next(lines, (0, ""))[1].strip()
@@ -94,7 +131,7 @@ def _scale(drawing: Drawing, unit: str | None) -> float:
     """Return the meters of a unit, as told or as $INSUNITS says."""
     told = None if unit is None else word("unit", unit, tuple(UNITS))
     value, named = "0", False
-    for group in _groups(drawing.document):
+    for group in _groups(drawing.document, drawing.document.text):
         if named or (group.code, group.value) == (2, "ENTITIES"):
             value = group.value if named else value
             break
@@ -109,11 +146,11 @@ def _scale(drawing: Drawing, unit: str | None) -> float:
     return UNITS[told or said or "m"]
 
 
-def _entities(document: Document) -> Iterator[Entity]:
+def _entities(document: Document, text: str) -> Iterator[Entity]:
     """Yield the entities of the section of that name; vertices stay behind their polyline."""
     section, begins = "", False
     entity: Entity | None = None
-    for group in _groups(document):
+    for group in _groups(document, text):
         if begins and group.code == 2:
             section = group.value
         begins = (group.code, group.value) == (0, "SECTION")

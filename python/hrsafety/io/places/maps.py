@@ -18,12 +18,14 @@ from hrsafety.navigation.maps.static_map import StaticMap
 
 __all__ = ["READERS", "load_map"]
 
+_IMAGES = (b"P2", b"P5", b"\x89PNG", b"\xff\xd8\xff", b"BM", b"GIF8")
 LEAST_KEYS = 2
 """A file with so many keys of a map is one: what it lacks is then named."""
 _DEFAULTS: dict[str, Any] = {
     "unit": None,
     "meters_per_unit": None,
     "layers": None,
+    "blocks": False,
     "radius": 0.0,
     "unknown": "occupied",
     "outside": "unknown",
@@ -40,6 +42,7 @@ def load_map(
     unit: str | None = None,
     meters_per_unit: float | None = None,
     layers: Iterable[str] | None = None,
+    blocks: bool = False,
     radius: float = 0.0,
     unknown: str = "occupied",
     outside: str = "unknown",
@@ -76,6 +79,8 @@ def load_map(
         Meters of a unit of the viewBox of an SVG.
     layers : sequence of str or None
         Layers of a DXF that hold walls; ``None``: all.
+    blocks : bool
+        Whether what a DXF places as blocks (INSERT) is read, too, with ezdxf.
     radius : float
         Half the thickness of the walls of a plan in m; widths of lines are not read.
     unknown, outside, rule, occupied_from, trust_path
@@ -95,7 +100,7 @@ def load_map(
     FileError
         If the file breaks a rule of its format, or does not say its unit or scale.
     MissingExtraError
-        If the image of a map is PNG and Pillow is not installed.
+        If the image of a map is PNG and Pillow is not installed, or blocks are to be read and ezdxf is not.
 
     Examples
     --------
@@ -112,6 +117,7 @@ def load_map(
         "unit": unit,
         "meters_per_unit": meters_per_unit,
         "layers": layers,
+        "blocks": blocks,
         "radius": radius,
         "unknown": unknown,
         "outside": outside,
@@ -120,6 +126,9 @@ def load_map(
         "trust_path": trust_path,
     }
     document = Document(path)
+    if format is None and document.head.startswith(_IMAGES):
+        remedy = "give the YAML file beside it, which says its resolution and origin"
+        raise document.error("unknown_format", "be a map or a floor plan", Shown("an image"), remedy)
     reader = reader_of("map", document, format)
     known = inspect.signature(reader.read).parameters
     said = {name: value for name, value in given.items() if name in known}
