@@ -8,6 +8,7 @@ import json
 import os
 import select
 import shutil
+import signal
 import subprocess
 import tempfile
 import time
@@ -149,12 +150,13 @@ def tab(width: int = 1300, height: int = 900, *, touch: bool = False) -> Iterato
         for number, each in zip((3, 4), ends, strict=True):
             os.dup2(each, number)
 
-    with tempfile.TemporaryDirectory() as profile:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         options = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--remote-debugging-pipe"]
         process = subprocess.Popen(
             [found, *options, f"--user-data-dir={profile}"],
             preexec_fn=pipes,
             close_fds=False,
+            start_new_session=True,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
@@ -164,8 +166,15 @@ def tab(width: int = 1300, height: int = 900, *, touch: bool = False) -> Iterato
             opened.size(width, height, touch=touch)
             yield opened
         finally:
-            process.kill()
+            # All of its processes end before the folder goes that they write into.
+            os.killpg(process.pid, signal.SIGKILL)
             process.wait()
             for each in (*to_browser, *from_browser):
                 os.close(each)
-            time.sleep(0.1)
+            end = time.monotonic() + 5.0
+            while time.monotonic() < end:
+                try:
+                    os.killpg(process.pid, 0)
+                except ProcessLookupError:
+                    break
+                time.sleep(0.02)

@@ -24,7 +24,7 @@ from hrsafety._replay.ground import ground_of
 from hrsafety._replay.packing import Block, Scale, block, counted
 from hrsafety._replay.record import VERDICTS, Decisions, PlayedRobot, Replay
 
-__all__ = ["LIMIT", "PlayerPage", "digest", "player_page"]
+__all__ = ["LIMIT", "PlayerPage", "digest", "frame_rows", "least_since", "player_page", "verdicts_of"]
 
 Array = npt.NDArray[np.float64]
 Rows = npt.NDArray[np.intp]
@@ -143,11 +143,31 @@ def _rows(replay: Replay, step: float) -> Rows:
     return rows[first].astype(np.intp)
 
 
-def _least(values: Array, rows: Rows) -> Array:
+def least_since(values: Array, rows: Rows) -> Array:
     """Return the least value since the frame before: what is between two frames is not lost, unknown stays unknown."""
     starts = np.concatenate([[0], rows[:-1] + 1])
     with np.errstate(invalid="ignore"):
         return np.minimum.reduceat(values[: rows[-1] + 1], starts)
+
+
+def frame_rows(replay: Replay) -> Rows:
+    """Return the instants that are shown where there is room for all that a player can tell apart."""
+    return _rows(replay, FINEST_STEP)
+
+
+def verdicts_of(made: Decisions | None, time: Array) -> tuple[npt.NDArray[np.int64], Array, Rows]:
+    """Return verdict and margin at frames, the worst since the frame before, and the decision in force, -1 without."""
+    if made is None or not len(made.time):
+        nothing = np.full(len(time), -1, dtype=np.intp)
+        return np.zeros(len(time), dtype=np.int64), np.full(len(time), np.nan), nothing
+    at = np.searchsorted(made.time, time + 1e-9, side="right") - 1
+    codes = np.array([VERDICTS.index(each) for each in made.verdict], dtype=np.int64)
+    margins = np.asarray(made.margin, dtype=np.float64)
+    since = np.minimum(np.concatenate([[0], at[:-1] + 1]), at)
+    spans = [slice(low, high + 1) for low, high in zip(since.tolist(), at.tolist(), strict=True)]
+    worst = np.array([int(codes[span].max()) if span.stop else 0 for span in spans])
+    margin = np.array([margins[span].min() if span.stop else np.nan for span in spans])
+    return worst, margin, at
 
 
 class _Content:
@@ -212,7 +232,7 @@ class _Content:
         if robot.speed is not None:
             self.blocks.append(block(f"speed{index}", counted(np.asarray(robot.speed)[self.rows], CLEARANCES)))
         if robot.clearance is not None:
-            least = _least(np.asarray(robot.clearance, dtype=np.float64), self.rows)
+            least = least_since(np.asarray(robot.clearance, dtype=np.float64), self.rows)
             self.blocks.append(block(f"clearance{index}", counted(least, CLEARANCES)))
         if robot.decisions is not None and len(robot.decisions.time):
             self._decisions(index, robot.decisions)
@@ -227,14 +247,8 @@ class _Content:
 
     def _decisions(self, index: int, made: Decisions) -> None:
         """Pack verdict and margin of each frame, the worst since the frame before, and the plans in force."""
-        at = np.searchsorted(made.time, self.time + 1e-9, side="right") - 1
-        codes = np.array([VERDICTS.index(each) for each in made.verdict], dtype=np.int64)
-        margins = np.asarray(made.margin, dtype=np.float64)
-        since = np.minimum(np.concatenate([[0], at[:-1] + 1]), at)
-        spans = [slice(low, high + 1) for low, high in zip(since.tolist(), at.tolist(), strict=True)]
-        worst = [int(codes[span].max()) if span.stop else 0 for span in spans]
-        margin = np.array([margins[span].min() if span.stop else np.nan for span in spans])
-        self.blocks.append(block(f"verdict{index}", np.array(worst), kind="u8"))
+        worst, margin, at = verdicts_of(made, self.time)
+        self.blocks.append(block(f"verdict{index}", worst, kind="u8"))
         self.blocks.append(block(f"margin{index}", counted(margin, CLEARANCES)))
         for name, lines in (("plan", made.plan), ("path", made.path)):
             if len(lines):

@@ -522,7 +522,7 @@
     if (robot) {
       const here = place("robots", chosen), gap = metric("clearance", frame);
       if (data["speed" + chosen]) rows.push(["Speed", words(metric("speed", frame), "m/s")]);
-      if (data["clearance" + chosen]) rows.push(["Clearance", words(gap, "m"), gap < 0]);
+      if (data["clearance" + chosen]) rows.push(["Clearance", unjudged(time) ? "not judged" : words(gap, "m"), gap < 0]);
       if (robot.decided) rows.push(["Shield's margin", words(metric("margin", frame), "m")]);
       if (!here) rows.push(["Robot", "position not known", true]);
       body.dataset.robot = here ? here.map((each) => (Math.round(each * 1000) / 1000 + 0).toFixed(3)).join(",") : "";

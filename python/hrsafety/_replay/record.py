@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +12,7 @@ from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["VERDICTS", "Decisions", "Event", "NotJudged", "PlayedRobot", "Replay"]
+__all__ = ["VERDICTS", "Decisions", "Event", "NotJudged", "PlayedRobot", "Replay", "Scanner"]
 
 Array = npt.NDArray[np.float64]
 
@@ -85,6 +85,22 @@ class Decisions:
     reach: Array | None = None
 
 
+class Scanner(NamedTuple):
+    """A lidar in the middle of a robot.
+
+    Parameters
+    ----------
+    start_angle, end_angle : float
+        Of the first and the last beam, in rad from the heading.
+    ranges : callable
+        Returns the ranges at a row of the run in m.
+    """
+
+    start_angle: float
+    end_angle: float
+    ranges: Callable[[int], Array]
+
+
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class PlayedRobot:
     """A robot over n instants.
@@ -111,6 +127,8 @@ class PlayedRobot:
         How near to the goal it has arrived, in m.
     decisions : Decisions or None
         What the parts around its law decided.
+    scan : Scanner or None
+        Its lidar.
     """
 
     name: str
@@ -123,6 +141,7 @@ class PlayedRobot:
     goal: tuple[float, float] | None = None
     tolerance: float = 0.0
     decisions: Decisions | None = None
+    scan: Scanner | None = None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

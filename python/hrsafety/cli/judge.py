@@ -56,6 +56,7 @@ def judge_log(options: argparse.Namespace) -> None:
     if options.out is not None:
         output.planned_folder(options.out)
         output.require_page("--out")
+    output.check_mcap(options)
     output.check_json(options)
     log = io.load_log(
         options.log,
@@ -89,6 +90,7 @@ def judge_log(options: argparse.Namespace) -> None:
         place = output.folder(options.out)
         plays = [plotting.player(found, title=report.title)]
         written = output.write_report(report, place, _draw(found), [_table(found, place)], plays=plays)
+    written += output.mcap(found, options)
     output.say_written(written, report, options)
     _end(found, fail_on, options)
 

@@ -55,11 +55,12 @@ def simulate_file(options: argparse.Namespace) -> None:
         source=options.scenario,
     )
     print(terminal.told(report))
-    written = []
+    written: list[Path] = []
     if options.out is not None:
         place = output.folder(options.out)
         tables = [run.to_csv(place / "trajectory.csv")]
         written = output.write_report(report, place, _draw(run), tables, plays=[output.player(run)])
+    written += output.mcap(run, options)
     if options.animate is not None:
         written.append(output.animation(run, options.animate))
     output.say_written(written, report, options)

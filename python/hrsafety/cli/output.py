@@ -37,12 +37,15 @@ if TYPE_CHECKING:
 __all__ = [
     "animation",
     "check_json",
+    "check_mcap",
     "check_targets",
+    "decided",
     "decimal",
     "folder",
     "law_words",
     "leave_if_strict",
     "located",
+    "mcap",
     "picture",
     "pictures",
     "planned_animation",
@@ -243,6 +246,7 @@ def check_targets(options: argparse.Namespace) -> None:
         require_page("--out")
     if options.animate is not None:
         planned_animation(options.animate)
+    check_mcap(options)
     check_json(options)
 
 
@@ -357,16 +361,40 @@ def planned_animation(path: str) -> None:
     movies.check_writer(Path(path))
 
 
+def decided(run: nav.Trajectory) -> nav.Trajectory | nav.metrics.SafetyRecord:
+    """Return a run with the decisions of a shield, where recording them gives the same run again; else as it is."""
+    place = run.scenario
+    if not isinstance(place, nav.Scenario) or not isinstance(run.law, nav.laws.SafeNavigation):
+        return run
+    if not isinstance(place.robot, nav.HolonomicRobot) or run.built is not None:
+        return run
+    record = nav.metrics.record_safety(place, run.law)
+    return record if np.array_equal(record.trajectory.position, run.position) else run
+
+
 def player(run: nav.Trajectory) -> PlayerPage:
-    """Return the player of a run, with the decisions of a shield where recording them gives the same run again."""
+    """Return the player of a run, with the decisions of a shield where there are any."""
     from hrsafety import plotting
 
-    decided = isinstance(run.law, nav.laws.SafeNavigation) and isinstance(run.scenario.robot, nav.HolonomicRobot)
-    if decided and run.built is None:
-        record = nav.metrics.record_safety(run.scenario, run.law)
-        if np.array_equal(record.trajectory.position, run.position):
-            return plotting.player(record)
-    return plotting.player(run)
+    return plotting.player(decided(run))
+
+
+def check_mcap(options: argparse.Namespace) -> None:
+    """Refuse before the work an MCAP file that could not be written after it."""
+    if options.mcap is not None:
+        target("--mcap", options.mcap, (".mcap",))
+        if importlib.util.find_spec("foxglove") is None:
+            raise MissingExtraError("--mcap needs foxglove-sdk: pip install foxglove-sdk")
+
+
+def mcap(run: nav.Trajectory | nav.metrics.Judgement, options: argparse.Namespace) -> list[Path]:
+    """Write a run as the MCAP file that ``--mcap`` asks for, with its folder."""
+    if options.mcap is None:
+        return []
+    from hrsafety import plotting
+
+    Path(options.mcap).parent.mkdir(parents=True, exist_ok=True)
+    return [plotting.mcap(decided(run) if isinstance(run, nav.Trajectory) else run, options.mcap)]
 
 
 def animation(trajectory: nav.Trajectory, path: str) -> Path:

@@ -147,6 +147,10 @@ def _add_shared(parser: argparse.ArgumentParser) -> None:
     _add_strict(parser)
 
 
+def _add_mcap(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--mcap", metavar="FILE.mcap", help="the run for viewers of robot logs")
+
+
 def _add_strict(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--strict",
@@ -188,6 +192,7 @@ def _add_simulate(commands: Any) -> None:
     parser.add_argument("--out", metavar="DIR", help="folder for a page, tables (CSV) and pictures")
     _add_shared(parser)
     parser.add_argument("--animate", metavar="FILE", help="animation of a run, .gif or .mp4")
+    _add_mcap(parser)
     parser.add_argument(
         "--fail-on",
         metavar="WORDS",
@@ -436,6 +441,7 @@ def _add_judge(commands: Any) -> None:
     )
     parser.add_argument("log", metavar="LOG", help="bag of ROS 1 or 2 (file or folder), TUM, EuRoC, table of odometry")
     parser.add_argument("--out", metavar="DIR", help="folder for a page, a table (CSV) and pictures")
+    _add_mcap(parser)
     _add_shared(parser)
     parser.add_argument(
         "--fail-on",

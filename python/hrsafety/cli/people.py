@@ -84,8 +84,8 @@ def simulate_people(options: argparse.Namespace) -> None:
         source=options.people,
     )
     print(f"{terminal.told(report)}\n\n{totals}")
-    written = []
-    if options.out is not None or options.animate is not None:
+    written: list[Path] = []
+    if options.out is not None or options.animate is not None or options.mcap is not None:
         index = int(np.argmax(summary.entered_active)) if shown is None else shown
         trajectory = nav.simulate(crossings[index].scenario, law, **stepping)
         if options.out is not None:
@@ -93,6 +93,7 @@ def simulate_people(options: argparse.Namespace) -> None:
             tables = list(_tables(crossings, summary, met, place))
             plays = [output.player(trajectory)]
             written += output.write_report(report, place, _draw(summary, trajectory), tables, plays=plays)
+        written += output.mcap(trajectory, options)
         if options.animate is not None:
             print(f"\nanimated run  {index}")
             written.append(output.animation(trajectory, options.animate))

@@ -8,18 +8,20 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from hrsafety._arguments import Array
-from hrsafety._replay.record import Decisions, Event, PlayedRobot, Replay
+from hrsafety._replay.record import Decisions, Event, PlayedRobot, Replay, Scanner
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.obstacles.moving_rectangle import Box, Mobile
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.robots.bodies import HolonomicRobot
+from hrsafety.navigation.sensing.lidar import Lidar
 
 __all__ = ["replay_of_record", "replay_of_run"]
 
@@ -195,7 +197,25 @@ def _robot(
         goal=None if scene is None else own.goal,
         tolerance=0.0 if scene is None else own.arrival_tolerance,
         decisions=decisions,
+        scan=_scanner(run, bodies),
     )
+
+
+def _scanner(run: Run, bodies: Bodies) -> Scanner | None:
+    """Return the lidar of a robot, whose ranges are told without its noise."""
+    lidar = next((each for each in (() if run.built is None else run.built.sensors) if isinstance(each, Lidar)), None)
+    if lidar is None or run.obstacle_position is None:
+        return None
+    exact = replace(lidar, range_noise=0.0)
+    half = 0.5 * lidar.field_of_view
+    last = half - (2.0 * half / lidar.beams if lidar.field_of_view >= 2.0 * math.pi else 0.0)
+
+    def ranges(row: int) -> Array:
+        discs = [(*run.obstacle_position[row, column], size) for column, _, _, size, box in bodies if box is None]
+        there = [each for each in discs if math.isfinite(each[0])] if lidar.sees_obstacles else []
+        return np.asarray(exact.scan(run.position[row], float(run.heading[row]), people=there))
+
+    return Scanner(-half, last, ranges)
 
 
 def _clearance(run: Run, maps: Iterable[StaticMap], bodies: Bodies, radius: float) -> Array | None:

@@ -46,7 +46,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
         measured_impact as measured_impact,
     )
     from hrsafety.plotting.impacts.traces import measured_records as measured_records
-    from hrsafety.plotting.players import player as player
+    from hrsafety.plotting.players import mcap as mcap, player as player
     from hrsafety.plotting.runs.animation import animate as animate
     from hrsafety.plotting.runs.energies import energy as energy
     from hrsafety.plotting.runs.fields import force_field as force_field, potential_valley as potential_valley
