@@ -319,14 +319,15 @@ class Recording(Played):
         >>> walked.switches, walked.relabeled().switches
         ([(1, 2, 2.0)], [])
         """
-        person, done = self.person.copy(), list[tuple[Any, Any, float]]()
-        for one, other, when in self.switches:
-            later = self.time_s >= when
-            first, second = later & (person == one), later & (person == other)
-            person[first], person[second] = other, one
-            done.append((one, other, when))
+        done = self.switches
         if not done:
             return self
+        person, whose = self.person.copy(), {}
+        for one, other, when in done:
+            # Whose rows stand under an id, since the last exchange.
+            whose[one], whose[other] = whose.get(other, other), whose.get(one, one)
+            for each in (one, other):
+                person[(self.time_s >= when) & (self.person == each)] = whose[each]
         order = np.lexsort((person, self.time_s))
         velocity = None if self.velocity is None else self.velocity[order]
         rows: dict[str, Any] = {

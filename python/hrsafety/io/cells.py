@@ -88,10 +88,11 @@ def read_columns(
     words: Sequence[Cell] = (),
     skip: int = 0,
     columns: int | None = None,
+    comments: bool = True,
 ) -> Columns:
     """Return columns of a text table.
 
-    Blank lines and lines that begin with ``#`` are no rows. Cells in double quotes may hold delimiters. Decimals have
+    Blank lines are no rows. Cells in double quotes may hold delimiters. Decimals have
     points, or commas where no comma divides cells, in all rows.
 
     Parameters
@@ -108,6 +109,8 @@ def read_columns(
         Lines before the first row.
     columns : int or None
         Cells in each row; ``None``: as many as in the first one.
+    comments : bool
+        Whether lines that begin with ``#`` are no rows.
 
     Raises
     ------
@@ -119,9 +122,18 @@ def read_columns(
     if rows > MOST_ROWS:
         raise document.error("too_large", f"have at most {MOST_ROWS:,} rows", Shown(f"{rows:,}"), "cut it into parts")
     try:
-        return _read(document, delimiter, numbers, ids, words, skip, columns, ".")
+        return _read(document, _Layout(delimiter, skip, columns, comments), numbers, ids, words, ".")
     except _CommaError:
-        return _read(document, delimiter, numbers, ids, words, skip, columns, ",")
+        return _read(document, _Layout(delimiter, skip, columns, comments), numbers, ids, words, ",")
+
+
+class _Layout(NamedTuple):
+    """Rows and cells of a table, as `read_columns` takes them."""
+
+    delimiter: str
+    skip: int
+    columns: int | None
+    comments: bool
 
 
 class _CommaError(Exception):
@@ -130,17 +142,14 @@ class _CommaError(Exception):
 
 def _read(
     document: Document,
-    delimiter: str,
+    layout: _Layout,
     numbers: Sequence[Cell],
     ids: Cell | None,
     words: Sequence[Cell],
-    skip: int,
-    columns: int | None,
     decimal: str,
 ) -> Columns:
     values, names, texts, lines = [], [], [], []
-    for part in _parts(document, delimiter, skip, columns):
-        columns = part.count
+    for part in _parts(document, layout):
         table, who = part.numbers_and_ids(numbers, ids, decimal)
         values.append(table)
         names.append(who)
@@ -151,7 +160,7 @@ def _read(
         return Columns(np.empty((0, len(numbers))), nothing, np.empty((0, len(words)), dtype=np.str_), nothing, decimal)
     if ids is not None and len({each.dtype.kind for each in names}) > 1:
         # Words if any is one, all of them as they stand in the file.
-        names = [part.words(ids) for part in _parts(document, delimiter, skip, columns)]
+        names = [part.words(ids) for part in _parts(document, layout)]
     return Columns(
         np.concatenate(values),
         np.concatenate(names) if ids is not None else np.empty(0, dtype=np.int64),
@@ -163,10 +172,10 @@ def _read(
     )
 
 
-def _parts(document: Document, delimiter: str, skip: int, columns: int | None) -> Iterator[_Part]:
+def _parts(document: Document, layout: _Layout) -> Iterator[_Part]:
     """Yield the rows of a table in parts."""
     data, place, line = document.plain, 0, 1
-    for _ in range(skip):
+    for _ in range(layout.skip):
         place = data.find(b"\n", place) + 1
         line += 1
         if place == 0:
@@ -174,9 +183,9 @@ def _parts(document: Document, delimiter: str, skip: int, columns: int | None) -
     while place < len(data):
         behind = data.find(b"\n", min(place + PART, len(data))) + 1
         body = data[place:behind] if behind else data[place:]
-        part = _Part(document, body if body.endswith(b"\n") else body + b"\n", line, delimiter, columns)
+        part = _Part(document, body if body.endswith(b"\n") else body + b"\n", line, layout)
         if len(part.lines):
-            columns = part.count
+            layout = layout._replace(columns=part.count)
             yield part
         line += body.count(b"\n")
         place = behind or len(data)
@@ -185,9 +194,9 @@ def _parts(document: Document, delimiter: str, skip: int, columns: int | None) -
 class _Part:
     """Some rows of a table: where its cells begin and end in a buffer of bytes."""
 
-    def __init__(self, document: Document, body: bytes, line: int, delimiter: str, columns: int | None) -> None:
-        self.document, self.delimiter = document, delimiter
-        self.buffer, self.lines = _without_comments(np.frombuffer(body, dtype=np.uint8), line)
+    def __init__(self, document: Document, body: bytes, line: int, layout: _Layout) -> None:
+        self.document, self.delimiter, columns = document, layout.delimiter, layout.columns
+        self.buffer, self.lines = _without_blanks(np.frombuffer(body, dtype=np.uint8), line, comments=layout.comments)
         self._bytes = body if len(body) == len(self.buffer) else self.buffer.tobytes()
         self.count = columns or 0
         if len(self.lines) == 0:
@@ -197,7 +206,7 @@ class _Part:
         first_end = int(np.argmax(self.buffer == _NEWLINE))
         self.count = int(np.searchsorted(starts, first_end, "right")) if columns is None else columns
         regular = len(ends) == self.count * len(self.lines) and ends_row[self.count - 1 :: self.count].all()
-        if not regular or delimiter == " ":
+        if not regular or self.delimiter == " ":
             self._check_counts(starts)
         self._stripped = _strip(self.buffer, self._bytes, starts, ends)
         self._starts, self._ends = starts.reshape(-1, self.count), ends.reshape(-1, self.count)
@@ -382,8 +391,8 @@ class _Part:
         return self.error("unreadable_number", "be a finite number", short(text), remedy, row=row, name=column.name)
 
 
-def _without_comments(buffer: Bytes, line: int) -> tuple[Bytes, Places]:
-    """Return rows without blank lines and comments, and the numbers of their lines."""
+def _without_blanks(buffer: Bytes, line: int, *, comments: bool) -> tuple[Bytes, Places]:
+    """Return rows without blank lines and, if they are no rows, comments, and the numbers of their lines."""
     ends = np.flatnonzero(buffer == _NEWLINE)
     starts = np.concatenate([[0], ends[:-1] + 1])
     first = buffer[starts]
@@ -395,7 +404,7 @@ def _without_comments(buffer: Bytes, line: int) -> tuple[Bytes, Places]:
     # The first byte of each of these rows that is no blank; of an empty one that is its end.
     place = inked[np.searchsorted(inked, starts[odd])]
     drop = np.zeros(len(starts), dtype=np.bool_)
-    drop[odd] = (place == ends[odd]) | (buffer[place] == _COMMENT)
+    drop[odd] = (place == ends[odd]) | (comments & (buffer[place] == _COMMENT))
     if not drop.any():
         return buffer, lines
     change = np.zeros(len(buffer) + 1, dtype=np.int8)

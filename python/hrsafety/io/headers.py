@@ -170,7 +170,10 @@ def header_of(document: Document, roles: Roles, columns: object = None) -> Heade
     bare = bool(names) and sum(map(is_number, names)) > len(names) / 2
     given = _renamed(names, columns, bare)
     if bare and columns is None:
-        return None
+        given = _commented(document, number, delimiter, len(names))
+        if not {"x", "y"} <= {meaning_of(name, roles).role for name in given}:
+            return None
+        names = given
     index: dict[str, int] = {}
     unit: dict[str, str] = {}
     for place, name in enumerate(given):
@@ -183,6 +186,13 @@ def header_of(document: Document, roles: Roles, columns: object = None) -> Heade
             raise document.error("ambiguous_columns", f"have one column for {role}", both, remedy, line=number + 1)
         index[role], unit[role] = place, found
     return Header(names, index, unit, delimiter, number if bare else number + 1)
+
+
+def _commented(document: Document, number: int, delimiter: str, count: int) -> list[str]:
+    """Return the names in the last comment above the first row, if there are as many as it has cells."""
+    above = [line.strip() for line in document.first_lines[:number] if line.strip()]
+    names = cells_of(above[-1].lstrip("# \t"), delimiter) if above else []
+    return names if len(names) == count else []
 
 
 def _renamed(names: list[str], columns: object, bare: bool) -> list[str]:

@@ -396,3 +396,20 @@ def test_three_million_rows_are_read_without_a_loop_over_rows(tmp_path: Path) ->
     # 4 s on a busy core, 3 s on a free one.
     assert process_time() - began < 10.0
     assert len(found) == people * instants
+
+
+def test_three_people_who_exchange_ids_one_after_the_other_are_told_apart() -> None:
+    time = 0.1 * np.arange(60)
+    ways = [np.stack([1.2 * time, np.full(60, 3.0 * k)], axis=1) for k in range(3)]
+    labels = np.tile([[1], [2], [3]], 60)
+    labels[:, 20:] = labels[[1, 0, 2], 20:]  # ids of the first and the second
+    labels[:, 40:] = [[3], [1], [2]]  # then those of the first, now 2, and the third
+    rows = sorted((time[k], int(labels[who, k]), *ways[who][k].tolist(), who) for k in range(60) for who in range(3))
+    table = np.array(rows)
+    found = Recording(time_s=table[:, 0], person=table[:, 1].astype(int), position=table[:, 2:4])
+    assert [each.code for each in found.warnings] == ["identity_switch"]
+    assert [pair[:2] for pair in found.switches] == [(1, 2), (2, 3)]
+    again = found.relabeled()
+    assert again.warnings == ()
+    for who in range(3):
+        np.testing.assert_array_equal(again.track(who + 1)[1], ways[who])

@@ -10,10 +10,10 @@ import numpy.typing as npt
 
 from hrsafety.errors import FileError, Shown
 from hrsafety.io.cells import Cell, read_columns
-from hrsafety.io.headers import cells_of, delimiter_of, first_row, is_number
+from hrsafety.io.headers import cells_of, delimiter_of, first_row, header_of, is_number
 from hrsafety.io.people.request import Request
 from hrsafety.io.people.rows import Rows, assumed
-from hrsafety.io.people.tables import rows_of
+from hrsafety.io.people.tables import ROLES, rows_of
 from hrsafety.io.reader import Document, Reader
 from hrsafety.plausibility import ResultWarning
 
@@ -49,7 +49,7 @@ def _is_eth(document: Document) -> bool:
 
 
 def _is_bare(document: Document) -> bool:
-    return len(_first_numbers(document)) in {4, 5}
+    return len(_first_numbers(document)) in {4, 5} and header_of(document, ROLES) is None
 
 
 def _numbers(

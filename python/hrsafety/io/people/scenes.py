@@ -30,8 +30,7 @@ def _is_trajnetpp(document: Document) -> bool:
 
 
 def _is_socnav(document: Document) -> bool:
-    text = document.text
-    return text.lstrip()[:1] == "{" and '"sequence"' in text
+    return document.first_lines[0].lstrip()[:1] == "{" and '"sequence"' in document.text
 
 
 def _unreadable(document: Document, error: Exception, line: int | None = None) -> FileError:

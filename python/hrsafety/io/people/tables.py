@@ -96,7 +96,7 @@ def _is_citr(document: Document) -> bool:
 
 
 def _is_table(document: Document) -> bool:
-    header = header_of(document, {})
+    header = header_of(document, ROLES)
     return header is not None and len(header.names) > 1 and header.names[0][:1] not in {"{", "["}
 
 
@@ -210,6 +210,7 @@ def table_columns(document: Document, columns: object = None, *, labeled: bool =
         delimiter=header.delimiter,
         skip=header.skip,
         columns=len(header.names),
+        comments=header.delimiter == " ",  # elsewhere an id may begin like a comment
         numbers=[Cell(place[each], header.names[place[each]]) for each in wanted],
         ids=None if single else Cell(place["id"], header.names[place["id"]]),
         words=[Cell(place["label"], "label")] if "label" in place else [],
