@@ -76,6 +76,13 @@ def test_people_of_hunavsim_walk(shared: Path) -> None:
     assert run.time[-1] == pytest.approx(5.0)
 
 
+def test_a_plan_is_the_wall_of_a_scene_and_its_doubts_are_those_of_the_world(shared: Path) -> None:
+    plan = io.load_map(shared / FORMATS / "map_plan.dxf")
+    world = io.load_scene(shared / FORMATS / HUNAV).world(walls=plan, time_limit=2.0)
+    assert {"behavior_not_available", "skipped_entities"} <= {each.code for each in world.warnings}
+    assert nav.simulate(world).time[-1] == pytest.approx(2.0)
+
+
 def test_goals_of_all_and_behaviors_with_settings(tmp_path: Path) -> None:
     path = tmp_path / "agents.yaml"
     path.write_text(
@@ -151,6 +158,13 @@ def test_cases_of_crowdnav_keep_the_room_that_the_file_says(
 def test_settings_that_break_a_rule_are_named(shared: Path, tmp_path: Path, old: str, new: str, words: str) -> None:
     with pytest.raises(FileError, match=words):
         io.load_scene(changed(shared, tmp_path, CROWDNAV, (old, new)))
+
+
+def test_people_of_another_policy_are_doubted(shared: Path, tmp_path: Path) -> None:
+    settings = io.load_scene(changed(shared, tmp_path, CROWDNAV, ("policy = orca", "policy = linear")))
+    assert codes(settings) == []
+    assert [each.code for each in unsafe_doubts(settings.world(0).warnings)] == ["behavior_not_available"]
+    assert settings.world(0, model=nav.crowd.Moussaid()).warnings == ()
 
 
 def test_too_many_people_find_no_room(shared: Path, tmp_path: Path) -> None:

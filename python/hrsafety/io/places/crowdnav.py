@@ -49,6 +49,8 @@ class CrowdNavScene:
         In m.
     person_radius, person_speed : float
         In m and m/s.
+    person_policy : str
+        How people decide in CrowdNav.
     robot_radius, robot_speed : float
         In m and m/s.
     robot_seen : bool
@@ -71,6 +73,7 @@ class CrowdNavScene:
     square_width: Annotated[float, "m"]
     person_radius: Annotated[float, "m"]
     person_speed: Annotated[float, "m/s"]
+    person_policy: str
     robot_radius: Annotated[float, "m"]
     robot_speed: Annotated[float, "m/s"]
     robot_seen: bool
@@ -94,7 +97,8 @@ class CrowdNavScene:
         Returns
         -------
         World
-            Starts are drawn by the rule of CrowdNav with numbers of this package.
+            Starts are drawn by the rule of CrowdNav with numbers of this package. Without a model, people of another
+            policy than orca are doubted: ``behavior_not_available``.
 
         Raises
         ------
@@ -117,10 +121,14 @@ class CrowdNavScene:
             people.append(
                 Person(start=start, route=[goal], model=of, radius=radius, desired_speed=speed, awareness=awareness)
             )
+        doubts = self.warnings
+        if model is None and self.person_policy != "orca":
+            message = f"people decide by reciprocal avoidance, not by the policy {self.person_policy} of the file"
+            doubts = (*doubts, ResultWarning("behavior_not_available", "policy", message))
         body = HolonomicRobot(radius=self.robot_radius, max_speed=self.robot_speed)
         robot = Robot(body, start=ends[0][0], goal=ends[0][1], law=law, heading=0.5 * math.pi)
         return World(
-            people=people, robots=[robot], step=self.step, time_limit=self.time_limit, seed=case, doubts=self.warnings
+            people=people, robots=[robot], step=self.step, time_limit=self.time_limit, seed=case, doubts=doubts
         )
 
     def _way(
@@ -175,6 +183,7 @@ def read_crowdnav(document: Document) -> CrowdNavScene:
         square_width=settings.positive("sim", "square_width"),
         person_radius=settings.positive("humans", "radius"),
         person_speed=settings.positive("humans", "v_pref"),
+        person_policy=settings.value("humans", "policy", str, "a word", default="orca"),
         robot_radius=settings.positive("robot", "radius"),
         robot_speed=settings.positive("robot", "v_pref"),
         robot_seen=settings.value("robot", "visible", _truth, "true or false"),

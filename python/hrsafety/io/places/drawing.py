@@ -18,18 +18,19 @@ __all__ = ["UNITS", "Drawing", "check_size"]
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254, "ft": 0.3048}
 """Meters of each unit of a plan."""
-MOST_BYTES = 1 << 26
+MOST_BYTES = 1 << 25
+"""Of files that are held as objects: half a gigabyte while they are read."""
 LARGEST = 1e9
 """Coordinates in m are smaller: beyond, the rounding of numbers moves walls."""
 _NOTES = {"TEXT", "MTEXT", "DIMENSION", "LEADER", "MULTILEADER", "ATTDEF", "ATTRIB", "VIEWPORT", "POINT", "TOLERANCE"}
 _NOTES |= {"text", "Point", "MultiPoint"}
 
 
-def check_size(document: Document) -> None:
+def check_size(document: Document, most: int = MOST_BYTES) -> None:
     """Refuse plans that would take more memory than a plan should."""
-    if len(document.data) > MOST_BYTES:
+    if len(document.data) > most:
         found = Shown(f"{len(document.data)} bytes")
-        raise document.error("too_large", f"be a plan of at most {MOST_BYTES} bytes", found)
+        raise document.error("too_large", f"be a plan of at most {most} bytes", found)
 
 
 class Drawing:

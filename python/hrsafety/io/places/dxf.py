@@ -23,6 +23,7 @@ BINARY = b"AutoCAD Binary DXF"
 SAME = 1e-6
 """A line goes on where another one ends if its start is at most so far away, in m."""
 MOST_BULGE = 1e6
+MOST_STREAMED = 1 << 27
 MOST_NESTED = 16
 """Blocks within blocks."""
 _INSUNITS = {1: "inch", 2: "ft", 4: "mm", 5: "cm", 6: "m"}
@@ -71,7 +72,7 @@ def read_dxf(
     expands = flag("blocks", blocks)
     if document.head.startswith(BINARY):
         raise document.error("unreadable", "be DXF in text", Shown("binary DXF"), "save it as DXF in text (ASCII)")
-    check_size(document)
+    check_size(document, MOST_STREAMED)
     drawing = Drawing(document, thickness)
     walls = _Walls(drawing, _scale(drawing, unit))
     entities = _entities(document, _expanded(document) if expands else document.text)
@@ -88,6 +89,7 @@ def _expanded(document: Document) -> str:
         import ezdxf.document
     except ImportError:
         raise MissingExtraError(f"the blocks of {document.name} need ezdxf: pip install 'hrsafety[plans]'") from None
+    check_size(document)
     for _ in _groups(document, document.text):  # errors in the file's own lines come first
         pass
     read: Any = ezdxf.document.Drawing.read
