@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import pickle
 from dataclasses import replace
@@ -47,6 +48,41 @@ def test_people_do_not_pass_the_walls_of_a_map(walls: nav.StaticMap) -> None:
     # A tenth of the radius is kept from the contour; a thick wall ends in corners, not round.
     assert float(np.min(walls.clearance(places))) > 0.02
     assert places[:, 0].max() < 9.0
+
+
+def test_people_find_their_way_around_the_walls_of_a_map() -> None:
+    wall = nav.StaticMap.from_polylines([[(4, -2), (4, 1)]]) + ROOM
+    person = nav.Person(start=(1, -1), route=[(7, -1)], desired_speed=1.3)
+    there = nav.simulate(nav.World(people=[person], walls=wall, time_limit=20.0))
+    assert math.isfinite(there.person_arrival_time[0])
+    assert there.scenario.people[0].route[-1] == (7.0, -1.0)
+    world = there.scenario
+    assert replace(world, seed=5).people == world.people
+    straight = nav.simulate(nav.World(people=[person], walls=[[(4, -2), (4, 1)]], time_limit=20.0))
+    assert math.isnan(straight.person_arrival_time[0])
+    # Doors, lines, sources and those who start again.
+    line = replace(person, route=[((6.5, -1.5), (6.5, -0.5)), (7, -1)], at_end="repeat")
+    comes = nav.Source(low=(0, -1.5), high=(1, -0.5), rate=0.5, route=[(7, -1)])
+    busy = nav.World(people=[line], sources=[comes], walls=wall, time_limit=30.0)
+    assert len(busy.people[0].route) > 2
+    assert len(busy.sources[0].route) > 1
+    run = nav.simulate(busy)
+    assert np.isfinite(run.person_arrival_time[1:]).sum() >= 5
+    assert "route_blocked" not in codes(busy)
+    closed = nav.StaticMap.from_polylines([[(4, -2), (4, 2)]]) + ROOM
+    assert codes(nav.simulate(nav.World(people=[person], walls=closed, time_limit=1.0))) == {"route_blocked"}
+
+
+@given(st.lists(st.tuples(st.floats(1.5, 6.5), st.floats(-1.4, 1.4), st.floats(0.15, 0.5)), max_size=3))
+@settings(max_examples=15, deadline=None)
+def test_detours_keep_off_the_walls(pillars: list[tuple[float, float, float]]) -> None:
+    walls = nav.StaticMap(discs=pillars) + ROOM if pillars else ROOM
+    person = nav.Person(start=(0, 0), route=[(8, 0)])
+    world = nav.World(people=[person], walls=walls, time_limit=1.0)
+    way = [(0.0, 0.0), *world.people[0].route]
+    if len(way) > 2:
+        for here, there in itertools.pairwise(way):
+            assert walls.segment_clearance(here, there) >= person.radius - 1e-6
 
 
 def test_a_law_that_does_not_know_a_wall_drives_into_it_and_is_told_of() -> None:

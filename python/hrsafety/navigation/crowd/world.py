@@ -13,6 +13,7 @@ from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.crowd.agents import Person, Robot, Source
 from hrsafety.navigation.crowd.doubts import of_numbers, of_robots, of_sensors, of_unknown_walls, of_walls
+from hrsafety.navigation.crowd.routes import Routes, of_routes
 from hrsafety.navigation.maps.outlines import outlines
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles.base import Obstacle
@@ -86,7 +87,9 @@ class World(Parameters):
     walls : StaticMap, or sequence of Disc, Rectangle or sequence of points
         What stands. Points are joined by segments. Every wall acts once, through its nearest point. Laws are told of
         the members of a sequence as obstacles that stand; of a map they know what they have a map of, or what their
-        sensors see, and results carry the warning ``"unknown_wall"`` where that is less.
+        sensors see, and results carry the warning ``"unknown_wall"`` where that is less. People find their way around
+        a map: where it blocks a straight way of a route, points of the detour of a `Guide` are added to the route;
+        where none leads around, results carry the warning ``"route_blocked"``.
     obstacles : sequence of Obstacle
         What moves as it is told and reacts to nobody, `Human` and `MovingDisc`, and what stands, `Disc` and
         `Rectangle`, which are walls. They are kept among people and walls, and no more here.
@@ -152,10 +155,14 @@ class World(Parameters):
             known, standing = known + StaticMap.from_obstacles(standing), []
         told += standing
         shapes = tuple(told) if known is None else outlines(known)
+        people, sources = _all("people", Person, self.people), _all("sources", Source, self.sources)
+        if known is not None:
+            routes = Routes(known)
+            people, sources = tuple(map(routes.completed, people)), tuple(map(routes.completed, sources))
         self._set(
-            people=(*_all("people", Person, self.people), *movers),
+            people=(*people, *movers),
             robots=_all("robots", Robot, self.robots),
-            sources=_all("sources", Source, self.sources),
+            sources=sources,
             walls=tuple(told) if known is None else known,
             _shapes=shapes,
             obstacles=(),
@@ -206,8 +213,9 @@ class World(Parameters):
             known = self.walls if isinstance(self.walls, StaticMap) else None
             seen = of_sensors(own[0], own[2], self.step, known)
             found = (*self.doubts, *of_numbers(*own, self.time_limit), *in_walls, *seen, *of_shields)
-            if isinstance(self.walls, StaticMap):
-                found = (*found, *self.walls.warnings, *of_unknown_walls(self.walls, own[2]))
+            if known is not None:
+                lost = *of_routes(own[0], own[1], known), *of_unknown_walls(known, own[2])
+                found = (*found, *known.warnings, *lost)
             self._set(_warnings=found)
         return found
 
