@@ -55,8 +55,9 @@ class Routes:
         if isinstance(owner, Person) and not owner.reacts:
             return owner
         route: list[Waypoint] = []
-        here = _begin(owner)
-        for element in owner.route:
+        here: Pair = _begin(owner)
+        elements: Sequence[Waypoint] = owner.route
+        for element in elements:
             route += [*self._detour(here, middle_of(element), owner.radius), element]
             here = middle_of(element)
         if owner.route and owner.at_end == "repeat":
@@ -89,7 +90,8 @@ class Routes:
         except InvalidParameterError:  # no way
             return []
         self._plans[there, size] = plan
-        return plan.path(here).tolist()
+        path = plan.path(here).tolist()
+        return path
 
     def _straightened(self, path: Sequence[Sequence[float]], size: float) -> list[Pair]:
         """Return the points at which a path has to turn, without its ends."""
