@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from hrsafety._arguments import Array
 from hrsafety.navigation.maps.static_map import StaticMap
@@ -185,7 +186,23 @@ _OCCUPIED, _FREE, _UNKNOWN = 100, 0, -1
 
 
 def grid(time: float, known: StaticMap, box: tuple[float, float, float, float], resolution: float) -> Message:
-    """Return nav_msgs/OccupancyGrid of a box (left, low, right, high) in m: cells that walls touch are occupied."""
+    """Return nav_msgs/OccupancyGrid: a map that is one grid as it is, else cells of a box that walls touch as occupied.
+
+    Parameters
+    ----------
+    time : float
+        In s.
+    known : StaticMap
+        The map.
+    box : tuple of float
+        Left, low, right and high end in m.
+    resolution : float
+        Side of a cell in m, doubled until there are not too many.
+    """
+    if len(known.grids) == 1 and not (len(known.walls) or len(known.polygons) or len(known.discs)):  # type: ignore[arg-type]  # has a length
+        (only,) = known.grids
+        cells = np.where(only.occupied, _OCCUPIED, np.where(only.unseen, _UNKNOWN, _FREE))
+        return _occupancy(time, cells, only.resolution, Pose(*only.origin, only.yaw))
     left, low, right, high = box
     while (right - left) * (high - low) > _MOST_CELLS * resolution * resolution:
         resolution *= 2.0
@@ -195,6 +212,11 @@ def grid(time: float, known: StaticMap, box: tuple[float, float, float, float], 
     centers = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
     cells = np.where(known.clearance(centers) <= resolution * math.sqrt(0.5), _OCCUPIED, _FREE)
     cells[np.asarray(known.unseen(centers)) & (cells == _FREE)] = _UNKNOWN
+    return _occupancy(time, cells.reshape(rows, columns), resolution, Pose(left, low, 0.0))
+
+
+def _occupancy(time: float, cells: npt.NDArray[np.int_], resolution: float, origin: Pose) -> Message:
+    rows, columns = cells.shape
     return {
         "header": _header("map", time),
         "info": {
@@ -202,7 +224,7 @@ def grid(time: float, known: StaticMap, box: tuple[float, float, float, float], 
             "resolution": resolution,
             "width": columns,
             "height": rows,
-            "origin": {"position": _point(left, low), "orientation": _turned(0.0)},
+            "origin": {"position": _point(origin.x, origin.y), "orientation": _turned(origin.yaw)},
         },
         "data": array.array("b", cells.astype(np.int8).tobytes()),
     }

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-import numpy as np
-
 from hrsafety import _keys as kind
 from hrsafety import navigation as nav
 from hrsafety._keys import Keys, checked, located, parsed
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import FileError, InvalidParameterError
+from hrsafety.io import load_map
 from hrsafety.navigation.crowd.pedestrians import Pedestrian
 from hrsafety.navigation.obstacles.moving_rectangle import MovingRectangle
 from hrsafety.plausibility import ResultWarning
@@ -25,8 +23,6 @@ __all__ = ["load_world"]
 
 _STEP = 0.05
 _TOLERANCE = 0.3
-_FAR = 9_000.0
-"""Where a robot stands that meets nobody, in m."""
 
 _MODELS: Mapping[str, type[Pedestrian]] = MappingProxyType(
     {
@@ -62,7 +58,9 @@ _PERSON: Keys = MappingProxyType(
 _SOURCE: Keys = MappingProxyType(
     {**_TRAITS, "low": kind.pair, "high": kind.pair, "rate": kind.number, "arrivals": kind.word}
 )
-_OWN: Keys = MappingProxyType({"people": kind.tables, "sources": kind.tables, "walls": _listed, "step": kind.number})
+_OWN: Keys = MappingProxyType(
+    {"people": kind.tables, "sources": kind.tables, "walls": _listed, "map": kind.word, "step": kind.number}
+)
 
 
 @kind.top_level({**TOP, **_OWN})
@@ -76,6 +74,8 @@ def load_world(path: str | PathLike[str]) -> nav.World:
       ``"collision_free_speed"``;
     - ``[[sources]]`` with the fields of `Source`;
     - ``walls``, an array of polylines, each an array of points [x, y] in m;
+    - ``map``, a file that `hrsafety.io.load_map` reads, such as that of a map server, relative to the world file; the
+      law knows it;
     - ``step``, the time step of the world in s.
 
     Parameters
@@ -93,7 +93,7 @@ def load_world(path: str | PathLike[str]) -> nav.World:
     Raises
     ------
     InvalidParameterError
-        As `load`, and for a rectangle that moves.
+        As `load`, for a rectangle that moves, and for a map that cannot be read.
 
     Examples
     --------
@@ -122,12 +122,15 @@ def load_world(path: str | PathLike[str]) -> nav.World:
     scenario, law = read_scenario(whole, place.parent)
     people = [_agent(f"people[{index}]", table, nav.Person) for index, table in enumerate(own.get("people", []))]
     sources = [_agent(f"sources[{index}]", each, nav.Source) for index, each in enumerate(own.get("sources", []))]
-    walls: list[Any] = list(own.get("walls", []))
     for index, obstacle in enumerate(scenario.obstacles):
-        if isinstance(obstacle, (nav.Disc, nav.Rectangle)):
-            walls.append(obstacle)
-        else:
-            people.append(_as_told(f"obstacles[{index}]", obstacle, scenario.time_limit))
+        if isinstance(obstacle, MovingRectangle):
+            remedy = 'describe it by a "moving_disc", or run the file with hrsafety simulate'
+            rule = "be round if it moves among people"
+            raise InvalidParameterError(f"obstacles[{index}].type", rule, "moving_rectangle", remedy)
+    walls: Any = own.get("walls", [])
+    if "map" in own:
+        walls = known = _map(place.parent / own["map"], walls)
+        law = law.replaced(map=known) if isinstance(law, nav.SafeNavigation) else nav.SafeNavigation(law, map=known)
     step = own.get("step", _STEP if timed is None else timed / max(1, math.ceil(timed / _STEP - 1e-9)))
     with located(""):
         robot = nav.Robot(
@@ -145,6 +148,7 @@ def load_world(path: str | PathLike[str]) -> nav.World:
             robots=[robot],
             sources=sources,
             walls=walls,
+            obstacles=scenario.obstacles,
             step=step,
             time_limit=scenario.time_limit,
             seed=scenario.seed,
@@ -175,23 +179,12 @@ def _agent(path: str, table: dict[str, Any], of: type[Any]) -> Any:
         return of(**given)
 
 
-def _as_told(path: str, obstacle: nav.Obstacle, time_limit: float) -> nav.Person:
-    """Return somebody who moves as an obstacle of a scenario does."""
-    if isinstance(obstacle, MovingRectangle):
-        remedy = 'describe it by a "moving_disc", or run the file with hrsafety simulate'
-        raise InvalidParameterError(f"{path}.type", "be round if it moves among people", "moving_rectangle", remedy)
-    radius: float = obstacle.radius  # type: ignore[attr-defined]  # what is left is round
-    track = getattr(obstacle, "path", None) or _track(obstacle, time_limit)
-    return nav.Person(start=track[1][0], radius=radius, recording=track)
-
-
-def _track(obstacle: nav.Obstacle, time_limit: float) -> tuple[list[float], list[tuple[float, float]]]:
-    """Return where an obstacle is at instants 10 ms apart, as a run has it whose robot meets nobody."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # about the robot that stands far away
-        scene = nav.Scenario(
-            start=(_FAR, _FAR), goal=(_FAR + 9.0, _FAR), obstacles=(obstacle,), rest_time=1e9, time_limit=time_limit
-        )
-        run = nav.simulate(scene, lambda _: np.zeros(2))
-    x, y = run.obstacle_position[:, 0].T.tolist()
-    return run.time.tolist(), list(zip(x, y, strict=True))
+def _map(file: Path, walls: list[Any]) -> nav.StaticMap:
+    """Return the map that a world file refers to, and its walls beside that."""
+    try:
+        return load_map(file) + nav.StaticMap.from_polylines(walls)
+    except FileError:
+        raise
+    except InvalidParameterError as error:
+        name = "map" if error.argument == "path" else error.argument.replace("polylines", "walls", 1)
+        raise error.renamed(name) from None

@@ -198,6 +198,27 @@ def test_walls_are_on_the_map_and_people_are_not(served_hall: tuple[Any, FakeBus
     assert set(np.unique(cells)) == {0, 100}
 
 
+def test_the_grid_of_a_map_server_is_published_as_it_is() -> None:
+    occupied = np.zeros((80, 120), dtype=bool)
+    occupied[[0, -1]], occupied[:, [0, -1]] = True, True
+    occupied[40, 60:70] = True
+    walls = nav.StaticMap.from_grid(occupied, resolution=0.1, origin=(-2.0, -4.0), yaw=0.1, outside="unknown")
+    person = nav.Person(start=(6.0, 1.0), route=[(0.0, 1.0)], desired_speed=1.2)
+    record, bus = served(hall(walls=walls, people=[person], sources=[]), ahead)
+    (message,) = bus.sent["/map"]
+    np.testing.assert_array_equal(np.array(message["data"]).reshape(80, 120), 100 * occupied)
+    assert message["info"]["resolution"] == 0.1
+    assert message["info"]["origin"]["position"] == {"x": -2.0, "y": -4.0, "z": 0.0}
+    assert message["info"]["origin"]["orientation"]["z"] == pytest.approx(math.sin(0.05))
+    run = record.legs[0].trajectory
+    lidar = nav.Lidar(map=walls, beams=720, range_max=12.0)
+    discs = np.column_stack([run.obstacle_position[20], run.obstacle_radius])
+    expected = lidar.scan(run.robot_position[20, 0], run.robot_heading[20, 0], people=discs)
+    found = np.array(bus.sent["/scan"][20]["ranges"])
+    np.testing.assert_allclose(found[np.isfinite(found)], expected[expected < 12.0], rtol=1e-6)
+    STORE.serialize_cdr(as_ros("nav_msgs/msg/OccupancyGrid", message), "nav_msgs/msg/OccupancyGrid")
+
+
 def test_people_keep_their_names_also_those_who_come_later(served_hall: tuple[Any, FakeBus]) -> None:
     _, bus = served_hall
     last: dict[str, tuple[float, float]] = {}

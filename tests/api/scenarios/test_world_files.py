@@ -109,6 +109,31 @@ def test_steps_divide_control_periods(tmp_path: Path) -> None:
     assert loaded(tmp_path, ROOM).step == 0.05
 
 
+PGM = "P2\n8 4\n255\n" + "0 " * 8 + ("0 " + "254 " * 6 + "0 ") * 2 + "0 " * 8
+YAML = "image: hall.pgm\nresolution: 1.0\norigin: [-1, -2, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+
+
+def test_a_map_is_what_stands_and_what_the_law_knows(tmp_path: Path) -> None:
+    (tmp_path / "hall.pgm").write_text(PGM)
+    (tmp_path / "hall.yaml").write_text(YAML)
+    text = 'start = [0.5, 0.0]\ngoal = [5.0, 0.0]\nmap = "hall.yaml"\nwalls = [[[3, 0.5], [3, 1]]]\n'
+    world = loaded(
+        tmp_path,
+        text + "[robot]\nmax_speed = 0.5\n[safe.shield]\n[[people]]\nstart = [5.0, 0.5]\nroute = [[0.5, 0.5]]\n",
+    )
+    assert isinstance(world.walls, nav.StaticMap)
+    assert world.walls.clearance((1.0, 0.0)) == pytest.approx(1.0)
+    assert world.walls.clearance((3.0, 0.4)) == pytest.approx(0.1)
+    law = world.robots[0].law
+    assert isinstance(law, nav.SafeNavigation)
+    assert law.map == world.walls
+    assert not [each for each in world.warnings if each.code == "unknown_wall"]
+    with pytest.raises(InvalidParameterError, match="map must"):
+        loaded(tmp_path, text.replace("hall.yaml", "hell.yaml"))
+    with pytest.raises(InvalidParameterError, match=r"walls\[0\]"):
+        loaded(tmp_path, text.replace("[[[3, 0.5], [3, 1]]]", "[[[3, 0.5], [3, 0.5]]]"))
+
+
 def test_what_means_nothing_is_said(tmp_path: Path) -> None:
     assert [each.code for each in loaded(tmp_path, ROOM + "rest_time = 3\n").doubts] == ["not_used"]
 
