@@ -269,6 +269,23 @@ def test_changes_keep_everything_else() -> None:
     assert document.text == ODD
 
 
+def test_a_change_of_a_monitor_keeps_all_its_other_lines(shared: Path, tmp_path: Path) -> None:
+    source = shared / "data" / "formats" / "cfg_collision_monitor.yaml"
+    document = read_yaml(source)
+    assert document.content == source.read_bytes()
+    top = ("collision_monitor", "ros__parameters")
+    new = "[[0.6, 0.3], [0.6, -0.3], [-0.3, -0.3], [-0.3, 0.3]]"
+    changed = document.changed({(*top, "Stop", "points"): new, (*top, "source_timeout"): 0.15})
+    changed.write(tmp_path / "cm.yaml")
+    before, after = source.read_text(encoding="utf-8").splitlines(), (tmp_path / "cm.yaml").read_text(encoding="utf-8")
+    lines = after.splitlines()
+    assert len(lines) == len(before)
+    assert [new for old, new in zip(before, lines, strict=True) if old != new] == [
+        "    source_timeout: 0.15   # a comment that a round trip keeps",
+        f'      points: "{new}"',
+    ]
+
+
 def test_a_list_of_another_length_is_written_in_brackets() -> None:
     for indent in ("", "  "):
         text = f"a:\n{indent}- 1\n{indent}- 2\nb: 3\n"

@@ -352,6 +352,8 @@ def test_grays_that_a_threshold_frees_are_doubted(
         ([[WHITE, WHITE, BLACK], [WHITE, GRAY, WHITE]], "mode: raw\n", True),
         ([[WHITE, WHITE, BLACK], [WHITE, GRAY, WHITE]], "", False),
         ([[255, 255, 0], [0, 255, 0]], "", False),
+        ([[255, 0] * 1000 + [8, 19]], "", False),
+        ([[255, 0] * 1000 + [8, 100]], "", True),
     ],
 )
 def test_gray_values_of_another_mode_are_doubted(tmp_path: Path, values: Any, more: str, doubted: bool) -> None:

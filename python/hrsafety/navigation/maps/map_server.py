@@ -315,7 +315,9 @@ def _doubts_of_mode(most: int, rules: _Rules, seen: npt.NDArray[np.int64]) -> It
             "raw takes for unknown, and black for free: leave the mode out if black is occupied"
         )
         yield ResultWarning("other_mode", "mode", message)
-    if rules.mode != "raw" and not rules.negate and others == 0 and between and seen[gray == 255].any():
+    # Few dark cells, of which none is 100, are the edge of a drawing.
+    is_raw = between > FEW_CELLS * cells or seen[gray == 100].any()
+    if rules.mode != "raw" and not rules.negate and others == 0 and between and is_raw and seen[gray == 255].any():
         message = (
             f"all gray values are 0 to 100 or 255, as those of mode raw, where {between} cells above 0 are occupied "
             "and 255 is unknown: mode: raw reads them so, and negate: 1 if white is occupied"
