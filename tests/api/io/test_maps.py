@@ -166,6 +166,19 @@ def test_what_a_plan_holds_beside_walls_is_counted_and_doubted(tmp_path: Path) -
         load_map(path, layers=["wals"])
 
 
+@pytest.mark.parametrize("old", [False, True])
+def test_the_width_of_a_polyline_is_the_thickness_of_its_wall(tmp_path: Path, old: bool) -> None:
+    document = ezdxf.new("R12" if old else "R2010")
+    space = document.modelspace()
+    draw = space.add_polyline2d if old else space.add_lwpolyline
+    draw([(0, 0, 100, 240), (5000, 0, 0, 0)], format="xyse")
+    space.add_line((0, 3000), (5000, 3000))
+    path = written(tmp_path, "plan.dxf", saved(document))
+    found = load_map(path, unit="mm", radius=0.05)
+    assert [wall.radius for wall in found.walls] == pytest.approx([0.12, 0.05])
+    assert found.clearance((2.5, 1.0)) == pytest.approx(0.88)
+
+
 def test_blocks_are_read_where_they_are_placed(tmp_path: Path) -> None:
     document = ezdxf.new()
     document.units = 6

@@ -58,10 +58,14 @@ class Drawing:
         points: Iterable[Pair],
         *,
         ring: bool = False,
+        width: float = 0.0,
         line: int | None = None,
         key: str | None = None,
     ) -> None:
-        """Add a wall along points in m; the last one of a ring is the first. One without length is left out."""
+        """Add a wall along points in m; the last one of a ring is the first. One without length is left out.
+
+        Its radius is half of what is drawn as its width, and at least that of all walls.
+        """
         kept: list[Pair] = []
         for x, y in self._within_bounds(points, line, key):
             if not (abs(x) < LARGEST and abs(y) < LARGEST):
@@ -79,7 +83,7 @@ class Drawing:
         if len(kept) < 2:
             self.skipped[f"{kind} without length"] += 1
             return
-        self.walls.append(Wall(tuple(kept), self.radius))
+        self.walls.append(Wall(tuple(kept), max(self.radius, 0.5 * width)))
 
     def _within_bounds(self, points: Iterable[Pair], line: int | None, key: str | None) -> Iterator[Pair]:
         """Yield points, and turn curves of too many chords into an error about their place."""

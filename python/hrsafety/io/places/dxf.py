@@ -30,6 +30,7 @@ _INSUNITS = {1: "inch", 2: "ft", 4: "mm", 5: "cm", 6: "m"}
 _READ = frozenset(("LINE", "LWPOLYLINE", "POLYLINE", "VERTEX", "ARC", "CIRCLE"))
 _PLACE = (8, 67)
 """Groups of the layer and of the space, paper or model."""
+_WIDTHS = (40, 41, 43)
 _CLOSED, _SURFACE, _SPLINE_FRAME = 1, 16 | 64, 16
 _BEGIN = re.compile(rb"\A(?:\xef\xbb\xbf)?(?:\s*999[ \t]*\r?\n[^\n]*\n)*\s*0[ \t]*\r?\n[ \t]*SECTION[ \t]*\r?\n")
 
@@ -257,7 +258,7 @@ class _Walls:
             elif group.code in (20, 42) and corners:
                 x, y, bulge = corners[-1]
                 corners[-1] = (x, self.number(group), bulge) if group.code == 20 else (x, y, self.number(group))
-        self.outline(entity, corners)
+        self.outline(entity, corners, [entity])
 
     def polyline(self, end: Entity) -> None:
         """Add a polyline whose vertices were entities of their own."""
@@ -274,16 +275,18 @@ class _Walls:
             for each in vertices
             if not self.flags(each) & _SPLINE_FRAME
         ]
-        self.outline(entity, corners)
+        self.outline(entity, corners, [entity, *vertices])
 
-    def outline(self, entity: Entity, corners: list[tuple[float, float, float]]) -> None:
-        """Add a polyline of corners, each with the bulge of what follows."""
+    def outline(self, entity: Entity, corners: list[tuple[float, float, float]], parts: list[Entity]) -> None:
+        """Add a polyline of corners, each with the bulge of what follows, as thick as its widest part."""
         side = self.side(entity)
         if side == 0.0:
             return
         self.end_chain()
         ways = [*corners, *corners[:1]] if self.flags(entity) & _CLOSED else corners
-        self.drawing.add(entity.kind, self.bent(entity, ways, side), line=entity.line)
+        widths = [self.number(group) for part in parts for group in part.groups if group.code in _WIDTHS]
+        width = max((abs(each) for each in widths), default=0.0) * self.scale
+        self.drawing.add(entity.kind, self.bent(entity, ways, side), width=width, line=entity.line)
 
     def bent(self, entity: Entity, corners: list[tuple[float, float, float]], side: float) -> Iterator[Pair]:
         """Yield the points of a polyline in m."""

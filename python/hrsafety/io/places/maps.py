@@ -82,7 +82,8 @@ def load_map(
     blocks : bool
         Whether what a DXF places as blocks (INSERT) is read, too, with ezdxf.
     radius : float
-        Half the thickness of the walls of a plan in m; widths of lines are not read.
+        Least half thickness of the walls of a plan in m. The width of a polyline of a DXF is read, strokes of an SVG
+        are not.
     unknown, outside, rule, occupied_from, trust_path
         As in `StaticMap.from_map_server`, for its maps only.
 
