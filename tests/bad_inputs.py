@@ -40,6 +40,7 @@ FILES = {
     "kind.toml": 'start = [4.0, 0.0]\ngoal = [0.0, 0.0]\n[[obstacles]]\ntype = "dics"\ncenter = [2.0, 1.0]\n'
     "radius = 0.1\n",
     "law.toml": 'start = [4.0, 0.0]\ngoal = [0.0, 0.0]\n[law]\ntype = "velocity_obstacel"\n',
+    "hall.toml": 'start = [0.0, 0.0]\ngoal = [4.0, 0.0]\n[[people]]\nstart = [3.0, 0.5]\nmodel = "social_force"\n',
     "broken.toml": "start = [3.9, 0.6\n",
     "design.toml": "closing_speed = 1.25\n[manipulator]\nmass = 49.4\ndamping = 111.0\n",
     "study.toml": 'scenarios = ["c9"]\n',
@@ -466,6 +467,8 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "unknown part of reproduce": "hrsafety reproduce --only everything",
         "timed-out run": "hrsafety simulate timed_out.toml --fail-on timed_out",
         "word for what fails": "hrsafety simulate scene.toml --fail-on crash",
+        "model of people that there is not": "hrsafety ros hall.toml",
+        "control period in milliseconds": "hrsafety ros scene.toml --lockstep --period 50",
         "implausible value with --strict": "hrsafety simulate degrees.toml --strict",
     },
 }

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.cli import output, terminal, verdict
+from hrsafety.errors import InvalidParameterError
 from hrsafety.io import read_nav2
 from hrsafety.ros.bridge import Bridge, Settings
 from hrsafety.ros.rcl import connected
@@ -95,7 +96,15 @@ def _with_body(world: nav.World, path: str) -> nav.World:
 
 
 def settings_of(options: argparse.Namespace) -> Settings:
-    """Return how the bridge is to run."""
+    """Return how the bridge is to run; errors name the options."""
+    try:
+        return _settings(options)
+    except InvalidParameterError as error:
+        name = {"range_max": "range"}.get(error.argument, error.argument)
+        raise error.renamed(f"--{name.replace('_', '-')}") from None
+
+
+def _settings(options: argparse.Namespace) -> Settings:
     lidar = nav.Lidar(beams=options.beams, range_max=options.range, field_of_view=math.radians(options.field_of_view))
     return Settings(
         lockstep=options.lockstep,

@@ -99,9 +99,11 @@ def test_ctrl_c_scores_the_run_so_far(world: Path, bus: FakeBus, capsys: pytest.
 @pytest.mark.parametrize(
     ("options", "part"),
     [
-        (["--period", "7"], "period must be from 0.005 to 1 s"),
-        (["--speed", "0"], "speed must"),
-        (["--beams", "0"], "beams must"),
+        (["--period", "7"], "--period must be from 0.005 to 1 s"),
+        (["--speed", "0"], "--speed must"),
+        (["--beams", "0"], "--beams must"),
+        (["--range", "-1"], "--range must"),
+        (["--field-of-view", "-20"], "--field-of-view must"),
         (["--commands", "twists"], "invalid choice"),
         (["--fail-on", "touch"], "--fail-on"),
     ],
