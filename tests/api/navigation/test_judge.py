@@ -152,6 +152,14 @@ def test_a_jump_of_the_pose_is_not_bridged() -> None:
     assert (margin.status, margin.most) == ("broken", 0.5)
 
 
+def test_a_person_who_jumps_past_the_robot_is_lost() -> None:
+    log = log_of(lambda t: (t, 0 * t), {1: lambda t: (6.0 + 0 * t, np.where(t < 5.95, 8.0, -2.0) - 0.5 * t)})
+    found = judge(log, robot_radius=0.3)
+    assert [set(each.kept.values()) for each in found.passings] == [{"not_judged"}]
+    assert ("person_lost_nearby", 1) in [(each.reason, each.person) for each in found.not_judged]
+    assert {"teleport", "person_lost_nearby"} <= {each.code for each in found.warnings}
+
+
 def test_assumptions_of_a_shield() -> None:
     commands = np.array([(0.05 * k, 1.0, 0.0, 0.0) for k in range(200)])
     delay = SimpleNamespace(median=0.1, high=0.12, most=0.2)

@@ -294,6 +294,7 @@ def judge(
     brakes = None if robot is None else (robot.max_deceleration or robot.max_acceleration)
     told = (
         *getattr(log, "warnings", ()),
+        *getattr(log.people, "warnings", ()),
         *getattr(walls, "warnings", ()),
         *metrics.warnings,
         *_doubts(parts, share, possible),

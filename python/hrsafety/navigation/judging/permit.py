@@ -226,7 +226,7 @@ def _passing(both: Synchronized, pair: _Pair, rows: slice, rules: PermitRules, c
     lead, lead_distance, free = _lead(*passed, predicted, rules.clearance)
     own_lead, _, _ = _lead(*passed, still, rules.clearance)
 
-    joined = both.linked[until]
+    joined = both.linked[until] & both.person_linked[until, pair.column]
     judged = np.isfinite(predicted)
     judged[: len(joined)] &= joined
     share = float(judged.mean())
@@ -307,6 +307,8 @@ def _open(both: Synchronized, pair: _Pair, rows: slice, nearest: int, bound: Arr
     """Return why it is not known how near both came: somebody was lost, or the log ends before the passing."""
     if (bound[rows.start : rows.stop + 1] < pair.distance[nearest]).any():
         return "person_lost_nearby" if both.known[rows].all() else "no_pose"
+    if both.leaps[rows.start : rows.stop - 1, pair.column].any():
+        return "the person jumps"
     if nearest == pair.last and nearest != rows.start:
         return "the log ends before the passing" if pair.last == len(bound) - 1 else "person_lost_nearby"
     return ""

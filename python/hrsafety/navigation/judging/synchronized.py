@@ -130,6 +130,12 @@ class Synchronized:
         return found
 
     @property
+    def leaps(self) -> Flags:
+        """Steps in which somebody is seen at both ends and cannot have walked between them, (T - 1, n)."""
+        seen = self.seen
+        return seen[:-1] & seen[1:] & ~self.person_linked & self.linked[:, None]
+
+    @property
     def seen(self) -> Flags:
         """Who is seen when, (T, n)."""
         found: Flags = np.isfinite(self.people[..., 0])

@@ -99,7 +99,7 @@ def not_judged(
     view : float or None
         Angle in rad in which the sensors of the robot see people, ahead of it; all around when ``None``.
     """
-    found = [*_of_robot(both, log), *_of_people(both, log), *_lost(both, bound < reach, view)]
+    found = [*_of_robot(both, log), *_of_people(both, log), *_lost(both, bound < reach, view), *_leaps(both, reach)]
     if walls is not None:
         outside = np.zeros(len(both.time), dtype=np.bool_)
         outside[both.known] = walls.unseen(both.position[both.known])
@@ -154,6 +154,16 @@ def _lost(both: Synchronized, near: Flags, view: float | None) -> Iterator[NotJu
             outside = view is not None and edge > 0.45 * view
             reason = "out_of_view" if outside else "person_lost_nearby"
             yield NotJudged(*_times(both, (begin, end)), reason, both.ids[column].item())
+
+
+def _leaps(both: Synchronized, reach: float) -> Iterator[NotJudged]:
+    """Yield the steps in which somebody jumps past the robot."""
+    away = both.people - both.position[:, None]
+    for step, column in zip(*np.nonzero(both.leaps), strict=True):
+        start, way = away[step, column], away[step + 1, column] - away[step, column]
+        share = min(max(-float(start @ way) / float(way @ way), 0.0), 1.0) if way.any() else 0.0
+        if float(np.hypot(*(start + share * way))) < reach:
+            yield NotJudged(*_times(both, (step, step + 2)), "person_lost_nearby", both.ids[column].item())
 
 
 def _times(both: Synchronized, run: tuple[int, int]) -> tuple[float, float]:
