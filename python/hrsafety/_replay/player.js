@@ -530,7 +530,7 @@
       said = head.verdicts[code];
       $("verdict").className = "v" + code;
       $("shape").setAttribute("d", SHAPES[code]);
-      $("word").textContent = code || robot.decided ? "Shield: " + said : "No verdict recorded";
+      $("word").textContent = !code ? "No verdict recorded" : code === 3 ? "Taken over" : "Shield: " + said;
     }
     if (head.radius.length) rows.push([head.kinds.every((kind) => /person/.test(kind)) ? "People" : "Others", String(present)]);
     list($("state"), rows);

@@ -6,7 +6,7 @@
   const ROBOT = "#0072B2", PERSON = "#D55E00", WALL = "#3a3f46", GOAL = "#00795C", INK = "#1b1f24", CONTACT = "#c00000";
   const VERDICT = ["#8c959f", "#1a7f37", "#d9a800", "#8a3ffc", "#b42318"];
   const SHAPES = ["M3 9h14v2H3z", "M10 2a8 8 0 100 16 8 8 0 000-16z", "M10 2l9 16H1z", "M10 1l9 9-9 9-9-9z", "M6 1h8l5 5v8l-5 5H6l-5-5V6z"];
-  const WORDS = { kept: [1, "Shield: kept"], changed: [2, "Shield: changed"], not_guaranteed: [3, "Not guaranteed"], braking: [4, "Shield: braking"], arrived: [1, "Arrived"] };
+  const WORDS = { kept: [1, "Shield: kept"], changed: [2, "Shield: changed"], not_guaranteed: [3, "Not guaranteed"], braking: [4, "Shield: braking"], arrived: [1, "At the goal"] };
   const SLIDERS = [
     ["robot_speed", "Speed of the robot", "m/s", 0.05], ["people_speed", "Speeds of people", "times", 0.1],
     ["person_speed", "Shield reckons with people of", "m/s", 0.1], ["range", "Sight of the robot", "m", 0.5],

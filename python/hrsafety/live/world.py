@@ -81,6 +81,7 @@ class LiveWorld:
         self._random = np.random.default_rng(world.seed)
         # Speeds and awareness are drawn once: a person who is dragged stays the same person.
         drawn = simulate(replace(world, robots=[], sources=[], time_limit=world.step))
+        told = _told_ways(world)
         self._walkers: dict[int, Walker] = {}
         for index, person in enumerate(world.people):
             own = replace(
@@ -88,6 +89,7 @@ class LiveWorld:
                 desired_speed=float(drawn.desired_speed[index]),
                 awareness=float(drawn.awareness[index]),
                 distracted_share=0.0,
+                **told.get(index, {}),
             )
             self._walkers[index] = Walker(own)
         self._part = largest_step(world, PERIOD, at_most=PERIOD)
@@ -345,7 +347,8 @@ class LiveWorld:
             self._status, self._doubts = "braking", ()
             self._after = self._run.step(velocity=(0.0, 0.0))
             return
-        self._status = "arrived" if command.arrived else command.status
+        # Parts without a shield have a status, too, which promises nothing.
+        self._status = "arrived" if command.arrived else command.status if self.settings.shield else None
         self._doubts = command.refuted
         self._after = self._run.step(velocity=(0.0, 0.0)) if command.arrived else self._run.step(command.force)
 
@@ -476,6 +479,22 @@ class LiveWorld:
             events=list(self._events),
             facts=[("people and goal", "were dragged, and the robot set otherwise, while it ran")],
         )
+
+
+def _told_ways(world: World) -> dict[int, dict[str, Any]]:
+    """Return the ways of those who move as they are told, as recordings, which can begin at any instant."""
+    chosen = [index for index, person in enumerate(world.people) if person.mover is not None]
+    if not chosen:
+        return {}
+    alone = replace(world, people=[world.people[index] for index in chosen], robots=[], sources=[], time_limit=LONGEST)
+    run, found = simulate(alone), {}
+    for column, index in enumerate(chosen):
+        there = np.flatnonzero(np.isfinite(run.obstacle_position[:, column, 0]))
+        times, places = run.time[there].tolist(), run.obstacle_position[there, column].tolist()
+        if there[-1] == len(run.time) - 1 and times[-1] < LONGEST:  # who stands in the end goes on standing
+            times, places = [*times, LONGEST], [*places, places[-1]]
+        found[index] = {"recording": (times, places), "mover": None}
+    return found
 
 
 def _guest(source: Any, place: Array, radius: float) -> Any:

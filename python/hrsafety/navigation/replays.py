@@ -81,13 +81,20 @@ def replay_of_record(record: Record) -> Replay:
     columns = [column for column, *_ in _moving(run)]
     decisions = Decisions(
         time=np.array([each.time for each in made]),
-        verdict=["taken over" if each.taken_over and each.status == "kept" else each.status for each in made],
+        verdict=[_verdict(each.status, taken_over=each.taken_over, shielded=shielded) for each in made],
         margin=np.array([each.margin for each in made]),
         plan=[each.plan_position for each in made] if shielded else (),
         path=[each.path for each in made] if guided else (),
         reach=np.array([each.obstacle_reach for each in made])[:, columns] if shielded and made else None,
     )
     return replay_of_run(run, decisions)
+
+
+def _verdict(status: str, *, taken_over: bool, shielded: bool) -> str:
+    """Return the word for a decision: without a shield nothing was verified, whatever was decided."""
+    if taken_over and (status == "kept" or not shielded):
+        return "taken over"
+    return status if shielded else "not recorded"
 
 
 def maps_around(run: Run) -> list[StaticMap]:

@@ -117,6 +117,21 @@ def test_who_is_dragged_is_where_the_hand_is_and_walks_on_when_let_go() -> None:
         assert gone["held"] == []
 
 
+def test_who_moves_as_told_goes_on_when_others_are_dragged() -> None:
+    told = [
+        nav.Human(start=(9.0, 2.0), velocity=(-1.0, 0.0)),
+        nav.Human(start=(0.0, 3.0), velocity=(0.5, 0.0), stop=(0.5, 3.0)),
+    ]
+    world = nav.World(people=walkers(2), obstacles=told, robots=[robot()])
+    with running(world, pace=4.0) as live:
+        until(live, lambda state: state["time"] > 0.5)
+        live.change({"kind": "person", "number": 0, "place": [-3.0, 3.0]})
+        later = until(live, lambda state: state["time"] > 3.0)
+    places = {number: (x, y) for number, x, y, _ in later["people"]}
+    assert places[2] == pytest.approx((9.0 - later["time"], 2.0), abs=1e-3)
+    assert places[3] == pytest.approx((0.5, 3.0), abs=1e-3)
+
+
 def test_dragging_moves_nobody_else_by_itself() -> None:
     people = [*walkers(12)]
     with running(nav.World(people=people, robots=[robot()]), pace=8.0) as live:
@@ -150,6 +165,7 @@ def test_goal_law_parts_and_speeds_are_changed_while_it_runs() -> None:
             until(live, lambda state, after=slow["time"] + 1.0 + k: state["time"] > after)["speed"] for k in range(3)
         ]
         assert max(speeds) <= 0.2 + 1e-6
+        assert json.loads(live.state)["status"] is None  # no shield: nothing is promised
         live.change({"kind": "pause", "on": True})
         still = until(live, lambda state: state["paused"])
         time.sleep(0.3)

@@ -201,6 +201,14 @@ def test_a_run_without_a_record_claims_no_verdict(browser: Tab, tmp_path: Path) 
     assert browser.value("document.getElementById('word').textContent") == "No verdict recorded"
 
 
+def test_without_a_shield_nothing_was_verified() -> None:
+    law = nav.SafeNavigation(nav.VirtualForceField(), yielding=nav.Yielding())
+    page = plotting.player(nav.metrics.record_safety(scenarios.configuration("c2"), law))
+    words = {head_of(page)["verdicts"][code] for code in decoded(page, "verdict0").ravel()}
+    assert words <= {"not recorded", "taken over"}
+    assert 'id="block-plan0"' not in page
+
+
 def test_contacts_of_a_run_are_events_with_their_places() -> None:
     wall = nav.Disc(center=(2.0, 0.0), radius=0.4, active_clearance=0.02, critical_clearance=0.01)
     run = nav.simulate(
