@@ -17,7 +17,7 @@ from hrsafety.cli import output, terminal, verdict
 from hrsafety.errors import InvalidParameterError
 from hrsafety.io import read_nav2
 from hrsafety.ros.bridge import Bridge, Settings
-from hrsafety.ros.rcl import connected
+from hrsafety.ros.rcl import connected, stamps_by_default
 from hrsafety.ros.record import Record
 from hrsafety.ros.score import report_of
 
@@ -55,7 +55,7 @@ def serve_world(options: argparse.Namespace) -> None:
                 world,
                 bus,
                 lockstep=settings.lockstep,
-                commands=settings.commands,
+                commands=_sent(settings),
                 topic=settings.topic,
                 complete=options.complete,
             ).run()
@@ -93,6 +93,13 @@ def _with_body(world: nav.World, path: str) -> nav.World:
         body = found.robot()
     robots = [replace(robot, body=body) for robot in world.robots]
     return replace(world, robots=robots, doubts=(*world.doubts, *found.warnings))
+
+
+def _sent(settings: Settings) -> str:
+    """Return what a controller sends: what ROS 2 has by default, but stamps in lock-step, which are answers."""
+    if settings.commands != "auto":
+        return settings.commands
+    return "stamped" if settings.lockstep or stamps_by_default() else "twist"
 
 
 def settings_of(options: argparse.Namespace) -> Settings:

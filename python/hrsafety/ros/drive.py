@@ -252,8 +252,8 @@ class Drive:
             self.watch()
 
     def watch(self) -> None:
-        """Tell the robot to brake where nothing is heard of it any more."""
-        if self._poses and self._bus.wall() - self._heard_at > SILENT:
+        """Tell the robot to brake where nothing is heard of it any more; in lock-step time stands still meanwhile."""
+        if not self._lockstep and self._poses and self._bus.wall() - self._heard_at > SILENT:
             self._count("odometry_silent", f"no odometry for {SILENT:g} s: the robot is told to brake")
             self._tell(self._poses[-1].time, STANDING)
             self._heard_at = self._bus.wall()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import os
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -156,8 +157,6 @@ class RclBus:
 
 def stamps_by_default() -> bool:
     """Return whether velocity commands of this ROS 2 have stamps unless told otherwise: from Kilted on."""
-    import os
-
     return os.environ.get("ROS_DISTRO", "kilted") not in ("foxy", "galactic", "humble", "iron", "jazzy")
 
 

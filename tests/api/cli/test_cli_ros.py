@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from api.cli_answers import error_line
-from api.ros.fake_bus import FakeBus, stamped
+from api.ros.fake_bus import STAMPED, TWIST, FakeBus, stamped
 from hrsafety.cli import main
 
 WORLD = """start = [0.0, 0.0]
@@ -93,6 +93,29 @@ def test_ctrl_c_scores_the_run_so_far(world: Path, bus: FakeBus, capsys: pytest.
     text = capsys.readouterr().out
     assert "stopped by Ctrl-C" in text
     assert "m from the goal" in text
+
+
+@pytest.mark.parametrize(
+    ("distro", "options", "type"),
+    [
+        ("jazzy", [], TWIST),
+        ("kilted", [], STAMPED),
+        ("jazzy", ["--lockstep"], STAMPED),
+        ("kilted", ["--commands", "twist"], TWIST),
+    ],
+)
+def test_a_controller_sends_what_the_distribution_has(
+    distro: str, options: list[str], type: str, world: Path, bus: FakeBus, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupt(_: FakeBus) -> None:
+        raise KeyboardInterrupt
+
+    bus.answer = interrupt
+    monkeypatch.setenv("ROS_DISTRO", distro)
+    shielded = "[safe.shield]\nvelocity_tracking = [0.1, 0.05]\n"
+    world.write_text(WORLD.replace("[robot]", shielded + "[robot]"))
+    assert main(["ros", str(world), "--drive", *options]) == 130
+    assert bus.topics["cmd_vel"][0] == type
 
 
 @pytest.mark.usefixtures("bus")

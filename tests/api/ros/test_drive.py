@@ -106,6 +106,22 @@ def test_it_brakes_without_people_and_without_odometry() -> None:
     assert sent(bus)[before:] == [(0.0, 0.0)]
 
 
+def test_in_lock_step_a_world_that_thinks_for_long_is_not_silent() -> None:
+    world, bus = hall(time_limit=3.0), FakeBus()
+    wire = Wire(world, bus, lockstep=True)
+
+    def answer(bus: FakeBus) -> None:
+        wire.bus.spin(0.7)
+        wire.drive.watch()
+        wire(bus)
+
+    slow, _ = served(world, answer, bus=bus)
+    quick, _ = served(world, Wire(world, other := FakeBus(), lockstep=True), bus=other)
+    assert not wire.drive.counts
+    places = (each.legs[0].trajectory.robot_position.tobytes() for each in (slow, quick))
+    assert len(set(places)) == 1
+
+
 def test_what_is_not_finite_is_not_measured() -> None:
     bus = FakeBus()
     drive = Drive(hall(), bus)
