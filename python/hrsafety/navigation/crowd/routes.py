@@ -56,10 +56,10 @@ class Routes:
             return owner
         route: list[Waypoint] = []
         here: Pair = _begin(owner)
-        elements: Sequence[Waypoint] = owner.route
-        for element in elements:
-            route += [*self._detour(here, middle_of(element), owner.radius), element]
-            here = middle_of(element)
+        for element in tuple(owner.route):
+            there: Pair = middle_of(element)
+            route += [*self._detour(here, there, owner.radius), element]
+            here = there
         if owner.route and owner.at_end == "repeat":
             route += self._detour(here, middle_of(owner.route[0]), owner.radius)
         return owner if len(route) == len(owner.route) else replace(owner, route=route)

@@ -171,7 +171,8 @@ class WorldScorer:
     def _margin(self, name: str, limit: GainConstraint | Judge, batches: Sequence[RunTable], count: int) -> Array:
         """Return the margin of a constraint, the least over seeds and worlds; NaN where a run has no value."""
         if not isinstance(limit, GainConstraint):
-            return judged(name, limit, batches, count).min(axis=0)
+            worst: Array = judged(name, limit, batches, count).min(axis=0)
+            return worst
         found = np.stack([_by_set(self._metric(each, limit.metric), count) for each in batches])
         if limit.scenario is not None:
             found = found[:, :, batches[0].scenario_index[: found.shape[2]] == limit.scenario]
