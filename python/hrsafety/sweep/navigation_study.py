@@ -13,12 +13,15 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import navigation as nav
-from hrsafety._arguments import Array, flag, positive, sequence, word
+from hrsafety._arguments import Array, flag, instance, positive, sequence, word
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.navigation.batch import gain_sets
+from hrsafety.navigation.gains.worlds import doubts_of, runs_of_sets
 from hrsafety.navigation.obstacles.moving_rectangle import Mobile
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.performance import check_weights
+from hrsafety.navigation.simulation import refuse_in_worlds
 from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.plausibility import ResultWarning
@@ -29,6 +32,7 @@ from hrsafety.sweep.studies import Cases, Found, Study, chosen
 __all__ = ["NavigationStudy"]
 
 Scenes: TypeAlias = nav.Scenario | Sequence[nav.Scenario]
+Place: TypeAlias = nav.Scenario | nav.World
 
 # Scenes that exist at the same time: they are built block by block.
 BLOCK = 1024
@@ -55,6 +59,9 @@ SCENE_UNITS: Mapping[str, str] = MappingProxyType(
         "obstacle_speed": "m/s",
     }
 )
+_OF_SCENARIOS = ("entered_active", "force_evaluations")
+_OF_SCENES = ("rest_time", "obstacle_speed")
+"""Columns and axes that only scenarios have."""
 ROWS_NOT_LOOKED_AT = "rows_not_looked_at"
 """Code of scenes that were not looked at for doubts."""
 _FIRST = (
@@ -84,7 +91,7 @@ _LAST = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NavigationStudy(Study):
-    """Runs of a robot under a law in one or several scenarios, as by `navigation.simulate_batch`.
+    """Runs of a robot under a law in one or several scenarios or worlds, as by `navigation.simulate_many`.
 
     Axes by name:
 
@@ -96,6 +103,8 @@ class NavigationStudy(Study):
       ``robot_max_acceleration``, ``robot_max_deceleration``, and of two wheels ``robot_max_turn_rate``
       and ``robot_max_turn_acceleration``; ``obstacle_speed``, which every obstacle that walks straight
       takes on in its direction. The regions around obstacles stay as they are;
+    - of worlds of one robot those of them that are gains, ``control_period``, ``time_limit``, ``arrival_tolerance``,
+      ``heading``, ``seed``, ``measurement_scale`` and of the robot;
     - with ``scenario``, any others: the function builds the scene from them.
 
     Gains that vary alone run fastest. Scenes that differ from row to row are built one by one,
@@ -104,8 +113,9 @@ class NavigationStudy(Study):
 
     Parameters
     ----------
-    scenarios : Scenario, sequence of Scenario, or mapping of str to Scenario
-        Where; with names that appear in the result if it is a mapping. Not with ``scenario``.
+    scenarios : Scenario or World, sequence of them, or mapping of str to them
+        Where, all of one kind; worlds have one robot, a step of their own, and none of the options below but
+        ``weights``. With names that appear in the result if it is a mapping. Not with ``scenario``.
     law : Law or None
         The law; the default one when ``None``.
     scenario : callable or None
@@ -123,7 +133,8 @@ class NavigationStudy(Study):
         ``energy``, ``path_length``, ``min_clearance``, ``entered_active``,
         ``contacts_moving``, ``contacts_toward``, ``contacts_away``, ``contacts_standing``, ``contacts_at_fault``,
         ``contacts_apart``, ``wall_contacts``, the four of the performance,
-        ``force_evaluations``, and, without ``scenario``, ``min_distance_0`` and so on.
+        ``force_evaluations``, and, without ``scenario``, ``min_distance_0`` and so on. Worlds have neither these
+        nor ``entered_active``.
 
     Raises
     ------
@@ -139,7 +150,7 @@ class NavigationStudy(Study):
     (['c1', 'c3'], {'arrived'})
     """
 
-    scenarios: tuple[nav.Scenario, ...] = ()
+    scenarios: tuple[Any, ...] = ()
     law: nav.Law = field(default_factory=nav.VirtualForceField)
     scenario: Callable[[dict[str, float]], Scenes] | None = None
     names: tuple[str, ...] | None = None
@@ -183,10 +194,16 @@ class NavigationStudy(Study):
                 raise InvalidParameterError("names", "be None when the scenarios have names", names)
             names, given = tuple(given), tuple(given.values())
         scenes = (given,) if isinstance(given, nav.Scenario | nav.World) else given
-        scenes = tuple(sequence("scenarios", "be a sequence or a mapping of Scenario", scenes))
+        scenes = tuple(sequence("scenarios", "be a sequence or a mapping of Scenario or World", scenes))
+        kind = nav.World if scenes and isinstance(scenes[0], nav.World) else nav.Scenario
         for index, scene in enumerate(scenes):
-            if not isinstance(scene, nav.Scenario):
-                raise InvalidParameterError(f"scenarios[{index}]", "be a Scenario", *_no_scenario(scene))
+            instance(f"scenarios[{index}]", scene, kind)
+            if isinstance(scene, nav.World) and len(scene.robots) != 1:
+                found = Shown(str(len(scene.robots)))
+                raise InvalidParameterError(f"scenarios[{index}].robots", "be one, which the law drives", found)
+        if kind is nav.World:
+            own = {"integrator": self.integrator, "step": self.step, "hold": self.hold}
+            refuse_in_worlds(own | {"stop_on_contact": self.stop_on_contact})
         if self.scenario is not None and not callable(self.scenario):
             raise InvalidParameterError("scenario", "be callable or None", self.scenario)
         if (self.scenario is None) == (not scenes):
@@ -206,7 +223,14 @@ class NavigationStudy(Study):
         """The scenarios, if they have names or there are several."""
         return None if self.names is None else Cases("scenario", self.names)
 
+    @property
+    def _in_worlds(self) -> bool:
+        """Whether people react to the robot."""
+        return bool(self.scenarios) and isinstance(self.scenarios[0], nav.World)
+
     def _possible(self) -> tuple[Column, ...]:
+        if self._in_worlds:
+            return (*_FIRST, *(each for each in _LAST if each.name not in _OF_SCENARIOS))
         most = max((len(scene.obstacles) for scene in self.scenarios), default=0)
         distances = (Column(name=f"min_distance_{index}", unit="m") for index in range(most))
         return (*_FIRST, *distances, *_LAST)
@@ -224,7 +248,7 @@ class NavigationStudy(Study):
         """Return the units of axes with these names, see `Study.units`."""
         known = {**self.law.GAIN_UNITS, **self._law_units}
         if self.scenario is None:
-            known |= SCENE_UNITS
+            known |= {name: unit for name, unit in SCENE_UNITS.items() if not self._in_worlds or name not in _OF_SCENES}
             for name in names:
                 word("name of an axis", name, tuple(known))
         else:
@@ -237,6 +261,12 @@ class NavigationStudy(Study):
         each = 1 if self.names is None else len(self.names)
         found = {column.name: np.empty((total, each), dtype=_computed(column)) for column in self.columns()}
         for part in self._batches(rows, each):
+            if self._in_worlds:
+                sets = gain_sets(part.law, part.gains)
+                table = runs_of_sets(part.scenes, part.law, sets, self.weights, threads=threads)
+                for name, values in found.items():
+                    values[part.rows] = _values(table, name).reshape(-1, each)[part.order]
+                continue
             table = nav.simulate_batch(
                 part.scenes,
                 part.law,
@@ -256,11 +286,13 @@ class NavigationStudy(Study):
         """Return the warnings of the scenes of these rows, see `Study.doubts`."""
         others = [name for name in rows if name not in self.law.GAIN_UNITS]
         distinct = np.unique(np.stack([rows[name] for name in others], axis=1), axis=0) if others else np.empty((1, 0))
-        scenes: list[nav.Scenario] = []
+        scenes: list[Any] = []
         for row in distinct.tolist():
             # A row that cannot be is an error of the chunk that computes it.
             with contextlib.suppress(InvalidParameterError):
                 scenes += self._scenes(dict(zip(others, row, strict=True)), len(self.names or [""]))
+        if self._in_worlds:
+            return doubts_of(scenes, self.law)
         words = [f"scenarios[{name!r}]" for name in self.names] if self.names else ["scenario"]
         return run_warnings.of_runs(scenes, words * (len(scenes) // len(words)), [self.law], None, self.step)
 
@@ -308,11 +340,12 @@ class NavigationStudy(Study):
         changes: dict[str, Any] = {name: value for name, value in row.items() if name in self._law_units}
         return self.law.replaced(**changes)
 
-    def _scenes(self, row: dict[str, float], each: int) -> list[nav.Scenario]:
+    def _scenes(self, row: dict[str, float], each: int) -> list[Any]:
         """Return the scenarios of a row."""
         values = {name: value for name, value in row.items() if name not in self._law_units}
         if self.scenario is None:
-            return [_changed(scene, values) for scene in self.scenarios]
+            change: Callable[[Any, Mapping[str, float]], Place] = _world_changed if self._in_worlds else _changed
+            return [change(scene, values) for scene in self.scenarios]
         made = self.scenario(values)
         scenes: list[Any] = list(made) if isinstance(made, Sequence) else [made]
         strange = next((scene for scene in scenes if not isinstance(scene, nav.Scenario)), None)
@@ -326,7 +359,7 @@ class NavigationStudy(Study):
 def _no_scenario(given: object) -> tuple[object, str | None]:
     """Return what an error shows of something that is no Scenario, and the advice for it."""
     if isinstance(given, nav.World):
-        return Shown("a World"), "worlds of people that react are run by nav.simulate_many and nav.compare"
+        return Shown("a World"), "give worlds as scenarios=, with seed, time_limit and others as axes"
     return given, None
 
 
@@ -334,7 +367,7 @@ class _Batch(NamedTuple):
     """One call: which rows of the chunk it gives, and which rows of its table they are."""
 
     rows: npt.NDArray[np.int64] | slice
-    scenes: list[nav.Scenario]
+    scenes: list[Any]
     law: nav.Law
     gains: dict[str, Array] | None
     order: npt.NDArray[np.int64] | slice
@@ -370,6 +403,28 @@ def _changed(scene: nav.Scenario, values: Mapping[str, float]) -> nav.Scenario:
     if robot:
         changes["robot"] = replace(scene.robot, **robot)
     return replace(scene, **changes)
+
+
+def _world_changed(world: nav.World, values: Mapping[str, float]) -> nav.World:
+    """Return a world with some of its numbers, and some of its robot, replaced."""
+    changes: dict[str, Any] = {}
+    own: dict[str, Any] = {}
+    body: dict[str, Any] = {}
+    (robot,) = world.robots
+    for name, value in values.items():
+        if name == "seed":
+            changes["seed"] = _whole("seed", value)
+        elif name == "time_limit":
+            changes[name] = value
+        elif name == "measurement_scale":
+            own["measurement"] = replace(robot.measurement or nav.Measurement(), scale=value)
+        elif name.startswith("robot_"):
+            body[name.removeprefix("robot_")] = value
+        else:
+            own[name] = value
+    if body:
+        own["body"] = replace(robot.body, **body)
+    return replace(world, robots=[replace(robot, **own)], **changes)
 
 
 def _whole(name: str, value: float) -> int:

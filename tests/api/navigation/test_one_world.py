@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hrsafety import InvalidParameterError
+from hrsafety import InvalidParameterError, sweep
 from hrsafety import navigation as nav
 from hrsafety.plausibility import unsafe_doubts
 
@@ -293,3 +293,32 @@ def test_laws_are_falsified_among_people() -> None:
     assert inside.all() or not inside.any()
     with pytest.raises(InvalidParameterError, match="method must be"):
         nav.falsify(world, FIELD, method="cma_es")
+
+
+def test_worlds_are_swept() -> None:
+    plain = nav.World(people=[WALKER], robots=[ROBOT], time_limit=30.0)
+    worlds = {"plain": plain, "slow": replace(plain, people=[replace(WALKER, desired_speed=0.7)])}
+    study = sweep.NavigationStudy(scenarios=worlds, law=FIELD)
+    axes = [sweep.Axis(name="seed", values=[0, 1]), sweep.Axis(name="detour_gain", values=[0.0, 17.0])]
+    found = sweep.run(sweep.Grid(axes), study)
+    assert found["scenario"].tolist()[:2] == ["plain", "slow"]
+    assert len(found["outcome"]) == 8
+    law = FIELD.replaced(detour_gain=17.0)
+    for row in np.flatnonzero((found["detour_gain"] == 17.0) & (found["seed"] == 1)).tolist():
+        single = nav.evaluate(replace(worlds[found["scenario"][row]], seed=1), law)
+        assert found["performance_total"][row] == single.total
+        assert found["energy"][row] == single.trajectory.energy
+        assert found["arrival_time"][row] == single.trajectory.arrival_time
+    noisy = sweep.NavigationStudy(scenarios=plain, law=FIELD)
+    scale = sweep.Axis(name="measurement_scale", values=[0.0, 0.05])
+    speed = sweep.Axis(name="robot_max_speed", values=[0.4, 0.7])
+    slow = sweep.run(sweep.Grid([scale, speed]), noisy)
+    assert (slow["end_time"] > 0.0).all()
+    assert slow["arrival_time"][0] > slow["arrival_time"][1]
+    for axis, message in (("rest_time", "rest_time"), ("obstacle_speed", "obstacle_speed")):
+        with pytest.raises(InvalidParameterError, match=message):
+            sweep.run(sweep.Grid([sweep.Axis(name=axis, values=[1.0])]), noisy)
+    with pytest.raises(InvalidParameterError, match=r"scenarios\[0\].robots must be one"):
+        sweep.NavigationStudy(scenarios=nav.World())
+    with pytest.raises(InvalidParameterError, match="step must be left out for worlds"):
+        sweep.NavigationStudy(scenarios=plain, step=0.02)
