@@ -272,6 +272,18 @@ def test_dots_in_keys_are_maps(tmp_path: Path) -> None:
     assert codes(found) == ["inflation_below_circumscribed"]
 
 
+def test_both_costmaps_are_doubted_once(tmp_path: Path) -> None:
+    one = (
+        COSTMAP.format("robot_radius: 0.5, inflation_layer: {{inflation_radius: 0.3}}")
+        .replace("{{", "{")
+        .replace("}}}}", "}}}")
+    )
+    (doubt,) = params(tmp_path, one + one.replace("local", "global")).warnings
+    assert doubt.code == "inflation_below_circumscribed"
+    assert "local_costmap" in doubt.message
+    assert "global_costmap" in doubt.message
+
+
 def test_namespaces_and_files_without_costmaps(tmp_path: Path) -> None:
     inside = "robot1:\n" + "".join(f"  {line}\n" for line in SQUARE.splitlines())
     assert params(tmp_path, inside).footprint is not None

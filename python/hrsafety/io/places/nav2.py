@@ -344,14 +344,18 @@ def _doubts_of_shapes(shapes: dict[str, dict[str, Any]], shape: dict[str, Any] |
                 f"{shape['circumscribed_radius']:.3g} m is taken: plans may lead through gaps that are too narrow"
             )
             yield ResultWarning("two_footprints", "footprint", message)
-    for name, each in shapes.items():
-        inflation = each["inflation_radius"]
-        if inflation is not None and inflation < each["circumscribed_radius"]:
-            message = (
-                f"inflation_radius {inflation:g} m of the {name} is less than the circumscribed radius "
-                f"{each['circumscribed_radius']:.3g} m: costs do not tell where a turning robot touches"
-            )
-            yield ResultWarning("inflation_below_circumscribed", "inflation_radius", message)
+    short = {
+        name: (each["inflation_radius"], each["circumscribed_radius"])
+        for name, each in shapes.items()
+        if each["inflation_radius"] is not None and each["inflation_radius"] < each["circumscribed_radius"]
+    }
+    if short:
+        told = " and ".join(f"{small:g} m of the {name} ({large:.3g} m)" for name, (small, large) in short.items())
+        message = (
+            f"inflation_radius is less than the circumscribed radius: {told}; costs do not tell where a turning robot "
+            "touches"
+        )
+        yield ResultWarning("inflation_below_circumscribed", "inflation_radius", message)
 
 
 def _same(one: Sequence[Pair], other: Sequence[Pair]) -> bool:
