@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 import hrsafety
-from hrsafety import arms, contact, datasets, impact, plausibility, reactive, ros, scenarios, standards, sweep
+from hrsafety import arms, contact, datasets, impact, plausibility, reactive, ros, scenarios, standards, sweep, zones
 from hrsafety import gym as environments
 from hrsafety import navigation as nav
 from hrsafety.navigation.trajectory import Divergence
@@ -44,6 +44,7 @@ _PLANNED = contact.PlannedContact(limit=standards.limits().contact("chest", "tra
 _SAMPLES = np.linspace(0.0, 1.0, 5)
 _SQUARE = np.stack([_SAMPLES, np.zeros(5)], axis=1)
 _WORLD = nav.World(robots=[nav.Robot(start=(0.0, 0.0), goal=(3.0, 0.0))])
+_ZONE = zones.MonitorPolygon(name="Stop", type="circle", action="stop", radius=0.5)
 _AXIS = sweep.Axis(name="foam_damping", low=0.0, high=100.0, points=4)
 _SPEED = sweep.Axis(name="closing_speed", low=0.1, high=1.0, points=4)
 
@@ -136,6 +137,25 @@ REQUIRED: dict[Callable[..., Any], Right] = {
     sweep.LatinHypercube: {"axes": [_AXIS], "size": 8},
     sweep.NavigationStudy: {"scenarios": [scenarios.configuration("c1")]},
     sweep.Sobol: {"axes": [_AXIS], "size": 8},
+    zones.CollisionMonitor: {"polygons": [_ZONE]},
+    zones.Conditions: {
+        "footprint": 0.22,
+        "max_speed": 0.5,
+        "max_turn_rate": 1.0,
+        "deceleration": 2.5,
+        "reaction_time": 0.15,
+        "error": 0.02,
+        "beam_step": 0.0087,
+    },
+    zones.MonitorPolygon: {"name": "Stop", "type": "circle", "action": "stop", "radius": 0.5},
+    zones.VelocityRange: {
+        "name": "ahead",
+        "corners": [(0.5, 0.3), (0.5, -0.3), (-0.3, 0.0)],
+        "linear_min": 0.0,
+        "linear_max": 0.5,
+        "theta_min": -1.0,
+        "theta_max": 1.0,
+    },
 }
 
 # Other ways to make the same objects.

@@ -135,7 +135,7 @@ def zone_attack(found: ZoneCheck, *, title: str | None = None) -> Figure:
             run.pose[: last + 1, :2] + outline.max(),
         ]
     )
-    figure = style.new_figure(6.4, title=title)
+    figure = style.new_figure(4.4, title=title)
     grid = figure.add_gridspec(1, 2, width_ratios=(1.4, 1.0))
     axes, history = figure.add_subplot(grid[0]), figure.add_subplot(grid[1])
     style.frame_scene(axes, limits)

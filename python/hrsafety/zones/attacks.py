@@ -25,6 +25,7 @@ STEP = 0.0075
 """Largest time step in s; the reaction is cut into whole ones."""
 BEAMS = 48
 NEAR = 0.3
+"""Gap in m from the disc about the robot within which the gap to its footprint is computed, but in a replay."""
 MOST_TIME = 20.0
 
 GENES = (
@@ -53,6 +54,7 @@ class _Attack(NamedTuple):
     range_error: Array
 
 
+@displayed
 class Attacked(NamedTuple):
     """What attacks came to.
 
@@ -62,11 +64,11 @@ class Attacked(NamedTuple):
         Speed in m/s toward the person at a contact at fault; else minus the least gap in m while the robot moved toward
         the person.
     time : ndarray (n,)
-        Of the contact in s; NaN without.
+        Of the contact, in s; NaN without.
     """
 
     severity: Array
-    time: Array
+    time: Annotated[Array, "s"]
 
     @property
     def broken(self) -> Flags:
@@ -185,6 +187,7 @@ def replay(monitor: CollisionMonitor, conditions: Conditions, genes: object) -> 
     given = _genes(np.atleast_2d(numbers("genes", genes)))
     kept: list[tuple[object, ...]] = []
     plant = _Plant(monitor, conditions, given)
+    plant.near = math.inf
     found = plant.run(kept)
     columns = [np.array(each) for each in zip(*kept, strict=True)]
     time, pose, velocity, command, person, gap, zone = columns
@@ -216,6 +219,7 @@ class _Plant:
 
     def __init__(self, monitor: CollisionMonitor, conditions: Conditions, genes: Array) -> None:
         self.monitor, self.conditions, self.body = monitor, conditions, conditions.body
+        self.near = NEAR
         steps = 12 * max(1, math.ceil(conditions.reaction_time / (12.0 * STEP)))
         self.step = conditions.reaction_time / steps
         self.scan = max(1, round(conditions.scan_time / self.step - 1e-6))
@@ -390,7 +394,7 @@ class _Plant:
         rho = self.attack.leg
         gap = np.linalg.norm(away, axis=1) - self.body.circumscribed - rho
         toward = np.zeros(len(pose))
-        rows = np.flatnonzero(gap < NEAR)
+        rows = np.flatnonzero(gap < self.near)
         if len(rows):
             cos, sin = np.cos(pose[rows, 2]), np.sin(pose[rows, 2])
             x, y = away[rows].T

@@ -54,21 +54,21 @@ class ShapeCheck:
     needed : ndarray (n, 2) or None
         The shape that is needed, in m; ``None`` where legs that far are not seen.
     margin : float
-        Least distance in m between robot and border along its way.
+        Least distance between robot and border along its way, in m.
     standing_speed, walking_speed : float
-        Greatest speeds in m/s for which the margin holds, of people who stand and who walk.
+        Greatest speeds for which the margin holds, of people who stand and who walk, in m/s.
     missing : float
-        Largest distance in m by which the needed shape lies outside; NaN beyond sight.
+        Largest distance by which the needed shape lies outside, in m; NaN beyond sight.
     missing_front, missing_rear, missing_left, missing_right : float
         How much farther the needed shape reaches, in m.
     blind_range : float
-        Distance in m beyond which a leg may have too few beams.
+        Distance beyond which a leg may have too few beams, in m.
     """
 
     name: str
     commands: CommandRange
     corners: Annotated[Array, "m"]
-    needed: Array | None
+    needed: Annotated[Array | None, "m"]
     margin: Annotated[float, "m"]
     standing_speed: Annotated[float, "m/s"]
     walking_speed: Annotated[float, "m/s"]

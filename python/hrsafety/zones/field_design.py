@@ -38,25 +38,26 @@ ROUNDED = 1e-3
 """Corners are written to 1 mm, outward."""
 
 
+@displayed
 class CommandRange(NamedTuple):
     """Commands that a zone is for.
 
     Attributes
     ----------
     linear_min, linear_max : float
-        vx in m/s; the speed of a holonomic robot.
+        vx, of a holonomic robot the speed, in m/s.
     theta_min, theta_max : float
-        Turn rates in rad/s.
+        Turn rates, in rad/s.
     direction_start_angle, direction_end_angle : float
-        Directions in rad of a holonomic robot.
+        Directions of a holonomic robot, in rad.
     """
 
-    linear_min: float
-    linear_max: float
-    theta_min: float
-    theta_max: float
-    direction_start_angle: float = -math.pi
-    direction_end_angle: float = math.pi
+    linear_min: Annotated[float, "m/s"]
+    linear_max: Annotated[float, "m/s"]
+    theta_min: Annotated[float, "rad/s"]
+    theta_max: Annotated[float, "rad/s"]
+    direction_start_angle: Annotated[float, "rad"] = -math.pi
+    direction_end_angle: Annotated[float, "rad"] = math.pi
 
 
 @displayed
@@ -73,7 +74,7 @@ class Zone:
     corners : ndarray (n, 2)
         In m, in the base frame, counter-clockwise.
     leg_depth : float
-        Largest distance in m that was added so that a leg between beams is seen.
+        Largest distance that was added so that a leg between beams is seen, in m.
     """
 
     name: str
@@ -109,7 +110,7 @@ class ZoneSet:
     faults_only : bool
         Whether the zones keep the robot from touching only, or people from reaching it while it moves, too.
     source_timeout : float
-        Silence of the scanner in s after which the robot stops.
+        Silence of the scanner after which the robot stops, in s.
     warnings : tuple of ResultWarning
         Numbers that are hardly meant.
     """

@@ -13,6 +13,7 @@ import numpy as np
 
 from hrsafety._arguments import Array, finite, not_negative, positive
 from hrsafety._arguments import count as whole
+from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.zones.reach import footprint_of, stopping_paths
 
@@ -37,6 +38,7 @@ MOST_DELAYS = 2000
 """Delays after which a robot that has not touched anybody is taken to stop before."""
 
 
+@displayed
 class StoppingTravel(NamedTuple):
     """Way and time from the instant at which somebody enters a zone until the robot stands.
 
@@ -364,6 +366,7 @@ def approach_contact_speed(
     )
 
 
+@displayed
 class Extents(NamedTuple):
     """Reach of an area ahead, behind, to the left and to the right of the base frame.
 

@@ -11,11 +11,27 @@ from typing import Annotated, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import Array, number, numbers, points
+from hrsafety._arguments import (
+    Array,
+    Parameters,
+    assign,
+    count,
+    finite,
+    instance,
+    not_negative,
+    number,
+    numbers,
+    points,
+    positive,
+    sequence,
+    whole_steps,
+    word,
+)
+from hrsafety._display import displayed
 from hrsafety._records import dataclass
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.plausibility import ResultWarning
-from hrsafety.zones.polygons import inside
+from hrsafety.zones.polygons import checked, inside
 
 __all__ = [
     "ACTIONS",
@@ -38,11 +54,11 @@ MOST_STEPS = 10_000
 """Steps that an ``approach`` may simulate for a command."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class VelocityRange:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class VelocityRange(Parameters):
     """A shape of a velocity polygon and the commands it is for.
 
-    Attributes
+    Parameters
     ----------
     name : str
         As in the file.
@@ -65,6 +81,22 @@ class VelocityRange:
     direction_start_angle: float = -math.pi
     direction_end_angle: float = math.pi
 
+    def __post_init__(self) -> None:
+        """Check shape and borders."""
+        self._set(corners=checked("corners", self.corners))
+        for name in (
+            "linear_min",
+            "linear_max",
+            "theta_min",
+            "theta_max",
+            "direction_start_angle",
+            "direction_end_angle",
+        ):
+            self._set(**{name: finite(name, getattr(self, name))})
+        for low, high in (("linear_min", "linear_max"), ("theta_min", "theta_max")):
+            if getattr(self, low) > getattr(self, high):
+                raise InvalidParameterError(low, f"be at most {high} ({getattr(self, high):g})", getattr(self, low))
+
     def holds(self, command: Array, holonomic: bool) -> Flags:
         """Return which commands (n, 3) it is for."""
         along = np.hypot(command[:, 0], command[:, 1]) if holonomic else command[:, 0]
@@ -77,11 +109,11 @@ class VelocityRange:
         return np.asarray(held)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class MonitorPolygon:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class MonitorPolygon(Parameters):
     """A zone of the collision monitor and what is done when points are in it.
 
-    Attributes
+    Parameters
     ----------
     name : str
         As in the file.
@@ -125,6 +157,30 @@ class MonitorPolygon:
     time_before_collision: float = 2.0
     simulation_time_step: float = 0.1
     sources_names: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Check type, action, shape and numbers."""
+        word("type", self.type, TYPES)
+        word("action", self.action, ACTIONS)
+        if self.type == "polygon" and self.corners is not None:
+            self._set(corners=checked("corners", self.corners))
+        if self.type == "circle":
+            self._set(radius=positive("radius", self.radius))
+        if self.type == "velocity_polygon":
+            given = sequence("ranges", "be a list of VelocityRange", self.ranges)
+            if not given:
+                raise InvalidParameterError("ranges", "hold at least one VelocityRange", Shown("none"))
+            self._set(
+                ranges=tuple(instance(f"ranges[{index}]", each, VelocityRange) for index, each in enumerate(given))
+            )
+        count("min_points", self.min_points, least=0)
+        for name in ("trigger_consecutive_points", "release_consecutive_points"):
+            count(name, getattr(self, name))
+        for name in ("slowdown_ratio", "linear_limit", "angular_limit"):
+            self._set(**{name: not_negative(name, getattr(self, name))})
+        for name in ("time_before_collision", "simulation_time_step"):
+            self._set(**{name: positive(name, getattr(self, name))})
+        whole_steps("time_before_collision", self.time_before_collision, self.simulation_time_step, MOST_STEPS)
 
     def shapes(self, command: Array, last: Indices) -> Indices:
         """Return which shape is used for each command: of several the first, without one the last used."""
@@ -196,9 +252,9 @@ class MonitorState(NamedTuple):
     acting: Flags
 
     @classmethod
-    def fresh(cls, count: int, polygons: int) -> MonitorState:
+    def fresh(cls, robots: int, polygons: int) -> MonitorState:
         """Return the memory before the first command of so many robots."""
-        shape = (count, polygons)
+        shape = (robots, polygons)
         return cls(
             np.full(shape, NO_SHAPE, dtype=np.intp), np.zeros(shape, dtype=np.intp), np.zeros(shape, dtype=np.bool_)
         )
@@ -213,6 +269,7 @@ class MonitorState(NamedTuple):
             mine[rows] = new
 
 
+@displayed
 class MonitoredVelocity(NamedTuple):
     """Velocity that leaves the monitor.
 
@@ -241,7 +298,7 @@ class CollisionMonitor:
     Each command is looked at once, with the points of the latest scans in the base frame. ``base_shift_correction`` is
     not credited: points stand where the scan saw them.
 
-    Attributes
+    Parameters
     ----------
     polygons : tuple of MonitorPolygon
         Zones in their order.
@@ -269,6 +326,16 @@ class CollisionMonitor:
     warnings: tuple[ResultWarning, ...] = ()
     source: str = ""
     _memory: list[MonitorState] = field(default_factory=list, repr=False)
+
+    def __post_init__(self) -> None:
+        """Check zones and time."""
+        given = sequence("polygons", "be a list of MonitorPolygon", self.polygons)
+        if not given:
+            raise InvalidParameterError("polygons", "hold at least one MonitorPolygon", Shown("none"))
+        for index, each in enumerate(given):
+            instance(f"polygons[{index}]", each, MonitorPolygon)
+        assign(self, "polygons", tuple(given))
+        assign(self, "source_timeout", not_negative("source_timeout", self.source_timeout))
 
     @classmethod
     def from_file(cls, path: object, *, footprint: object = None) -> CollisionMonitor:

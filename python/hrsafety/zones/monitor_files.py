@@ -169,7 +169,11 @@ def monitor_of(document: YamlDocument, *, footprint: object = None) -> Collision
             zones.append(zone)
         else:
             doubts.append(
-                _doubt("disabled", node[name]["enabled"], "the zone is switched off and no part of the verdict")
+                ResultWarning(
+                    "disabled",
+                    *_told(node[name]["enabled"], "the zone is switched off and no part of the verdict"),
+                    safe_side=True,
+                )
             )
     if not zones:
         raise node["polygons"].error("name a zone that is enabled")
@@ -182,8 +186,9 @@ def monitor_of(document: YamlDocument, *, footprint: object = None) -> Collision
     )
 
 
-def _doubt(code: str, section: Section, words: str) -> ResultWarning:
-    return ResultWarning(code, ".".join(map(str, section.path)), f"{section.place}: {words}")
+def _told(section: Section, words: str) -> tuple[str, str]:
+    """Return subject and message of a doubt about a key."""
+    return ".".join(map(str, section.path)), f"{section.place}: {words}"
 
 
 def _sources(node: Section, doubts: list[ResultWarning]) -> tuple[str, ...]:
@@ -196,7 +201,7 @@ def _sources(node: Section, doubts: list[ResultWarning]) -> tuple[str, ...]:
             continue
         if kind != "scan":
             words = f"points of a {kind} are taken to be those of the scanner that is given"
-            doubts.append(_doubt("not_modelled", keys["type"], words))
+            doubts.append(ResultWarning("not_modelled", *_told(keys["type"], words)))
         found.append(name)
     if not found:
         raise node["observation_sources"].error("name a source that is enabled")
@@ -257,7 +262,9 @@ def _polygon(
 
 def _shapeless(section: Section, doubts: list[ResultWarning]) -> Array | None:
     """Doubt a zone whose shape a topic brings, and return none."""
-    doubts.append(_doubt("shape_unknown", section, "a topic brings the shape: the zone is taken not to act"))
+    doubts.append(
+        ResultWarning("shape_unknown", *_told(section, "a topic brings the shape: the zone is taken not to act"))
+    )
     return None
 
 
@@ -288,4 +295,4 @@ def _doubt_unknown(keys: Section, known: Sequence[str], doubts: list[ResultWarni
         if key not in known:
             near = meant(key, known)
             words = f"the model does not know this key{f'; {near}' if near else ''}"
-            doubts.append(_doubt("unknown_key", keys[key], words))
+            doubts.append(ResultWarning("unknown_key", *_told(keys[key], words)))
