@@ -309,6 +309,8 @@ def test_round_corners_of_a_rectangle_are_round(tmp_path: Path) -> None:
         (svg("<path d='L9 9'/>"), {}, "unreadable", "path data"),
         (svg("<path d='M0 0 X9 9'/>"), {}, "unreadable", "path data"),
         (svg("<g transform='turn(3)'><path d='M0 0L9 9'/></g>"), {}, "unreadable", "transform"),
+        (svg("<path transform='rotate(1e999)' d='M0 0L9 9'/>"), {}, "unreadable", "transform"),
+        (svg("<rect x='1e99' width='9' height='9'/>"), {}, "unreadable", "units of the drawing"),
         (svg("<line x1='5%' y1='3'/>"), {}, "unreadable", "units of the drawing"),
         (svg("<polygon points='1 2 3'/>"), {}, "unreadable", "pairs"),
         (svg("<text>a</text>"), {}, "no_walls", "1 text"),

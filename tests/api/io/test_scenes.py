@@ -273,11 +273,7 @@ def test_dots_in_keys_are_maps(tmp_path: Path) -> None:
 
 
 def test_both_costmaps_are_doubted_once(tmp_path: Path) -> None:
-    one = (
-        COSTMAP.format("robot_radius: 0.5, inflation_layer: {{inflation_radius: 0.3}}")
-        .replace("{{", "{")
-        .replace("}}}}", "}}}")
-    )
+    one = COSTMAP.format("robot_radius: 0.5, inflation_layer: {inflation_radius: 0.3}")
     (doubt,) = params(tmp_path, one + one.replace("local", "global")).warnings
     assert doubt.code == "inflation_below_circumscribed"
     assert "local_costmap" in doubt.message

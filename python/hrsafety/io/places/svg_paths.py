@@ -55,10 +55,10 @@ def transform_of(words: str) -> Transform | None:
     found, at = Transform(1.0, 0.0, 0.0, 1.0, 0.0, 0.0), 0
     while match := _FUNCTION.match(words, at):
         at = match.end()
-        numbers = re.findall(_NUMBER, match[2])
-        if re.sub(_NUMBER, "", match[2]).strip(" \t\r\n,"):
+        numbers = [float(each) for each in re.findall(_NUMBER, match[2])]
+        if re.sub(_NUMBER, "", match[2]).strip(" \t\r\n,") or not all(map(math.isfinite, numbers)):
             return None
-        one = _function(match[1], [float(each) for each in numbers])
+        one = _function(match[1], numbers)
         if one is None:
             return None
         found = found.after(one)
