@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use numeric::error::Result;
 use pyo3::prelude::*;
-use vff_core::lanes::{Planar, Real, Vector2};
+use vff_core::lanes::{Planar, Vector2};
 use vff_core::laws::{Command, Law, LawFamily, Situation, force_toward};
 use vff_core::world::scenario::Scenario;
 
@@ -33,8 +33,6 @@ pub struct PythonLaw {
 }
 
 impl LawFamily for PythonLaw {
-    type Law<R: Real, const RECORD: bool> = AtWork;
-
     fn gain_names(&self) -> &'static [&'static str] {
         &NUMBERS
     }
@@ -55,20 +53,21 @@ impl LawFamily for PythonLaw {
         Ok(())
     }
 
-    fn with_gains<R: Real, const RECORD: bool>(
+    fn at_work(
         &self,
-        _gains: &[R],
+        _gains: &[f64],
         scenario: &Scenario,
-    ) -> Result<AtWork> {
-        Ok(AtWork {
+        _record: bool,
+    ) -> Result<Box<dyn Law<f64>>> {
+        Ok(Box::new(AtWork {
             begin: Arc::clone(&self.begin),
-            asked: (0..R::WIDTH).map(|_| None).collect(),
+            asked: None,
             velocity: self.velocity,
             robot: point_mass(scenario),
             ends: (scenario.start(), scenario.goal()),
             aim: None,
             seed: scenario.seed(),
-        })
+        }))
     }
 }
 
@@ -90,8 +89,8 @@ pub fn point_mass(scenario: &Scenario) -> PointMass {
 /// The law at work in one scenario.
 pub struct AtWork {
     begin: Arc<Py<PyAny>>,
-    /// What is asked in every lane, from its first command on.
-    asked: Vec<Option<Py<PyAny>>>,
+    /// What is asked, from its first command on.
+    asked: Option<Py<PyAny>>,
     velocity: bool,
     robot: PointMass,
     ends: ([f64; 2], [f64; 2]),
@@ -101,11 +100,11 @@ pub struct AtWork {
 }
 
 impl AtWork {
-    fn answer(&mut self, lane: usize, situation: &Situation<'_, f64>) -> PyResult<[f64; 2]> {
+    fn answer(&mut self, situation: &Situation<'_, f64>) -> PyResult<[f64; 2]> {
         let aim = self.aim;
         Python::attach(|py| {
             let fields = situation_fields(py, situation)?;
-            let slot = &mut self.asked[lane];
+            let slot = &mut self.asked;
             let asked = if let Some(asked) = slot {
                 asked
             } else {
@@ -117,12 +116,12 @@ impl AtWork {
         })
     }
 
-    fn force(&mut self, lane: usize, situation: &Situation<'_, f64>) -> [f64; 2] {
+    fn force(&mut self, situation: &Situation<'_, f64>) -> [f64; 2] {
         // After an error the run is over, and the interpreter is left alone.
         if RAISED.with_borrow(Option::is_some) {
             return [f64::NAN; 2];
         }
-        match self.answer(lane, situation) {
+        match self.answer(situation) {
             Ok(answer) if self.velocity => {
                 let (mass, ..) = self.robot;
                 force_toward(Vector2::splat(answer), situation, mass).lane(0)
@@ -136,18 +135,13 @@ impl AtWork {
     }
 }
 
-impl<R: Real> Law<R> for AtWork {
+impl Law<f64> for AtWork {
     fn thinks(&self) -> bool {
         true
     }
 
-    fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
-        let mut force = Vector2::<R>::zeros();
-        for lane in 0..R::WIDTH {
-            let [x, y] = self.force(lane, &situation.of_lane(lane));
-            force = Vector2::new(force.x.replace(lane, x), force.y.replace(lane, y));
-        }
-        Command::plain(force)
+    fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
+        Command::plain(self.force(situation).into())
     }
 
     fn aim(&mut self, goal: [f64; 2]) {

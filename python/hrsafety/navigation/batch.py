@@ -65,8 +65,8 @@ def simulate_batch(
     threads : int or None
         Number of threads, up to 1024; all cores when ``None``.
     lanes : int or None
-        Gain sets that are stepped side by side: 1, 4, 8 or 16; chosen when ``None``. Never
-        changes a bit of the result.
+        1 for runs one after the other; 4, 8 or 16 for runs side by side, in lanes of eight; chosen
+        when ``None``. Never changes a bit of the result.
     progress : callable or None
         Called with (runs done, runs in all) about ten times a second.
 

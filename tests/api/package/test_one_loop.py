@@ -9,9 +9,8 @@ import pytest
 
 CORE = Path(__file__).resolve().parents[3] / "crates" / "vff_core" / "src"
 LOOP = "run/episode.rs"
-# The fast path, for gain sets side by side in one scene and for scenes side by side: there the time and the obstacles
-# belong to each lane, which the loop of one scene need not carry along.
-KERNELS = {"run/rollout.rs", "run/lanes/rollout.rs"}
+# The fast path of ideal point masses, side by side with a scene and gains each, or by themselves.
+KERNELS = {"run/lanes/kernel.rs"}
 # No episode: a reference that is given over time is tracked, or a wheel turns on a bench; nothing is sensed, no law
 # decides and nothing ends them.
 WITHOUT_EPISODE = {"robots/differential/track.rs", "robots/wheels/open_loop.rs"}

@@ -12,15 +12,13 @@ mod packed;
 mod planar;
 mod scalar;
 mod vectors;
-mod wide;
 
 pub use arrays::{LaneMask, Lanes};
 pub use nalgebra::Vector2;
 pub use num_traits::{One, Zero};
 pub use packed::{Packed, PackedMask};
-pub use planar::{Planar, widened};
+pub use planar::Planar;
 pub use vectors::{OnEight, Vectors, on_eight, vectors};
-pub use wide::Wide;
 
 /// Truths side by side, made from others.
 pub trait Truth:

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::{Real, Wide};
+use super::Real;
 
 /// Operations of kernels on a vector beyond its arithmetic, lane by lane.
 pub trait Planar<R: Real> {
@@ -22,6 +22,8 @@ pub trait Planar<R: Real> {
     fn select(mask: R::Mask, then: Self, otherwise: Self) -> Self;
     /// The vector of one lane.
     fn lane(self, index: usize) -> [f64; 2];
+    /// Replaces the vector of one lane.
+    fn set_lane(&mut self, index: usize, vector: [f64; 2]);
 }
 
 impl<R: Real> Planar<R> for Vector2<R> {
@@ -52,10 +54,9 @@ impl<R: Real> Planar<R> for Vector2<R> {
     fn lane(self, index: usize) -> [f64; 2] {
         [self.x.lane(index), self.y.lane(index)]
     }
-}
-
-/// The vector with these components as robots in lanes see it.
-#[inline(always)]
-pub fn widened<R: Real, B: Wide<R>>([x, y]: [B; 2]) -> Vector2<R> {
-    Vector2::new(x.wide(), y.wide())
+    #[inline(always)]
+    fn set_lane(&mut self, index: usize, [x, y]: [f64; 2]) {
+        self.x.set(index, x);
+        self.y.set(index, y);
+    }
 }

@@ -8,7 +8,7 @@ use crate::crowd::sight::{Known, Sight};
 use crate::crowd::world::{CrowdWorld, count_of};
 use crate::error::Result;
 use crate::lanes::Vector2;
-use crate::laws::BoxedLaw;
+use crate::laws::Law;
 use crate::laws::trace::Trace;
 use crate::laws::{Situation, Stop, force_toward};
 use crate::robots::drives::{MotorDrive, PointMass, Reading};
@@ -41,7 +41,7 @@ struct Sensing {
 
 /// What drives a robot by itself: apart from it, for robots that are told what to do have none.
 struct Pilot {
-    law: BoxedLaw,
+    law: Box<dyn Law<f64>>,
     /// What the law sees, or what there is to be sensed.
     sight: Sight,
     sensing: Option<Sensing>,
@@ -68,7 +68,7 @@ impl Pilot {
             None => scenario,
         };
         Ok(Self {
-            law: law.erased().steering(known)?,
+            law: law.with_own_gains(known)?,
             sight,
             sensing,
         })

@@ -2,7 +2,7 @@
 
 use crate::arguments::{Arguments, Named};
 use crate::error::Result;
-use crate::lanes::{Planar, Real, Vector2, Wide};
+use crate::lanes::{Planar, Real, Vector2};
 use crate::laws::pairwise::{Neighbor, PairwiseFamily, PairwiseField, Push};
 use crate::world::geometry::RobotState;
 use crate::world::scenario::Scenario;
@@ -37,7 +37,7 @@ impl<R: Real> PairwiseField<R> for BorensteinKoren<R> {
     }
 
     #[inline(always)]
-    fn push<B: Wide<R>>(&self, neighbor: &Neighbor<'_, R, B>, _robot: &RobotState<R>) -> Push<R> {
+    fn push(&self, neighbor: &Neighbor<'_, R>, _robot: &RobotState<R>) -> Push<R> {
         Push::straight(neighbor.outward * (self.repulsive / neighbor.gap))
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::arguments::{Arguments, Named};
 use crate::error::Result;
-use crate::lanes::{Mask, Planar, Real, Vector2, Wide};
+use crate::lanes::{Mask, Planar, Real, Vector2};
 use crate::laws::pairwise::{Neighbor, PairwiseFamily, PairwiseField, Push};
 use crate::world::geometry::{Approach, RobotState};
 use crate::world::scenario::Scenario;
@@ -38,7 +38,7 @@ impl<R: Real> PairwiseField<R> for GeCui<R> {
     }
 
     #[inline(always)]
-    fn push<B: Wide<R>>(&self, neighbor: &Neighbor<'_, R, B>, robot: &RobotState<R>) -> Push<R> {
+    fn push(&self, neighbor: &Neighbor<'_, R>, robot: &RobotState<R>) -> Push<R> {
         // The goal enters the angles of an approach only, which are not used here.
         let everywhere = R::Mask::splat(true);
         let goal = Vector2::zeros();

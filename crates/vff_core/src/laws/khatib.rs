@@ -2,7 +2,7 @@
 
 use crate::arguments::{Arguments, Named};
 use crate::error::Result;
-use crate::lanes::{Real, Vector2, Wide, widened};
+use crate::lanes::{Real, Vector2};
 use crate::laws::pairwise::{Neighbor, PairwiseFamily, PairwiseField, Push};
 use crate::world::geometry::RobotState;
 use crate::world::scenario::Scenario;
@@ -44,9 +44,9 @@ impl<R: Real> PairwiseField<R> for Khatib<R> {
     }
 
     #[inline(always)]
-    fn push<B: Wide<R>>(&self, neighbor: &Neighbor<'_, R, B>, robot: &RobotState<R>) -> Push<R> {
+    fn push(&self, neighbor: &Neighbor<'_, R>, robot: &RobotState<R>) -> Push<R> {
         let gap = neighbor.gap;
-        let reach = neighbor.reach.wide();
+        let reach = neighbor.reach;
         let square = gap * gap;
         let force = match self.form {
             KhatibForm::Gradient => {
@@ -55,7 +55,7 @@ impl<R: Real> PairwiseField<R> for Khatib<R> {
                 neighbor.outward * (self.repulsive * steepness)
             }
             KhatibForm::Printed => {
-                let velocity = widened(neighbor.body.state.velocity);
+                let velocity = Vector2::from(neighbor.body.state.velocity);
                 let strength = self.repulsive * (reach - gap) / (square * gap);
                 (velocity - robot.velocity) * strength
             }

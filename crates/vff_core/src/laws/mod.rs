@@ -13,16 +13,15 @@ macro_rules! pairwise_laws {
     };
 }
 
-/// The other laws by their files: planners, and laws of their own. Each with the widths that its kernels
-/// are compiled for.
+/// The other laws by their files: planners, and laws of their own. Each with how its runs are made.
 macro_rules! other_laws {
     ($list:ident) => {
         $list! {
-            Own, impedance::ImpedanceFamily, One;
-            Planned, velocity_obstacle::VelocityObstacle, One;
-            Planned, reciprocal::ReciprocalAvoidance, OneAndScenes;
-            Planned, field_d_star::FieldDStar, One;
-            Planned, tree::RapidlyExploringRandomTree, One;
+            Own, impedance::ImpedanceFamily, one_by_one;
+            Planned, velocity_obstacle::VelocityObstacle, one_by_one;
+            Planned, reciprocal::ReciprocalAvoidance, side_by_side;
+            Planned, field_d_star::FieldDStar, one_by_one;
+            Planned, tree::RapidlyExploringRandomTree, one_by_one;
         }
     };
 }
@@ -56,7 +55,7 @@ pub use khatib::{Khatib, KhatibForm};
 pub use masoud::Masoud;
 
 use crate::error::Result;
-use crate::lanes::{Planar, Real, Vector2, Wide};
+use crate::lanes::{Real, Vector2};
 use crate::laws::trace::Trace;
 use crate::world::geometry::{Body, RobotState};
 use crate::world::map::StaticMap;
@@ -90,11 +89,11 @@ impl std::fmt::Debug for Stop<'_> {
 /// What a law knows when it is asked for a force. `B`: numbers of the scene, which robots side by
 /// side share, or which each of them has for itself.
 #[derive(Clone, Copy, Debug)]
-pub struct Situation<'a, R, B: Real = f64> {
+pub struct Situation<'a, R: Real> {
     /// When, in s.
-    pub time: B,
+    pub time: R,
     /// Obstacles as measured.
-    pub bodies: &'a [Body<B>],
+    pub bodies: &'a [Body<R>],
     /// How old what is known of each of them is, in s; all of it is of now where this is empty.
     pub ages: &'a [f64],
     /// Robots as measured, one a lane.
@@ -105,26 +104,6 @@ pub struct Situation<'a, R, B: Real = f64> {
     pub interval: f64,
     /// Whether to stop.
     pub stop: Stop<'a>,
-}
-
-impl<'a, R: Real> Situation<'a, R> {
-    /// The situation of the robot in one lane.
-    #[inline(always)]
-    #[must_use]
-    pub fn of_lane(&self, lane: usize) -> Situation<'a, f64> {
-        Situation {
-            time: self.time,
-            bodies: self.bodies,
-            ages: self.ages,
-            robot: RobotState {
-                position: Vector2::splat(self.robot.position.lane(lane)),
-                velocity: Vector2::splat(self.robot.velocity.lane(lane)),
-            },
-            heading: self.heading,
-            interval: self.interval,
-            stop: self.stop,
-        }
-    }
 }
 
 /// What a law answers.
@@ -141,9 +120,9 @@ pub struct Command<R> {
 /// Force in N that reaches a desired velocity at the next sample, `m (v* - V)/interval`, as far as
 /// the limits of the robots allow.
 #[inline(always)]
-pub fn force_toward<R: Real, B: Wide<R>>(
+pub fn force_toward<R: Real>(
     desired: Vector2<R>,
-    situation: &Situation<'_, R, B>,
+    situation: &Situation<'_, R>,
     mass: f64,
 ) -> Vector2<R> {
     let change = desired - situation.robot.velocity;
@@ -163,14 +142,14 @@ impl<R: Real> Command<R> {
 }
 
 /// A law for robots side by side; it may remember what it needs between two samples.
-pub trait Law<R: Real, B: Wide<R> = f64> {
+pub trait Law<R: Real>: Send {
     /// Whether a command takes so long that the caller is asked at each of them whether to stop.
     fn thinks(&self) -> bool {
         false
     }
 
     /// Force for the time until the next sample.
-    fn command(&mut self, situation: &Situation<'_, R, B>) -> Command<R>;
+    fn command(&mut self, situation: &Situation<'_, R>) -> Command<R>;
 
     /// Distance `d` from an obstacle in m beyond which it changes no command, whatever it does, so that
     /// the law need not be told of it; infinite where there is none, and for laws that remember obstacles
@@ -189,36 +168,11 @@ pub trait Law<R: Real, B: Wide<R> = f64> {
     }
 }
 
-/// A law of any kind at work on one robot: loops of runs one after the other are compiled once, not once for each law.
-pub(crate) type BoxedLaw = Box<dyn Law<f64> + Send>;
-
-impl Law<f64> for BoxedLaw {
-    fn thinks(&self) -> bool {
-        (**self).thinks()
-    }
-
-    fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
-        (**self).command(situation)
-    }
-
-    fn felt_within(&self, obstacle: &PlacedObstacle) -> f64 {
-        (**self).felt_within(obstacle)
-    }
-
-    fn aim(&mut self, goal: [f64; 2]) {
-        (**self).aim(goal);
-    }
-
-    fn trace(&self) -> Option<Trace> {
-        (**self).trace()
-    }
-}
-
-/// A law for robots side by side, each in a scene of its own.
-pub trait SceneLaw<R: Real + Wide<R>>: Law<R, R> {
-    /// A run begins in a lane: it forgets what it knew of the lane. The scenarios of all lanes have
-    /// the same robot and the same rules, and none has more obstacles than the first one had.
-    fn enter(&mut self, lane: usize, scenario: &Scenario);
+/// A law for robots side by side, each with a scene and gains of its own.
+pub trait LaneLaw<R: Real>: Law<R> {
+    /// A run begins in a lane, which becomes that of a law made for its scenario and its gains. The
+    /// scenarios of all lanes have the same robot and the same rules.
+    fn enter(&mut self, lane: usize, fresh: Self);
 
     /// Whether it is told of all obstacles, by their places in the list. A law that is not is told only
     /// of those in whose active regions the robots are.
@@ -227,10 +181,8 @@ pub trait SceneLaw<R: Real + Wide<R>>: Law<R, R> {
     }
 }
 
-/// A law up to its gains: what a search over gains needs to know of it.
-pub trait LawFamily: Sync {
-    /// The law for gain sets side by side. `RECORD`: the Lyapunov function is wanted too.
-    type Law<R: Real, const RECORD: bool>: Law<R> + Send + 'static;
+/// A law up to its gains: what runs, and a search over gains, need to know of it.
+pub trait LawFamily: Send + Sync {
     /// Words for the gains, in their order.
     fn gain_names(&self) -> &'static [&'static str];
     /// Its own gains, in that order.
@@ -267,7 +219,29 @@ pub trait LawFamily: Sync {
     /// # Errors
     /// Names the gain that is not allowed.
     fn check_gains(&self, gains: &[f64]) -> Result<()>;
-    /// The law with gains in one scenario.
+    /// The law with gains for one robot in a scenario. `record`: the Lyapunov function is wanted too.
+    ///
+    /// # Errors
+    /// The law cannot work in the scenario with some of these gains.
+    fn at_work(
+        &self,
+        gains: &[f64],
+        scenario: &Scenario,
+        record: bool,
+    ) -> Result<Box<dyn Law<f64>>>;
+}
+
+/// A law up to its gains whose robots are stepped side by side.
+pub trait LaneFamily: LawFamily {
+    /// Whether it has a Lyapunov function, whose descent is counted.
+    const LYAPUNOV: bool = false;
+    /// Whether lanes may have different gains.
+    const MIXES_GAINS: bool = true;
+    /// Most obstacles of a scene beside others: a run by itself leaves those that are far away alone.
+    const MOST_OBSTACLES: usize = usize::MAX;
+    /// The law for robots side by side. `RECORD`: the Lyapunov function is wanted too.
+    type Law<R: Real, const RECORD: bool>: LaneLaw<R> + 'static;
+    /// The law with the gains of every lane in one scenario.
     ///
     /// # Errors
     /// The law cannot work in the scenario with some of these gains.

@@ -8,11 +8,10 @@ use crate::laws::pairwise::Pairwise;
 use crate::laws::planning::family::Planned;
 use crate::laws::safe::SafeNavigation;
 use crate::run::AnyLaw;
-use crate::run::lanes::kernels::{EveryWidth, One, OneAndEight, OneAndScenes};
 
 impl From<VirtualForceField> for AnyLaw {
     fn from(law: VirtualForceField) -> Self {
-        Self::with_kernels::<_, EveryWidth>(law)
+        Self::side_by_side(law)
     }
 }
 
@@ -24,7 +23,7 @@ impl From<&VirtualForceField> for AnyLaw {
 
 impl From<SafeNavigation> for AnyLaw {
     fn from(law: SafeNavigation) -> Self {
-        Self::with_kernels::<_, One>(law)
+        Self::one_by_one(law)
     }
 }
 
@@ -38,7 +37,7 @@ macro_rules! pairwise_by_name {
     ($($module:ident::$law:ident),+ $(,)?) => {
         $(impl From<Pairwise<crate::laws::$module::$law>> for AnyLaw {
             fn from(law: Pairwise<crate::laws::$module::$law>) -> Self {
-                Self::with_kernels::<_, OneAndEight>(law)
+                Self::side_by_side(law)
             }
         })+
 
@@ -47,10 +46,10 @@ macro_rules! pairwise_by_name {
 }
 
 macro_rules! others_by_name {
-    ($($family:ident, $module:ident::$law:ident, $kernels:ident;)+) => {
+    ($($family:ident, $module:ident::$law:ident, $runs:ident;)+) => {
         $(impl From<$family<crate::laws::$module::$law>> for AnyLaw {
             fn from(law: $family<crate::laws::$module::$law>) -> Self {
-                Self::with_kernels::<_, $kernels>(law)
+                Self::$runs(law)
             }
         })+
 

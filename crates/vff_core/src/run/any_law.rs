@@ -1,28 +1,34 @@
 //! Laws of any kind whose gain sets can be run.
 
-use std::marker::PhantomData;
+use std::ops::Deref;
 use std::sync::Arc;
 
 use crate::error::{Failure, Result};
-use crate::laws::{BoxedLaw, Command, FieldTerms, Law, LawFamily, Situation};
+use crate::lanes::Vectors;
+use crate::laws::{LaneFamily, Law, LawFamily};
 use crate::run::Interrupted;
-use crate::run::lanes::group::{Group, Keep, Known, SceneGroup};
-use crate::run::lanes::kernels::{Kernels, One};
+use crate::run::lanes::group::{Group, Job, Keep, LaneKernel};
+use crate::run::lanes::kernel::{LawInLanes, run_lanes};
+use crate::run::lanes::scenes::LaneScenes;
 use crate::run::options::Options;
 use crate::run::outcome::RunSummary;
-use crate::run::plan::Plan;
+use crate::run::plan::{Plan, key_of};
 use crate::run::record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
-use crate::run::rollout::{Member, run_team};
+use crate::run::runs::Runs;
+use crate::run::scene::bodies_at;
 use crate::run::walls::Maps;
-use crate::world::map::StaticMap;
 use crate::world::scenario::Scenario;
 
+/// Fewest runs for which lanes pay.
+const FEWEST_IN_LANES: usize = 3;
+
 /// A law of any kind up to its gains.
-///
-/// The kernels of a law are compiled where it is turned into this, that is in this crate, or for
-/// laws of other crates there.
 #[derive(Clone)]
-pub struct AnyLaw(Arc<dyn ErasedLaw>);
+pub struct AnyLaw {
+    family: Arc<dyn LawFamily>,
+    /// Its kernel, if its runs are made side by side.
+    lanes: Option<Arc<dyn LaneKernel>>,
+}
 
 impl From<&AnyLaw> for AnyLaw {
     fn from(law: &AnyLaw) -> Self {
@@ -30,19 +36,32 @@ impl From<&AnyLaw> for AnyLaw {
     }
 }
 
+impl Deref for AnyLaw {
+    type Target = dyn LawFamily;
+
+    fn deref(&self) -> &Self::Target {
+        &*self.family
+    }
+}
+
 impl AnyLaw {
-    /// A law of another crate, whose gain sets run one after the other.
+    /// A law whose runs are made one after the other.
     #[must_use]
-    pub fn one_by_one<F: LawFamily + Send + 'static>(law: F) -> Self {
-        Self::with_kernels::<_, One>(law)
+    pub fn one_by_one<F: LawFamily + 'static>(law: F) -> Self {
+        Self {
+            family: Arc::new(law),
+            lanes: None,
+        }
     }
 
-    pub(crate) fn with_kernels<F: LawFamily + Send + 'static, K: Kernels<F>>(law: F) -> Self {
-        Self(Arc::new(Driver::<F, K>(law, PhantomData)))
-    }
-
-    pub(crate) fn erased(&self) -> &dyn ErasedLaw {
-        &*self.0
+    /// A law whose runs are made side by side, in lanes that are compiled for it.
+    #[must_use]
+    pub fn side_by_side<F: LaneFamily + 'static>(law: F) -> Self {
+        let family = Arc::new(law);
+        Self {
+            lanes: Some(family.clone()),
+            family,
+        }
     }
 
     /// Returns nothing if the law can reach the goal of a scenario.
@@ -50,27 +69,10 @@ impl AnyLaw {
     /// # Errors
     /// It keeps to regions, and the goal lies in the active region of an obstacle that stands.
     pub(crate) fn suits(&self, scenario: &Scenario) -> Result<()> {
-        if self.0.takes_any_goal() {
+        if self.takes_any_goal() {
             return Ok(());
         }
         scenario.with_free_goal()
-    }
-
-    /// What it knows to stand, beside the obstacles of a scenario.
-    pub(crate) fn map(&self) -> Option<&StaticMap> {
-        self.0.map()
-    }
-
-    /// Words for the gains, in their order.
-    #[must_use]
-    pub fn gain_names(&self) -> &'static [&'static str] {
-        self.0.gain_names()
-    }
-
-    /// The gains, in that order.
-    #[must_use]
-    pub fn gains(&self) -> Vec<f64> {
-        self.0.gains()
     }
 
     /// Returns the law if its gains are allowed.
@@ -78,187 +80,140 @@ impl AnyLaw {
     /// # Errors
     /// Names the gain that is not.
     pub fn checked(self) -> Result<Self> {
-        self.0.check_gains(&self.0.gains())?;
+        self.check_gains(&self.gains())?;
         Ok(self)
     }
-}
 
-/// A law whose gain sets can be run.
-pub(crate) trait ErasedLaw: Send + Sync {
-    /// Words for the gains, in their order.
-    fn gain_names(&self) -> &'static [&'static str];
-    /// Its own gains, in that order.
-    fn gains(&self) -> Vec<f64>;
-    /// Gains that act on a robot without obstacles, ascending.
-    fn free_gains(&self) -> &'static [usize];
-    /// Returns the gains if the law allows them.
-    fn check_gains(&self, gains: &[f64]) -> Result<()>;
-    /// Runs gain sets and hands every run over.
-    fn run(&self, group: &Group<'_>, keep: Keep<'_>) -> Result<()>;
-    /// Whether it can run scenes side by side, and with how many obstacles each it pays.
-    fn takes_scenes(&self) -> bool;
-    fn most_obstacles(&self) -> usize;
-    /// Runs scenes that agree in robot and rules, and hands every run over.
-    fn run_scenes(&self, group: &SceneGroup<'_>, keep: Keep<'_>) -> Result<()>;
-    /// Every force term with its own gains; `None` for laws that are no sum of terms.
-    fn terms(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Option<FieldTerms>;
-    /// Whether it chooses a velocity, and so knows no regions.
-    fn chooses_velocities(&self) -> bool;
-    /// Whether it can reach a goal in the active region of an obstacle that stands.
-    fn takes_any_goal(&self) -> bool;
-    /// Whether it steers a robot with two wheels by velocities.
-    fn steers_by_velocity(&self) -> bool;
-    /// What it knows to stand, beside the obstacles of a scenario.
-    fn map(&self) -> Option<&StaticMap>;
     /// It at work in a scenario, with its own gains, to be asked once a control period.
-    fn steering(&self, scenario: &Scenario) -> Result<BoxedLaw> {
-        self.steering_with(&self.gains(), scenario, true)
+    pub(crate) fn with_own_gains(&self, scenario: &Scenario) -> Result<Box<dyn Law<f64>>> {
+        self.at_work(&self.gains(), scenario, true)
     }
-    /// The same with other gains; `record`: the Lyapunov function is wanted too.
-    fn steering_with(&self, gains: &[f64], scenario: &Scenario, record: bool) -> Result<BoxedLaw>;
-}
 
-impl dyn ErasedLaw + '_ {
-    /// Runs gain sets one after the other. `record`: the Lyapunov function is wanted too.
-    fn one_by_one<C: Recorder<f64> + Default>(
+    /// Its lanes, where the plan and the number of runs of a group ask for them.
+    pub(crate) fn lanes_for(&self, plan: &Plan, runs: usize) -> Option<(&dyn LaneKernel, Vectors)> {
+        let lanes = self.lanes.as_deref()?;
+        Some((lanes, plan.vectors()?)).filter(|_| runs >= FEWEST_IN_LANES)
+    }
+
+    /// Makes the runs of a group, and hands every one over.
+    pub(crate) fn run(&self, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
+        if (group.interrupted)() {
+            return Err(Failure::Interrupted);
+        }
+        let exact = |job: &Job<'_>| job.scenario.measurement.is_none();
+        let shortcuts = self.keeps_to_regions() && group.jobs.iter().all(exact);
+        let plan = &Plan {
+            shortcuts: shortcuts && group.plan.shortcuts,
+            ..*group.plan
+        };
+        let lanes = self.lanes_for(plan, group.jobs.len());
+        if let (Some((lanes, vectors)), Some(first)) = (lanes, group.jobs.first())
+            && group
+                .jobs
+                .iter()
+                .all(|job| lanes.pay(job) && lanes.fit(first, job))
+        {
+            let led = plan.shortcuts && self.are_alike(group.jobs);
+            let group = Group {
+                plan,
+                led,
+                ..*group
+            };
+            let maps = Maps::of_law(first.scenario, self.map());
+            return lanes.run(&group, &maps, vectors, keep);
+        }
+        let descent = plan.descent && self.lanes.as_ref().is_some_and(|own| own.has_lyapunov());
+        for (index, job) in group.jobs.iter().enumerate() {
+            let jobs = std::slice::from_ref(job);
+            let group = Group {
+                jobs,
+                plan,
+                ..*group
+            };
+            let done = if descent {
+                self.alone(
+                    &group,
+                    true,
+                    DescentCounter::<f64>::default(),
+                    (index, keep),
+                )
+            } else {
+                self.alone(&group, false, (), (index, keep))
+            };
+            done.map_err(|error| error.of_run(|_| index))?;
+        }
+        Ok(())
+    }
+
+    /// Whether runs are in one scenario, with gains that differ only in those that act near obstacles.
+    fn are_alike(&self, jobs: &[Job<'_>]) -> bool {
+        let key = |job: &Job<'_>| key_of(self.free_gains(), job.gains);
+        jobs.iter()
+            .all(|job| std::ptr::eq(job.scenario, jobs[0].scenario) && key(job) == key(&jobs[0]))
+    }
+
+    /// Makes the only run of a group.
+    fn alone<C: Recorder<f64>>(
         &self,
         group: &Group<'_>,
         record: bool,
-        keep: Keep<'_>,
+        mut recorder: C,
+        (index, keep): (usize, Keep<'_>),
     ) -> Result<()> {
-        let known = Known {
-            dimension: self.gain_names().len(),
-            free_gains: self.free_gains(),
-            map: self.map(),
+        let mut hand_over = |runs: &Runs<LaneScenes<'_>, f64>, recorder: &mut C| {
+            let totals = runs.totals(0, recorder);
+            keep(index, &totals, &|obstacle| runs.min_distance(obstacle, 0));
         };
-        let mut team = Vec::with_capacity(group.points.len() / known.dimension);
-        for gains in group.points.chunks_exact(known.dimension) {
-            team.push(Member {
-                law: self.steering_with(gains, group.scenario, record)?,
-                recorder: C::default(),
-            });
-        }
-        group.run(&mut team, &known, keep)
+        self.step_alone(group, record, &mut recorder, &mut hand_over)
     }
 
-    /// What it asks for at first, with its own gains.
-    pub fn command(
+    fn step_alone<C: Recorder<f64>>(
         &self,
-        scenario: &Scenario,
-        situation: &Situation<'_, f64>,
-    ) -> Result<Command<f64>> {
-        let mut law = self.steering_with(&self.gains(), scenario, false)?;
-        Ok(law.command(situation))
+        group: &Group<'_>,
+        record: bool,
+        recorder: &mut C,
+        hand_over: &mut dyn FnMut(&Runs<LaneScenes<'_>, f64>, &mut C),
+    ) -> Result<()> {
+        let mut enter =
+            |law: &mut Option<Box<dyn Law<f64>>>, _: usize, gains: &[f64], scenario: &Scenario| {
+                *law = Some(self.at_work(gains, scenario, record)?);
+                Ok(())
+            };
+        let maps = group.jobs.first();
+        let maps = maps.map(|job| Maps::of_law(job.scenario, self.map()));
+        let law = LawInLanes {
+            enter: &mut enter,
+            told_of_all: |_: &(dyn Law<f64> + 'static)| true,
+        };
+        let maps = maps.unwrap_or_default();
+        run_lanes(group, &maps, law, recorder, |_, runs, _, recorder| {
+            hand_over(runs, recorder);
+        })
     }
 
     /// One run with its own gains and everything recorded.
-    pub fn record(
+    pub(crate) fn record(
         &self,
         scenario: &Scenario,
         options: &Options,
         interrupted: Interrupted<'_>,
     ) -> Result<(RunSummary, Trajectory)> {
-        let mut team = [Member {
-            law: self.steering(scenario)?,
-            recorder: TrajectoryRecorder::keeping(options.kept, scenario),
-        }];
-        let mut summary = None;
-        run_team(
-            scenario,
-            (&mut team, false),
-            (&Plan::single(*options), &Maps::of_law(scenario, self.map())),
+        let gains = &self.gains();
+        let group = Group {
+            jobs: &[Job { scenario, gains }],
+            plan: &Plan::single(*options),
+            led: false,
             interrupted,
-            |_, runs, lane, recorder| summary = Some(runs.summary(lane, recorder)),
-        )?;
-        let [member] = team;
-        let summary = summary.ok_or(Failure::Interrupted)?;
-        Ok((summary, member.recorder.finish()))
-    }
-}
-
-/// A law and the kernels that are compiled for it.
-struct Driver<F, K>(F, PhantomData<fn() -> K>);
-
-impl<F: LawFamily + Send, K: Kernels<F>> ErasedLaw for Driver<F, K> {
-    fn gain_names(&self) -> &'static [&'static str] {
-        self.0.gain_names()
-    }
-
-    fn gains(&self) -> Vec<f64> {
-        self.0.gains()
-    }
-
-    fn free_gains(&self) -> &'static [usize] {
-        self.0.free_gains()
-    }
-
-    fn check_gains(&self, gains: &[f64]) -> Result<()> {
-        self.0.check_gains(gains)
-    }
-
-    fn run(&self, group: &Group<'_>, keep: Keep<'_>) -> Result<()> {
-        if (group.interrupted)() {
-            return Err(Failure::Interrupted);
-        }
-        let exact = group.scenario.measurement.is_none();
-        let plan = Plan {
-            shortcuts: group.plan.shortcuts && exact && self.0.keeps_to_regions(),
-            ..*group.plan
         };
-        let group = &Group {
-            plan: &plan,
-            ..*group
-        };
-        let erased: &dyn ErasedLaw = self;
-        match plan.lanes().filter(|_| K::LANES) {
-            Some(lanes) => K::run_lanes(&self.0, group, lanes, keep),
-            None if plan.descent && K::LYAPUNOV => {
-                erased.one_by_one::<DescentCounter<f64>>(group, true, keep)
-            }
-            None => erased.one_by_one::<()>(group, false, keep),
-        }
-    }
-
-    fn takes_scenes(&self) -> bool {
-        K::SCENES
-    }
-
-    fn most_obstacles(&self) -> usize {
-        K::MOST_OBSTACLES
-    }
-
-    fn run_scenes(&self, group: &SceneGroup<'_>, keep: Keep<'_>) -> Result<()> {
-        if (group.interrupted)() {
-            return Err(Failure::Interrupted);
-        }
-        K::run_scenes(&self.0, group, keep)
-    }
-
-    fn terms(&self, scenario: &Scenario, situation: &Situation<'_, f64>) -> Option<FieldTerms> {
-        self.0.terms(scenario, situation)
-    }
-
-    fn chooses_velocities(&self) -> bool {
-        self.0.chooses_velocities()
-    }
-
-    fn takes_any_goal(&self) -> bool {
-        self.0.takes_any_goal()
-    }
-
-    fn steers_by_velocity(&self) -> bool {
-        self.0.steers_by_velocity()
-    }
-
-    fn map(&self) -> Option<&StaticMap> {
-        self.0.map()
-    }
-
-    fn steering_with(&self, gains: &[f64], scenario: &Scenario, record: bool) -> Result<BoxedLaw> {
-        Ok(if record {
-            Box::new(self.0.with_gains::<f64, true>(gains, scenario)?)
-        } else {
-            Box::new(self.0.with_gains::<f64, false>(gains, scenario)?)
-        })
+        let mut recorder = TrajectoryRecorder::keeping(options.kept, scenario);
+        let mut summary = None;
+        self.step_alone(&group, true, &mut recorder, &mut |runs, recorder| {
+            let end = runs.first_end();
+            let (position, velocity) = (runs.position, runs.velocity);
+            let bodies = bodies_at(scenario, end);
+            recorder.end(end, position, velocity, &runs.currents, &bodies);
+            summary = Some(runs.summary(0, recorder));
+        })?;
+        Ok((summary.ok_or(Failure::Interrupted)?, recorder.finish()))
     }
 }

@@ -1,24 +1,18 @@
-//! Many runs: gain sets side by side in lanes, lane groups and scenarios over all cores.
+//! Many runs: every gain set in every scenario.
 
-use numeric::threads::{on_threads, try_each};
+use numeric::threads::{map, on_threads};
 
 use crate::error::{Failure, Given, Result};
 use crate::run::Interrupted;
 use crate::run::any_law::AnyLaw;
-use crate::run::lanes::group::Group;
+use crate::run::lanes::group::{Group, Job};
 use crate::run::metrics::{Weights, score};
 use crate::run::nominal::{NominalRuns, Ways};
 use crate::run::options::Options;
 use crate::run::plan::{Instructions, Plan, Width};
-use crate::run::scene_batch::SceneBatch;
-use crate::run::table::{BatchTable, Cell, Strip};
+use crate::run::table::{BatchTable, Cell};
+use crate::run::tasks::MadeRuns;
 use crate::world::scenario::Scenario;
-
-/// Gain sets that fill the lanes by themselves.
-const FULL_LANES: usize = 8;
-
-/// Scenes from which on lanes pay.
-const FEWEST_SCENES: usize = 4;
 
 /// Options of a batch.
 #[derive(Clone, Copy, Debug)]
@@ -84,8 +78,7 @@ fn check(scenarios: &[Scenario], law: &AnyLaw, points: &[f64], run: &Options) ->
         return Err(Failure::invalid("gains", rule, given));
     }
     for (index, set) in points.chunks_exact(dimension).enumerate() {
-        law.erased()
-            .check_gains(set)
+        law.check_gains(set)
             .map_err(|error| error.within(&format!("gains[{index}]")))?;
     }
     for (index, scenario) in scenarios.iter().enumerate() {
@@ -110,121 +103,48 @@ struct Batch<'a> {
 
 impl Batch<'_> {
     fn run(&self) -> Result<BatchTable> {
-        let law = self.law.erased();
-        let sets = self.points.len() / law.gain_names().len();
-        let width = self.options.width.unwrap_or_else(|| Width::for_sets(sets));
-        let plan = Plan {
+        let (law, count) = (self.law, self.scenarios.len());
+        let sets: Vec<&[f64]> = self.points.chunks_exact(law.gain_names().len()).collect();
+        let plan = &Plan {
             run: self.options.run,
-            width,
+            width: self.options.width.unwrap_or(Width::Sixteen),
             instructions: self.options.instructions,
             descent: self.options.descent,
             shortcuts: false,
         };
-        let count = self.scenarios.len();
+        let (interrupted, weights) = (self.interrupted, self.options.weights);
         let ways = Ways::new(self.scenarios);
-        if self.scenes_suit(sets) {
-            let scenes = SceneBatch {
-                scenarios: self.scenarios,
-                law,
-                plan: &plan,
-                weights: self.options.weights,
-                interrupted: self.interrupted,
-                progress: self.progress,
-            };
-            return scenes.run(self.points, &ways);
-        }
-        let nominal = NominalRuns::new(&ways, law, self.points, &plan, self.interrupted)?;
-        let room = |scenario: &Scenario| Strip::new(sets, scenario.obstacle_count());
-        let mut strips: Vec<Strip> = self.scenarios.iter().map(room).collect();
-        try_each(tasks(&mut strips, plan.team(sets * count)), |task| {
-            self.work(task, &plan, (&ways, &nominal))
-        })?;
-        Ok(BatchTable::gather(self.scenarios, &strips))
-    }
-
-    /// Whether scenes fill the lanes better than gain sets do.
-    fn scenes_suit(&self, sets: usize) -> bool {
-        let options = &self.options;
-        let held = !options.run.is_staged();
-        let asked = options.width.is_none_or(|width| width != Width::One);
-        let many = sets < FULL_LANES && self.scenarios.len() >= FEWEST_SCENES;
-        let law = self.law.erased();
-        let most = law.most_obstacles();
-        let small = || {
-            self.scenarios
-                .iter()
-                .all(|own| own.obstacle_count() <= most)
-        };
-        law.takes_scenes() && held && asked && many && !options.descent && small()
-    }
-
-    fn work(
-        &self,
-        task: Task<'_>,
-        plan: &Plan,
-        (ways, nominal): (&Ways, &NominalRuns),
-    ) -> Result<()> {
-        let Task {
-            scenario: index,
-            first,
-            cells,
-            distances,
-        } = task;
-        let scenario = &self.scenarios[index];
-        let obstacles = scenario.obstacle_count();
-        let way = ways.of(index);
-        let law = self.law.erased();
-        let dimension = law.gain_names().len();
+        let nominal = NominalRuns::new(&ways, law, &sets, plan, interrupted)?;
+        // Neighbours share their scenario.
+        let jobs = self.scenarios.iter().flat_map(|scenario| {
+            let each = sets.iter();
+            each.map(move |gains| Job { scenario, gains })
+        });
         let group = Group {
-            scenario,
-            points: &self.points[first * dimension..(first + cells.len()) * dimension],
+            jobs: &jobs.collect::<Vec<_>>(),
             plan,
-            interrupted: self.interrupted,
+            led: false,
+            interrupted,
         };
-        law.run(&group, &mut |set, run, distance| {
-            let own = &mut distances[set * obstacles..(set + 1) * obstacles];
-            for (obstacle, slot) in own.iter_mut().enumerate() {
-                *slot = distance(obstacle);
-            }
-            let free = nominal.of(way, first + set);
-            let own = own.iter().copied();
-            let weights = self.options.weights;
-            let performance = score(scenario, run.into(), own, free, weights);
-            cells[set] = Cell {
-                run: *run,
+        let made = MadeRuns::new(law, &group, Cell::unset(), &|run, totals, distances| {
+            let (index, set) = (run / sets.len(), run % sets.len());
+            let free = nominal.of(ways.of(index), set);
+            let own = distances.iter().copied();
+            let performance = score(&self.scenarios[index], totals.into(), own, free, weights);
+            (self.progress)(1);
+            Cell {
+                run: *totals,
                 performance,
-            };
-        })
-        .map_err(|error| error.of_run(|run| (first + run) * self.scenarios.len() + index))?;
-        (self.progress)(cells.len());
-        Ok(())
+            }
+        });
+        let row = |run: usize| run % sets.len() * count + run / sets.len();
+        let made = made.map_err(|error| error.of_run(row))?;
+        // Every column asks for every row.
+        let rows = map(sets.len() * count, |row| {
+            made.of(row % count * sets.len() + row / count)
+        });
+        Ok(BatchTable::of_rows(self.scenarios, rows.len(), |row| {
+            rows[row]
+        }))
     }
-}
-
-/// Runs of some gain sets in one scenario.
-struct Task<'a> {
-    scenario: usize,
-    first: usize,
-    cells: &'a mut [Cell],
-    distances: &'a mut [f64],
-}
-
-/// Work of a batch; gain sets vary fastest, so that neighbouring tasks share a scenario.
-fn tasks(strips: &mut [Strip], team: usize) -> Vec<Task<'_>> {
-    let mut tasks = Vec::new();
-    for (scenario, strip) in strips.iter_mut().enumerate() {
-        let obstacles = strip.distances.len() / strip.cells.len();
-        let mut distances = strip.distances.as_mut_slice();
-        for (index, cells) in strip.cells.chunks_mut(team).enumerate() {
-            let (own, rest) = distances.split_at_mut(cells.len() * obstacles);
-            distances = rest;
-            tasks.push(Task {
-                scenario,
-                first: index * team,
-                cells,
-                distances: own,
-            });
-        }
-    }
-    tasks
 }

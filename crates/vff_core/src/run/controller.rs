@@ -12,7 +12,7 @@ pub use told::{Observation, Order, Sighting, Timing};
 use crate::error::{Failure, Given, Result, finite, finite_pair, not_negative};
 use crate::lanes::Vector2;
 use crate::laws::shield::{Course, Limits, Status};
-use crate::laws::{BoxedLaw, Situation, Stop};
+use crate::laws::{Law, Situation, Stop};
 use crate::robots::differential::Twist;
 use crate::run::any_law::AnyLaw;
 use crate::run::as_built::sight::hidden;
@@ -30,7 +30,7 @@ const FORGOTTEN: f64 = 2.0;
 /// A law on a robot, with what it remembers.
 pub struct Controller {
     scenario: Scenario,
-    law: BoxedLaw,
+    law: Box<dyn Law<f64>>,
     scans: Option<Scans>,
     /// Obstacles as last known, then points of the lidar.
     bodies: Vec<Body>,
@@ -64,7 +64,7 @@ impl Controller {
         latency: f64,
     ) -> Result<Self> {
         not_negative("latency", latency)?;
-        if scenario.differential.is_some() && !law.erased().steers_by_velocity() {
+        if scenario.differential.is_some() && !law.steers_by_velocity() {
             let rule = "have a shield, which steers a robot with two wheels by velocities";
             let given = Given::Found("a law without".into());
             return Err(Failure::invalid("law", rule, given));
@@ -81,7 +81,7 @@ impl Controller {
             body
         });
         Ok(Self {
-            law: law.erased().steering(&known)?,
+            law: law.with_own_gains(&known)?,
             measured: vec![f64::NEG_INFINITY; scenario.obstacles.len()],
             dated: vec![true; scenario.obstacles.len()],
             hidden: vec![0.0; scenario.obstacles.len()],

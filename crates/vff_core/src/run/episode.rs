@@ -1,7 +1,7 @@
 //! The one loop that steps time: sense, decide, move, one control period after the other.
 //!
 //! What is sensed, what decides and what moves are the parts of an episode; every robot under every
-//! law is stepped here. The lane kernel, [`super::rollout`], is its fast path for ideal point masses
+//! law is stepped here. The lane kernel, [`super::lanes`], is its fast path for ideal point masses
 //! side by side.
 
 use crate::error::{Failure, Result};

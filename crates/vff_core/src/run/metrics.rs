@@ -77,6 +77,22 @@ pub struct Nominal {
     pub energy: f64,
 }
 
+impl Nominal {
+    /// Of a run that is still to be made.
+    pub(crate) const UNSET: Self = Self {
+        arrival_time: f64::NAN,
+        energy: f64::NAN,
+    };
+
+    /// Of a run.
+    pub(crate) fn of(run: &RunTotals) -> Self {
+        Self {
+            arrival_time: run.arrival_time,
+            energy: run.energy,
+        }
+    }
+}
+
 /// Score of a run against the run of the same law without obstacles, (5.6.1)-(5.6.6):
 /// `H = k (w_T T*/T + w_D mean min(d_s/d_s*, 1) + w_E L*/L)`, `d_s = d - rho_r - rho_obs`,
 /// `d_s* = r2 - rho_r - rho_obs`, `k = 0` after a contact or without arrival.

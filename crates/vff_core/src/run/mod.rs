@@ -15,12 +15,11 @@ mod outcome;
 mod plan;
 pub mod pursuit;
 mod record;
-mod rollout;
 mod runs;
 mod scene;
-mod scene_batch;
 pub mod skirt;
 mod table;
+mod tasks;
 mod walls;
 mod way;
 
@@ -38,8 +37,8 @@ pub use plan::{Instructions, Width};
 pub use record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
 pub use table::BatchTable;
 
-pub(crate) use lanes::group::Group;
-pub(crate) use nominal::{Ways, nominal_runs};
+pub(crate) use lanes::group::{Group, Job};
+pub(crate) use nominal::Ways;
 pub(crate) use plan::{Key, Plan, key_of};
 pub(crate) use table::min_clearance;
 
@@ -64,7 +63,7 @@ pub fn simulate(
     let law: AnyLaw = law.into();
     scenario.of_point_mass()?;
     law.suits(scenario)?;
-    law.erased().record(scenario, options, interrupted)
+    law.record(scenario, options, interrupted)
 }
 
 /// Everything at one instant, for a law that is asked for the first time.
@@ -105,9 +104,15 @@ pub fn command_at(
     time: f64,
 ) -> Result<[f64; 2]> {
     let law: AnyLaw = law.into();
-    let command = at_state(scenario, [position, velocity], time, |situation| {
-        law.erased().command(scenario, situation)
-    })??;
+    let command = at_state(
+        scenario,
+        [position, velocity],
+        time,
+        |situation| -> Result<_> {
+            let mut law = law.at_work(&law.gains(), scenario, false)?;
+            Ok(law.command(situation))
+        },
+    )??;
     Ok(command.force.lane(0))
 }
 
@@ -124,7 +129,7 @@ pub fn terms_at(
 ) -> Result<FieldTerms> {
     let law: AnyLaw = law.into();
     let terms = at_state(scenario, [position, velocity], time, |situation| {
-        law.erased().terms(scenario, situation)
+        law.terms(scenario, situation)
     })?;
     terms.ok_or_else(|| {
         let rule = "be a sum of attraction and repulsion, such as VirtualForceField or Masoud";

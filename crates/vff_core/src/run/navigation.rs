@@ -7,9 +7,8 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::lanes::{Planar, Vector2};
-use crate::laws::BoxedLaw;
 use crate::laws::trace::Trace;
-use crate::laws::{Command, Situation, Stop, force_toward};
+use crate::laws::{Command, Law, Situation, Stop, force_toward};
 use crate::robots::drives::{Fix, MotorDrive, Order, Reading};
 use crate::run::Interrupted;
 use crate::run::any_law::AnyLaw;
@@ -86,7 +85,7 @@ impl Known {
 /// A robot under a law, or told what to do, in a scenario, and what is kept of its run.
 pub struct Navigation<L = Everything> {
     scenario: Arc<Scenario>,
-    law: Option<BoxedLaw>,
+    law: Option<Box<dyn Law<f64>>>,
     robot: Box<dyn MotorDrive>,
     listener: L,
     stop_on_contact: bool,
@@ -135,11 +134,11 @@ impl<L: Listener> Episode<Navigation<L>> {
         law.map_or(Ok(()), |law| law.suits(&scenario))?;
         let robot = robot_under(&scenario, built, law)?;
         let clock = clock_of(&scenario, built)?;
-        let scene = Scene::new(Arc::clone(&scenario), 1, false);
+        let scene = Scene::new(Arc::clone(&scenario));
         let bodies = &scene.frames[0];
         let reading = Reading::at(&built.start_in(&scenario));
         let sight = Sight::new(&scenario, built, bodies)?;
-        let steering = law.map(|law| law.erased().steering(sight.known(&scenario)));
+        let steering = law.map(|law| law.with_own_gains(sight.known(&scenario)));
         let parts = Navigation {
             law: steering.transpose()?,
             listener: listener(&scenario, robot.wheels()),
@@ -151,7 +150,7 @@ impl<L: Listener> Episode<Navigation<L>> {
                 Arc::clone(&scenario),
                 clock,
                 bodies.iter().copied(),
-                Maps::of(&scenario, law.and_then(AnyLaw::map), &built.sensors),
+                Maps::of(&scenario, law.and_then(|law| law.map()), &built.sensors),
             ),
             reading,
             energy: 0.0,

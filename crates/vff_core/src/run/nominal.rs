@@ -2,15 +2,13 @@
 
 use std::collections::HashMap;
 
-use numeric::threads::try_map;
-
 use crate::error::Result;
 use crate::run::Interrupted;
-use crate::run::any_law::ErasedLaw;
-use crate::run::lanes::group::Group;
+use crate::run::any_law::AnyLaw;
+use crate::run::lanes::group::{Group, Job};
 use crate::run::metrics::Nominal;
-use crate::run::outcome::RunTotals;
 use crate::run::plan::{Key, Plan, key_of};
+use crate::run::tasks::MadeRuns;
 use crate::world::scenario::Scenario;
 
 /// Distinct ways of some scenarios.
@@ -60,53 +58,27 @@ impl Ways {
     }
 }
 
-/// Runs of some gain sets, all different, along one way.
-pub(crate) fn nominal_runs(
-    way: &Scenario,
-    law: &dyn ErasedLaw,
-    points: &[f64],
-    plan: &Plan,
-    interrupted: Interrupted<'_>,
-) -> Result<Vec<Nominal>> {
-    let mut runs = Vec::with_capacity(points.len() / law.gain_names().len());
-    let group = Group {
-        scenario: way,
-        points,
-        plan,
-        interrupted,
-    };
-    let mut keep = |_: usize, run: &RunTotals, _: &dyn Fn(usize) -> f64| {
-        runs.push(Nominal {
-            arrival_time: run.arrival_time,
-            energy: run.energy,
-        });
-    };
-    law.run(&group, &mut keep)?;
-    Ok(runs)
-}
-
-/// Runs without obstacles of many gain sets.
+/// Runs without obstacles of many gain sets, which many of them share.
 pub(crate) struct NominalRuns {
-    /// Index of the run of each gain set.
+    /// Number of the first gain set with the run of each.
     of: Vec<usize>,
-    /// Runs along each way.
-    runs: Vec<Vec<Nominal>>,
+    ways: usize,
+    runs: MadeRuns<Nominal>,
 }
 
 impl NominalRuns {
     /// Errors carry the index of the run, the scenarios fastest.
     pub fn new(
         ways: &Ways,
-        law: &dyn ErasedLaw,
-        points: &[f64],
+        law: &AnyLaw,
+        sets: &[&[f64]],
         plan: &Plan,
         interrupted: Interrupted<'_>,
     ) -> Result<Self> {
-        let dimension = law.gain_names().len();
         let mut known: HashMap<Key, usize> = HashMap::new();
-        let (mut first, mut sets) = (Vec::new(), Vec::new());
+        let mut first = Vec::new();
         let mut last = None;
-        let index_of = |(index, set): (usize, &[f64])| {
+        let index_of = |(index, set): (usize, &&[f64])| {
             let key = key_of(law.free_gains(), set);
             // Neighbours mostly share the run.
             if let Some((_, run)) = last.filter(|(other, _)| *other == key) {
@@ -114,40 +86,42 @@ impl NominalRuns {
             }
             let run = *known.entry(key).or_insert_with(|| {
                 first.push(index);
-                sets.extend_from_slice(set);
                 first.len() - 1
             });
             last = Some((key, run));
             run
         };
-        let of = points
-            .chunks_exact(dimension)
-            .enumerate()
-            .map(index_of)
-            .collect();
+        let of = sets.iter().enumerate().map(index_of).collect();
+        let jobs = first.iter().flat_map(|set| {
+            let along = ways.scenarios.iter();
+            along.map(|scenario| Job {
+                scenario,
+                gains: sets[*set],
+            })
+        });
+        let jobs: Vec<Job<'_>> = jobs.collect();
         let plan = Plan {
             descent: false,
-            shortcuts: false,
-            width: super::Width::for_sets(first.len()),
             ..*plan
         };
-        let team = plan.team(0);
-        let along = |(index, way): (usize, &Scenario)| -> Result<Vec<Nominal>> {
-            let chunks: Vec<&[f64]> = sets.chunks(team * dimension).collect();
-            let parts = try_map(chunks.len(), |part| {
-                nominal_runs(way, law, chunks[part], &plan, interrupted).map_err(|error| {
-                    error.of_run(|run| ways.run_of(index, first[part * team + run]))
-                })
-            })?;
-            Ok(parts.concat())
+        let group = Group {
+            jobs: &jobs,
+            plan: &plan,
+            led: false,
+            interrupted,
         };
-        let each = ways.scenarios.iter().enumerate();
-        let runs = each.map(along).collect::<Result<_>>()?;
-        Ok(Self { of, runs })
+        let count = ways.scenarios.len();
+        let runs = MadeRuns::new(law, &group, Nominal::UNSET, &|_, run, _| Nominal::of(run));
+        let row = |run: usize| ways.run_of(run % count, first[run / count]);
+        Ok(Self {
+            of,
+            ways: count,
+            runs: runs.map_err(|error| error.of_run(row))?,
+        })
     }
 
     /// Run of a gain set along a way.
     pub fn of(&self, way: usize, set: usize) -> Nominal {
-        self.runs[way][self.of[set]]
+        *self.runs.of(self.of[set] * self.ways + way).0
     }
 }

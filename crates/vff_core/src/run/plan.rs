@@ -34,26 +34,6 @@ impl Width {
             }
         }
     }
-
-    /// Width that suits a number of gain sets.
-    #[must_use]
-    pub fn for_sets(count: usize) -> Self {
-        match count {
-            0 | 1 => Self::One,
-            2..=4 => Self::Four,
-            5..=8 => Self::Eight,
-            _ => Self::Sixteen,
-        }
-    }
-
-    pub(crate) fn lanes(self) -> usize {
-        match self {
-            Self::One => 1,
-            Self::Four => 4,
-            Self::Eight => 8,
-            Self::Sixteen => 16,
-        }
-    }
 }
 
 /// Which instructions of the processor a batch may use.
@@ -80,16 +60,6 @@ impl Instructions {
 /// Most gains of a law.
 pub(crate) const MAX_GAINS: usize = 8;
 
-/// Gain sets of a task when there are many: groups of eight in step, which share the motion of
-/// the obstacles.
-const LARGE_TEAM: usize = 64;
-
-/// Gain sets of a task when there are few.
-const SMALL_TEAM: usize = 16;
-
-/// Runs from which on the teams are large.
-const MANY_RUNS: usize = 4096;
-
 /// How the runs of a task are made.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plan {
@@ -115,21 +85,11 @@ impl Plan {
         }
     }
 
-    /// How many gain sets are stepped side by side, and with which vectors; nothing for one after the
-    /// other, as where every stage of a step asks the law, which lanes make little faster.
-    pub fn lanes(&self) -> Option<(Vectors, Width)> {
-        let vectors = self.instructions.vectors()?;
+    /// Vectors for runs side by side; nothing for one after the other, as where every stage of a step asks
+    /// the law, which lanes make little faster.
+    pub fn vectors(&self) -> Option<Vectors> {
         let alone = self.width == Width::One || self.run.is_staged();
-        (!alone).then_some((vectors, self.width))
-    }
-
-    /// Number of gain sets of a task.
-    pub fn team(&self, runs: usize) -> usize {
-        match self.width {
-            Width::Sixteen if self.descent || runs < MANY_RUNS => SMALL_TEAM,
-            Width::Sixteen => LARGE_TEAM,
-            width => width.lanes(),
-        }
+        self.instructions.vectors().filter(|_| !alone)
     }
 }
 

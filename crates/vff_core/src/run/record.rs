@@ -20,19 +20,11 @@ pub trait Recorder<R: Real> {
         _velocity: Vector2<R>,
         _currents: &[R; 3],
         _command: &Command<R>,
-        _bodies: &[Body],
+        _bodies: &[Body<R>],
     ) {
     }
-    /// State at the end of the first run.
-    fn end(
-        &mut self,
-        _time: f64,
-        _position: Vector2<R>,
-        _velocity: Vector2<R>,
-        _currents: &[R; 3],
-        _bodies: impl FnOnce() -> Vec<Body>,
-    ) {
-    }
+    /// A run begins in a lane.
+    fn enter(&mut self, _lane: usize) {}
     /// Share of the control periods over which the Lyapunov function did not grow.
     fn descent_share(&self, _lane: usize) -> f64 {
         f64::NAN
@@ -61,6 +53,12 @@ impl<R: Real> Default for DescentCounter<R> {
 }
 
 impl<R: Real> Recorder<R> for DescentCounter<R> {
+    fn enter(&mut self, lane: usize) {
+        self.last.set(lane, f64::NAN);
+        self.periods.set(lane, 0.0);
+        self.descents.set(lane, 0.0);
+    }
+
     fn sample(&mut self, command: &Command<R>, running: R::Mask) {
         let value = command.lyapunov;
         // False where either value is NaN.
@@ -173,6 +171,20 @@ impl TrajectoryRecorder {
         }
     }
 
+    /// State at the end of the run.
+    pub fn end(
+        &mut self,
+        time: f64,
+        position: Vector2<f64>,
+        velocity: Vector2<f64>,
+        currents: &[f64; 3],
+        bodies: &[Body],
+    ) {
+        let command = self.command;
+        self.left = 0;
+        self.row(time, position, velocity, currents, &command, bodies);
+    }
+
     /// The columns.
     #[must_use]
     pub fn finish(self) -> Trajectory {
@@ -185,19 +197,6 @@ impl Recorder<f64> for TrajectoryRecorder {
 
     fn sample(&mut self, command: &Command<f64>, _running: bool) {
         self.command = *command;
-    }
-
-    fn end(
-        &mut self,
-        time: f64,
-        position: Vector2<f64>,
-        velocity: Vector2<f64>,
-        currents: &[f64; 3],
-        bodies: impl FnOnce() -> Vec<Body>,
-    ) {
-        let command = self.command;
-        self.left = 0;
-        self.row(time, position, velocity, currents, &command, &bodies());
     }
 
     fn row(

@@ -38,23 +38,6 @@ impl Cell {
     }
 }
 
-/// Runs of one scenario, one a gain set.
-pub(crate) struct Strip {
-    pub cells: Vec<Cell>,
-    /// Least distances, the obstacles fastest.
-    pub distances: Vec<f64>,
-}
-
-impl Strip {
-    /// Room for a number of gain sets.
-    pub fn new(sets: usize, obstacles: usize) -> Self {
-        Self {
-            cells: filled(Cell::unset(), sets),
-            distances: filled(f64::NAN, sets * obstacles),
-        }
-    }
-}
-
 /// A vector of one value, written by all cores: for many runs it is tens of megabytes.
 fn filled<T: Copy + Send + Sync>(value: T, count: usize) -> Vec<T> {
     map(count, |_| value)
@@ -122,19 +105,6 @@ impl BatchTable {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.outcome.is_empty()
-    }
-
-    /// Turns strips into columns, each in parallel.
-    pub(crate) fn gather(scenarios: &[Scenario], strips: &[Strip]) -> Self {
-        let place = |row: usize| {
-            let (scenario, set) = (row % strips.len(), row / strips.len());
-            let count = scenarios[scenario].obstacle_count();
-            let strip = &strips[scenario];
-            let distances = &strip.distances[set * count..(set + 1) * count];
-            (&strip.cells[set], distances)
-        };
-        let rows = strips.iter().map(|strip| strip.cells.len()).sum();
-        Self::of_rows(scenarios, rows, place)
     }
 
     /// Columns of rows that lie anywhere: each has its cell and the distances to its obstacles.

@@ -60,6 +60,9 @@ impl Maps {
     }
 }
 
+/// Numbers of a robot before it is looked at for the first time: no contact, and no room to spare.
+const UNSEEN: [f64; 6] = [f64::INFINITY, f64::NAN, f64::NAN, -1.0, 0.0, 0.0];
+
 /// What is counted of the walls around the robots of one lane group.
 #[derive(Clone, Debug)]
 pub(crate) struct Walls<R> {
@@ -80,16 +83,42 @@ pub(crate) struct Walls<R> {
 impl<R: Real> Walls<R> {
     /// Around robots of a radius in m; `None` where there are no maps.
     pub fn new(maps: Maps, radius: f64) -> Option<Self> {
-        let unset = R::splat(f64::NAN);
+        let [least, contact_time, contact_speed, spare, x, y] = UNSEEN.map(R::splat);
         (!maps.is_empty()).then(|| Self {
             maps,
             radius,
-            least: R::splat(f64::INFINITY),
-            contact_time: unset,
-            contact_speed: unset,
-            seen: Vector2::zeros(),
-            spare: R::splat(-1.0),
+            least,
+            contact_time,
+            contact_speed,
+            seen: Vector2::new(x, y),
+            spare,
         })
+    }
+
+    /// A run begins in a lane.
+    pub fn enter(&mut self, lane: usize) {
+        for (number, value) in self.numbers().into_iter().zip(UNSEEN) {
+            number.set(lane, value);
+        }
+    }
+
+    /// A lane goes on from where the first lane of another group is.
+    pub fn follow(&mut self, lane: usize, leader: &mut Self) {
+        for (number, own) in self.numbers().into_iter().zip(leader.numbers()) {
+            number.set(lane, own.lane(0));
+        }
+    }
+
+    fn numbers(&mut self) -> [&mut R; UNSEEN.len()] {
+        let [[x, y]] = &mut self.seen.data.0;
+        [
+            &mut self.least,
+            &mut self.contact_time,
+            &mut self.contact_speed,
+            &mut self.spare,
+            x,
+            y,
+        ]
     }
 
     /// Looks at the robots of some lanes at an instant, after a motion step from where they were at another one if

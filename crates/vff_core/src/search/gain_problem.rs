@@ -5,8 +5,9 @@ use std::sync::Mutex;
 
 use crate::error::{Failure, Result};
 use crate::laws::Stop;
+use crate::run::lanes::group::Keep;
 use crate::run::metrics::{Nominal, score};
-use crate::run::{AnyLaw, Group, Key, Plan, Ways, Width, key_of, min_clearance, nominal_runs};
+use crate::run::{AnyLaw, Group, Job, Key, Plan, Ways, Width, key_of, min_clearance};
 use crate::search::gain_objective::{
     Judged, Metric, MetricConstraint, Objective, Over, arrival_margin,
 };
@@ -106,21 +107,37 @@ impl GainProblem {
         self.scenarios.len()
     }
 
-    fn plan(&self, sets: usize) -> Plan {
-        let width = self.options.width.unwrap_or_else(|| Width::for_sets(sets));
-        Plan {
+    /// Runs of gain sets in a scenario, as [`AnyLaw::run`] hands them over.
+    fn run(
+        &self,
+        scenario: &Scenario,
+        (points, shortcuts): (&[f64], bool),
+        stop: Stop<'_>,
+        keep: Keep<'_>,
+    ) -> Result<()> {
+        let plan = Plan {
             run: self.options.run,
-            width,
+            width: self.options.width.unwrap_or(Width::Sixteen),
             instructions: self.options.instructions,
             descent: false,
-            shortcuts: true,
-        }
+            shortcuts,
+        };
+        let sets = points.chunks_exact(self.dimension());
+        let group = Group {
+            jobs: &sets
+                .map(|gains| Job { scenario, gains })
+                .collect::<Vec<_>>(),
+            plan: &plan,
+            led: false,
+            interrupted: stop.0,
+        };
+        self.law.run(&group, keep)
     }
 
     /// Runs without obstacles of some points along a way: remembered, or made side by side.
     fn nominal(&self, way: usize, points: &[f64], stop: Stop<'_>) -> Result<Vec<Nominal>> {
         let dimension = self.dimension();
-        let key = |set: &[f64]| (way, key_of(self.law.erased().free_gains(), set));
+        let key = |set: &[f64]| (way, key_of(self.law.free_gains(), set));
         let known = self.remembered(points, &key)?;
         let mut missing: Vec<(usize, Key)> = Vec::new();
         let mut sets = Vec::new();
@@ -131,16 +148,11 @@ impl GainProblem {
                 sets.extend_from_slice(set);
             }
         }
-        let plan = Plan {
-            shortcuts: false,
-            ..self.plan(missing.len())
-        };
-        let mut fresh = Vec::with_capacity(missing.len());
-        for sets in sets.chunks(plan.team(0) * dimension) {
-            let way = &self.ways.scenarios[way];
-            let law = self.law.erased();
-            fresh.extend(nominal_runs(way, law, sets, &plan, stop.0)?);
-        }
+        let mut fresh = vec![Nominal::UNSET; missing.len()];
+        let way = &self.ways.scenarios[way];
+        self.run(way, (&sets, false), stop, &mut |set, run, _| {
+            fresh[set] = Nominal::of(run);
+        })?;
         let mut made = missing.iter().zip(&fresh);
         let mut last: Option<(&(usize, Key), &Nominal)> = None;
         let mut runs = Vec::with_capacity(known.len());
@@ -192,19 +204,10 @@ impl GainProblem {
             gathered = live.iter().flat_map(of).copied().collect();
             &gathered
         };
-        let plan = self.plan(live.len());
-        let team = plan.team(live.len() * count);
-        let obstacles = scenario.obstacle_count();
-        let mut distances = vec![0.0; obstacles];
+        let mut distances = vec![0.0; scenario.obstacle_count()];
         let mut first = 0;
-        for sets in teams(sets, dimension, team, self.law.erased().free_gains()) {
-            let group = Group {
-                scenario,
-                points: sets,
-                plan: &plan,
-                interrupted: stop.0,
-            };
-            self.law.erased().run(&group, &mut |set, run, distance| {
+        for sets in teams(sets, dimension, self.law.free_gains()) {
+            self.run(scenario, (sets, true), stop, &mut |set, run, distance| {
                 let set = live[first + set];
                 for (obstacle, slot) in distances.iter_mut().enumerate() {
                     *slot = distance(obstacle);
@@ -263,7 +266,7 @@ impl GainProblem {
 
 impl Problem for GainProblem {
     fn dimension(&self) -> usize {
-        self.law.erased().gain_names().len()
+        self.law.gain_names().len()
     }
 
     fn objectives(&self) -> usize {
@@ -276,7 +279,7 @@ impl Problem for GainProblem {
 
     fn evaluate(&self, points: &[f64], into: &mut Evaluation<'_>) -> Result<()> {
         for set in points.chunks_exact(self.dimension()) {
-            self.law.erased().check_gains(set)?;
+            self.law.check_gains(set)?;
         }
         let count = self.scenarios.len();
         let mut judged = vec![Judged::hopeless(); into.failed.len() * count];
@@ -311,7 +314,7 @@ impl Problem for GainProblem {
     /// The gains that act without obstacles slowest: neighbours then share those runs, and the
     /// lanes of a group behave alike.
     fn slowest_first(&self) -> Vec<usize> {
-        let free = self.law.erased().free_gains();
+        let free = self.law.free_gains();
         let others = (0..self.dimension()).filter(|axis| !free.contains(axis));
         free.iter().copied().chain(others).collect()
     }
@@ -330,30 +333,19 @@ fn lost() -> Failure {
 
 /// Cuts gain sets into teams; where many neighbours share the gains that act without obstacles, a
 /// team does not reach beyond them.
-fn teams<'a>(
-    points: &'a [f64],
-    dimension: usize,
-    team: usize,
-    free_gains: &[usize],
-) -> Vec<&'a [f64]> {
-    let key = |set: &[f64]| key_of(free_gains, set);
-    let (sets, rest) = (
-        points.chunks_exact(dimension),
-        points.chunks_exact(dimension).skip(1),
-    );
-    let changes = sets.zip(rest).filter(|(one, next)| key(one) != key(next));
-    if changes.count() * MANY_NEIGHBOURS * dimension > points.len() {
-        return points.chunks(team * dimension).collect();
+fn teams<'a>(points: &'a [f64], dimension: usize, free_gains: &[usize]) -> Vec<&'a [f64]> {
+    let sets = || points.chunks_exact(dimension);
+    let differ = |(one, next)| key_of(free_gains, one) != key_of(free_gains, next);
+    let changes = sets().zip(sets().skip(1)).enumerate();
+    let changes = changes.filter(|(_, pair)| differ(*pair));
+    let mut ends: Vec<usize> = changes.map(|(index, _)| (index + 1) * dimension).collect();
+    if ends.len() * MANY_NEIGHBOURS * dimension > points.len() {
+        return vec![points];
     }
-    let mut teams = Vec::with_capacity(points.len() / (team * dimension) + 8);
-    let mut left = points;
-    while let Some(first) = left.get(..dimension) {
-        let own = key(first);
-        let sets = left.chunks_exact(dimension).take(team);
-        let count = sets.take_while(|set| key(set) == own).count();
-        let (taken, rest) = left.split_at(count * dimension);
-        teams.push(taken);
-        left = rest;
-    }
-    teams
+    ends.push(points.len());
+    let begins = std::iter::once(0).chain(ends.iter().copied());
+    begins
+        .zip(&ends)
+        .map(|(begin, end)| &points[begin..*end])
+        .collect()
 }

@@ -70,6 +70,13 @@ impl<R: Real> Past<R> {
         })
     }
 
+    /// A run begins in a lane: its robot has always stood at its start.
+    pub fn enter(&mut self, lane: usize, start: [f64; 2]) {
+        for position in &mut self.positions {
+            position.set_lane(lane, start);
+        }
+    }
+
     /// Keeps the positions after a motion step; the first call is for the start of the run.
     pub fn push(&mut self, position: Vector2<R>) {
         if self.positions.len() > self.whole.saturating_add(1) {

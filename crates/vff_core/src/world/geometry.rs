@@ -1,6 +1,6 @@
 //! One obstacle as the force field sees it from the robot.
 
-use crate::lanes::{Mask, Planar, Real, Truth, Vector2, Wide, widened};
+use crate::lanes::{Mask, Planar, Real, Truth, Vector2};
 use crate::world::motion::BodyState;
 use crate::world::obstacle::Regions;
 use crate::world::shape::{Shape, into_axes, out_of_axes};
@@ -33,6 +33,31 @@ pub struct Body<B: Real = f64> {
     pub state: BodyState<B>,
 }
 
+impl Body {
+    /// The obstacle in every lane.
+    #[must_use]
+    pub fn widened<B: Real>(&self) -> Body<B> {
+        let wide = |pair: [f64; 2]| pair.map(B::splat);
+        let mut shape = Shape::Disc { radius: B::zero() };
+        for lane in 0..B::WIDTH {
+            shape.set_lane(lane, &self.shape);
+        }
+        Body {
+            shape,
+            regions: Regions {
+                critical_radius: B::splat(self.regions.critical_radius),
+                active_radius: B::splat(self.regions.active_radius),
+            },
+            state: BodyState {
+                position: wide(self.state.position),
+                velocity: wide(self.state.velocity),
+                acceleration: wide(self.state.acceleration),
+                present: B::Mask::splat(self.state.present),
+            },
+        }
+    }
+}
+
 /// Where the robot is relative to an obstacle: enough to tell its region.
 #[derive(Clone, Copy, Debug)]
 pub struct Offset<R> {
@@ -45,11 +70,8 @@ pub struct Offset<R> {
 impl<B: Real> Body<B> {
     /// Offset of a position from this obstacle.
     #[inline(always)]
-    pub fn offset<R: Real>(&self, position: Vector2<R>) -> Offset<R>
-    where
-        B: Wide<R>,
-    {
-        let from_center = position - widened(self.state.position);
+    pub fn offset(&self, position: Vector2<B>) -> Offset<B> {
+        let from_center = position - Vector2::from(self.state.position);
         let vector = self.shape.offset(from_center);
         Offset {
             vector,
@@ -98,8 +120,8 @@ impl<R: Real> Approach<R> {
 
     /// Seen by the robots from an obstacle. Values are meaningless outside the active region.
     #[inline(always)]
-    pub fn new<B: Wide<R>>(
-        body: &Body<B>,
+    pub fn new(
+        body: &Body<R>,
         offset: Offset<R>,
         active: R::Mask,
         robot: &RobotState<R>,
@@ -130,8 +152,8 @@ impl<R: Real> Approach<R> {
             angle: unsigned_angle(cross, dot),
             shortest_side: cross.sign(),
             collinear: behind,
-            depth: body.regions.active_radius.wide() - distance,
-            margin: distance - body.regions.critical_radius.wide(),
+            depth: body.regions.active_radius - distance,
+            margin: distance - body.regions.critical_radius,
         }
     }
 }
@@ -151,18 +173,16 @@ struct NearestPoint<R: Real> {
 impl<R: Real> NearestPoint<R> {
     /// Rectangles keep their heading.
     #[inline(always)]
-    fn of<B: Wide<R>>(
-        body: &Body<B>,
-        offset: &Offset<R>,
-        robot: &RobotState<R>,
-        goal: Vector2<R>,
-    ) -> Self {
-        let (center, own) = (widened(body.state.position), widened(body.state.velocity));
+    fn of(body: &Body<R>, offset: &Offset<R>, robot: &RobotState<R>, goal: Vector2<R>) -> Self {
+        let (center, own) = (
+            Vector2::from(body.state.position),
+            Vector2::from(body.state.velocity),
+        );
         match body.shape {
             Shape::Disc { .. } => Self {
                 velocity: own,
                 slides: R::Mask::none(),
-                moves: B::wide_mask(!at_rest(body.state.velocity)),
+                moves: !at_rest(body.state.velocity),
                 // Straight from its center, so that one on the goal gives exactly zero.
                 to_goal: goal - center,
             },
@@ -174,8 +194,8 @@ impl<R: Real> NearestPoint<R> {
                 let local = into_axes(robot.position - center, axis);
                 // No branch for those that stand: with one the compiler takes the lanes of all apart.
                 let velocity = into_axes(robot.velocity - own, axis);
-                let beside = local.x.abs().le(half_length.wide());
-                let abreast = local.y.abs().le(half_width.wide());
+                let beside = local.x.abs().le(half_length);
+                let abreast = local.y.abs().le(half_width);
                 let slide = Vector2::new(
                     R::select(beside, velocity.x, R::zero()),
                     R::select(abreast, velocity.y, R::zero()),
@@ -213,21 +233,21 @@ pub(crate) fn at_rest<B: Real>([x, y]: [B; 2]) -> B::Mask {
 /// directions from the centroid to robot and goal, with their dot product.
 #[inline(always)]
 #[must_use]
-pub fn separation<R: Real, B: Wide<R>>(
-    body: &Body<B>,
-    half: [B; 2],
-    axis: Vector2<B>,
+pub fn separation<R: Real>(
+    body: &Body<R>,
+    half: [R; 2],
+    axis: Vector2<R>,
     position: Vector2<R>,
     goal: Vector2<R>,
 ) -> (R::Mask, R, R) {
-    let center = widened(body.state.position);
+    let center = Vector2::from(body.state.position);
     let from = into_axes(position - center, axis);
     let to = into_axes(goal - center, axis);
     // Separating axes of a segment (midpoint m, half vector h) and a box (Ericson 2005, 5.3.3).
     let two = R::splat(0.5);
     let middle = (from + to) * two;
     let reach = (to - from) * two;
-    let (half_x, half_y): (R, R) = (half[0].wide(), half[1].wide());
+    let [half_x, half_y] = half;
     let overlaps = middle.x.abs().le(half_x + reach.x.abs())
         & middle.y.abs().le(half_y + reach.y.abs())
         & middle

@@ -1,7 +1,7 @@
 //! How an obstacle moves: pieces of constant acceleration, or a recording.
 
 use crate::error::{Failure, Given, Result, finite_pair, not_negative};
-use crate::lanes::Real;
+use crate::lanes::{Mask, Real, Truth};
 
 /// Largest distance of a stop from the line of the velocity, in m: rounding of typed numbers.
 const STOP_OFFSET: f64 = 5e-7;
@@ -20,6 +20,31 @@ pub struct BodyState<B: Real = f64> {
     pub acceleration: [B; 2],
     /// Whether the body is in the scene.
     pub present: B::Mask,
+}
+
+impl<B: Real> BodyState<B> {
+    /// The state of one lane.
+    pub(crate) fn of_lane(&self, lane: usize) -> BodyState {
+        BodyState {
+            position: self.position.map(|axis| axis.lane(lane)),
+            velocity: self.velocity.map(|axis| axis.lane(lane)),
+            acceleration: self.acceleration.map(|axis| axis.lane(lane)),
+            present: self.present.lane(lane),
+        }
+    }
+
+    /// Replaces the state of one lane.
+    pub(crate) fn set_lane(&mut self, lane: usize, state: &BodyState) {
+        for axis in 0..2 {
+            self.position[axis].set(lane, state.position[axis]);
+            self.velocity[axis].set(lane, state.velocity[axis]);
+            self.acceleration[axis].set(lane, state.acceleration[axis]);
+        }
+        self.present = self.present.without(lane);
+        if state.present {
+            self.present.set(lane);
+        }
+    }
 }
 
 /// A piece of motion with constant acceleration.

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use crate::error::{Result, finite, finite_pair, not_negative, positive};
-use crate::lanes::{Planar, Real, Wide, widened};
+use crate::lanes::{Planar, Real};
 
 /// More than what rounding adds to a distance, as a share.
 pub(crate) const SLACK: f64 = 1.0 + 1e-9;
@@ -64,6 +64,48 @@ impl Shape {
 }
 
 impl<B: Real> Shape<B> {
+    /// Gives one lane another outline, and every lane if that is of another kind.
+    pub(crate) fn set_lane(&mut self, lane: usize, outline: &Shape) {
+        match (self, outline) {
+            (Self::Disc { radius }, Shape::Disc { radius: own }) => radius.set(lane, *own),
+            (
+                Self::Rectangle {
+                    half_length,
+                    half_width,
+                    axis,
+                },
+                Shape::Rectangle {
+                    half_length: length,
+                    half_width: width,
+                    axis: own,
+                },
+            ) => {
+                half_length.set(lane, *length);
+                half_width.set(lane, *width);
+                axis.set_lane(lane, (*own).into());
+            }
+            (other, Shape::Disc { radius }) => {
+                *other = Self::Disc {
+                    radius: B::splat(*radius),
+                };
+            }
+            (
+                other,
+                Shape::Rectangle {
+                    half_length,
+                    half_width,
+                    axis,
+                },
+            ) => {
+                *other = Self::Rectangle {
+                    half_length: B::splat(*half_length),
+                    half_width: B::splat(*half_width),
+                    axis: Vector2::splat((*axis).into()),
+                };
+            }
+        }
+    }
+
     /// Part of the distance `d` that lies inside the obstacle (`rho_obs`), in m: `d` is measured
     /// from the center of a disc and from the contour of a rectangle.
     #[inline(always)]
@@ -79,10 +121,7 @@ impl<B: Real> Shape<B> {
     /// a place that is given from the center; zero inside a rectangle.
     #[inline(always)]
     #[must_use]
-    pub fn offset<R: Real>(&self, from_center: Vector2<R>) -> Vector2<R>
-    where
-        B: Wide<R>,
-    {
+    pub fn offset(&self, from_center: Vector2<B>) -> Vector2<B> {
         match *self {
             Self::Disc { .. } => from_center,
             Self::Rectangle {
@@ -102,21 +141,19 @@ impl<B: Real> Shape<B> {
 }
 
 #[inline(always)]
-fn clamped<R: Real, B: Wide<R>>(value: R, limit: B) -> R {
-    value.max((-limit).wide()).min(limit.wide())
+fn clamped<R: Real>(value: R, limit: R) -> R {
+    value.max(-limit).min(limit)
 }
 
 /// Components of a vector along and to the left of an axis.
 #[inline(always)]
-pub(crate) fn into_axes<R: Real, B: Wide<R>>(vector: Vector2<R>, axis: Vector2<B>) -> Vector2<R> {
-    let axis = widened(axis.into());
+pub(crate) fn into_axes<R: Real>(vector: Vector2<R>, axis: Vector2<R>) -> Vector2<R> {
     Vector2::new(axis.dot(&vector), axis.perp(&vector))
 }
 
 /// The vector with components along and to the left of an axis.
 #[inline(always)]
-pub(crate) fn out_of_axes<R: Real, B: Wide<R>>(vector: Vector2<R>, axis: Vector2<B>) -> Vector2<R> {
-    let axis: Vector2<R> = widened(axis.into());
+pub(crate) fn out_of_axes<R: Real>(vector: Vector2<R>, axis: Vector2<R>) -> Vector2<R> {
     axis * vector.x + axis.left_normal() * vector.y
 }
 

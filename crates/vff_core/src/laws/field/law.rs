@@ -1,7 +1,7 @@
 //! Virtual force field with a stabilizing force: attraction, repulsion, detour and braking.
 
 use crate::error::{Failure, Given, Result, not_negative};
-use crate::lanes::{Mask, Planar, Real, Truth, Vector2, Wide};
+use crate::lanes::{Mask, Planar, Real, Truth, Vector2};
 use crate::laws::field::attractive::attractive_force;
 use crate::laws::field::detour::Turning;
 use crate::laws::field::gains::{GainLanes, Gains};
@@ -10,7 +10,7 @@ use crate::laws::field::repulsive::Repulsion;
 use crate::laws::field::side::{self, Detour, SideRules};
 use crate::laws::field::stabilizing::{Dissipation, Dissipative, Stabilizing};
 use crate::laws::field::terms::{FieldTerms, ObstacleTerms};
-use crate::laws::{Command, Law, LawFamily, SceneLaw, Situation};
+use crate::laws::{Command, LaneFamily, LaneLaw, Law, LawFamily, Situation};
 use crate::world::geometry::{Approach, Body, Offset, RobotState};
 use crate::world::scenario::{PlacedObstacle, Scenario};
 
@@ -50,8 +50,6 @@ impl VirtualForceField {
 }
 
 impl LawFamily for VirtualForceField {
-    type Law<R: Real, const RECORD: bool> = ForceFieldLaw<R, RECORD>;
-
     fn gain_names(&self) -> &'static [&'static str] {
         &[
             "attractive_gain",
@@ -86,7 +84,25 @@ impl LawFamily for VirtualForceField {
         Ok(())
     }
 
-    #[inline(always)]
+    fn at_work(
+        &self,
+        gains: &[f64],
+        scenario: &Scenario,
+        record: bool,
+    ) -> Result<Box<dyn Law<f64>>> {
+        Ok(if record {
+            Box::new(self.with_gains::<f64, true>(gains, scenario)?)
+        } else {
+            Box::new(self.with_gains::<f64, false>(gains, scenario)?)
+        })
+    }
+}
+
+impl LaneFamily for VirtualForceField {
+    const LYAPUNOV: bool = true;
+
+    type Law<R: Real, const RECORD: bool> = ForceFieldLaw<R, RECORD>;
+
     fn with_gains<R: Real, const RECORD: bool>(
         &self,
         gains: &[R],
@@ -111,12 +127,12 @@ struct Near<R: Real> {
 
 impl<R: Real> Near<R> {
     #[inline(always)]
-    fn new<B: Wide<R>>(body: &Body<B>, robot: &RobotState<R>) -> Self {
+    fn new(body: &Body<R>, robot: &RobotState<R>) -> Self {
         let offset = body.offset(robot.position);
         let (r2, r3) = (body.regions.active_radius, body.regions.critical_radius);
-        let here = B::wide_mask(body.state.present);
-        let active = offset.distance_squared.lt((r2 * r2).wide()) & here;
-        let critical = offset.distance_squared.le((r3 * r3).wide()) & here;
+        let here = body.state.present;
+        let active = offset.distance_squared.lt(r2 * r2) & here;
+        let critical = offset.distance_squared.le(r3 * r3) & here;
         Self {
             offset,
             active,
@@ -177,9 +193,9 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
     /// asks for it; tells the lanes inside a critical region. False if a side hangs on the other
     /// obstacles; the sums are void then.
     #[inline(always)]
-    fn add_up<B: Wide<R>>(
+    fn add_up(
         &mut self,
-        situation: &Situation<'_, R, B>,
+        situation: &Situation<'_, R>,
         total: &mut Vector2<R>,
         critical: &mut R::Mask,
     ) -> bool {
@@ -219,10 +235,7 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
 
     /// As [`Self::add_up`], with the sides of every rule and the terms kept in the slots.
     #[inline(always)]
-    fn sum_in_full<B: Wide<R>>(
-        &mut self,
-        situation: &Situation<'_, R, B>,
-    ) -> (Vector2<R>, R::Mask) {
+    fn sum_in_full(&mut self, situation: &Situation<'_, R>) -> (Vector2<R>, R::Mask) {
         let critical = self.fill_slots(situation);
         self.break_ties();
         // Without a stabilizing force only a record of the terms shows Omega.
@@ -248,7 +261,7 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
     }
 
     #[inline(always)]
-    fn fill_slots<B: Wide<R>>(&mut self, situation: &Situation<'_, R, B>) -> R::Mask {
+    fn fill_slots(&mut self, situation: &Situation<'_, R>) -> R::Mask {
         let mut critical = R::Mask::none();
         self.slots.clear();
         for (index, body) in situation.bodies.iter().enumerate() {
@@ -348,11 +361,12 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
     }
 }
 
-impl<R: Real + Wide<R>, const RECORD: bool> SceneLaw<R> for ForceFieldLaw<R, RECORD> {
-    fn enter(&mut self, lane: usize, scenario: &Scenario) {
-        let [x, y] = scenario.goal;
-        self.goal.x.set(lane, x);
-        self.goal.y.set(lane, y);
+impl<R: Real, const RECORD: bool> LaneLaw<R> for ForceFieldLaw<R, RECORD> {
+    fn enter(&mut self, lane: usize, fresh: Self) {
+        self.gains = fresh.gains;
+        self.goal.set_lane(lane, fresh.goal.lane(lane));
+        let count = self.latched.len().max(fresh.latched.len());
+        self.latched.resize(count, R::zero());
         for side in &mut self.latched {
             side.set(lane, 0.0);
         }
@@ -363,9 +377,9 @@ impl<R: Real + Wide<R>, const RECORD: bool> SceneLaw<R> for ForceFieldLaw<R, REC
     }
 }
 
-impl<R: Real, B: Wide<R>, const RECORD: bool> Law<R, B> for ForceFieldLaw<R, RECORD> {
+impl<R: Real, const RECORD: bool> Law<R> for ForceFieldLaw<R, RECORD> {
     #[inline(always)]
-    fn command(&mut self, situation: &Situation<'_, R, B>) -> Command<R> {
+    fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
         let robot = &situation.robot;
         let stabilizes = self.stabilizing != Stabilizing::Off;
         let remembers = self.rules.hysteresis.is_finite();

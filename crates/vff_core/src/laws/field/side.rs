@@ -1,6 +1,6 @@
 //! On which side the detour leads around an obstacle: the rules of Zeng (2011), 5.4.
 
-use crate::lanes::{Real, Truth, Vector2, Wide, widened};
+use crate::lanes::{Real, Truth, Vector2};
 use crate::world::geometry::{Approach, Body, COLLINEAR_ANGLE, RobotState, separation};
 use crate::world::obstacle::Shape;
 
@@ -35,9 +35,9 @@ pub struct Detour<R: Real> {
 /// In order: a moving obstacle that robot and goal straddle is passed behind (Fig. 5.8a), a rectangle
 /// between robot and goal is passed on the robot's side of its centroid (Fig. 5.9), exactly collinear is left open, anything else turns the shortest way.
 #[inline(always)]
-pub fn decide<R: Real, B: Wide<R>>(
+pub fn decide<R: Real>(
     rules: &SideRules,
-    body: &Body<B>,
+    body: &Body<R>,
     approach: &Approach<R>,
     robot: &RobotState<R>,
     goal: Vector2<R>,
@@ -55,7 +55,7 @@ pub fn decide<R: Real, B: Wide<R>>(
             let open = dot.lt(R::zero()) & cross.abs().lt(R::splat(-COLLINEAR_ANGLE) * dot);
             let own = R::select(open, R::zero(), cross.sign());
             let side = R::select(between, own, side);
-            let center = widened(body.state.position);
+            let center = Vector2::from(body.state.position);
             behind(rules, body, (robot.position - center, goal - center), side)
         }
     }
@@ -64,19 +64,19 @@ pub fn decide<R: Real, B: Wide<R>>(
 /// The side that leads behind a moving obstacle which robot and goal straddle, given as seen from its
 /// center; the side as it is otherwise.
 #[inline(always)]
-fn behind<R: Real, B: Wide<R>>(
+fn behind<R: Real>(
     rules: &SideRules,
-    body: &Body<B>,
+    body: &Body<R>,
     (to_robot, to_goal): (Vector2<R>, Vector2<R>),
     side: R,
 ) -> R {
     let [x, y] = body.state.velocity;
     let speed = (x * x + y * y).sqrt();
-    let moving = B::wide_mask(speed.gt(B::splat(MOVING_SPEED)));
+    let moving = speed.gt(R::splat(MOVING_SPEED));
     if !rules.pass_behind || !moving.any() {
         return side;
     }
-    let course: Vector2<R> = widened([x / speed, y / speed]);
+    let course: Vector2<R> = Vector2::from([x / speed, y / speed]);
     let robot_side = course.perp(&to_robot);
     let goal_side = course.perp(&to_goal);
     let line = R::splat(VELOCITY_LINE);

@@ -1,7 +1,7 @@
 //! Stabilizing force: what makes the Lyapunov function descend.
 
 use crate::error::{Failure, Given, Result, not_negative};
-use crate::lanes::{Planar, Real, Truth, Vector2, Wide, widened};
+use crate::lanes::{Planar, Real, Truth, Vector2};
 use crate::laws::field::detour::Turning;
 use crate::laws::field::gains::GainLanes;
 use crate::laws::field::repulsive::Repulsion;
@@ -130,11 +130,11 @@ impl<R: Real> Dissipation<R> {
     /// `sigma` where a rule overrides the shortest turn. `docs/theory/errata.md` lists each
     /// difference to the printed form.
     #[inline(always)]
-    pub fn add<B: Wide<R>>(
+    pub fn add(
         &mut self,
         gains: &GainLanes<R>,
         robot: &Dissipative<R>,
-        body: &Body<B>,
+        body: &Body<R>,
         seen: (&Approach<R>, &Repulsion<R>, &Turning<R>, &Detour<R>),
     ) {
         let (approach, repulsion, turning, detour) = seen;
@@ -146,7 +146,7 @@ impl<R: Real> Dissipation<R> {
         let (a, c, d) = (approach.depth, approach.margin, approach.distance);
         let ddot = approach.range_rate;
         let (betadot, phidot) = (approach.bearing_rate, approach.angle_rate());
-        let acceleration: Vector2<R> = widened(body.state.acceleration);
+        let acceleration: Vector2<R> = Vector2::from(body.state.acceleration);
 
         let f = u * (k3 * repulsion.potential) + t * (k5 * turning.signed_potential);
         let l = u * (k3 * repulsion.rate) + t * (k5 * turning.signed_rate);
@@ -219,16 +219,16 @@ impl<R: Real> Dissipation<R> {
 /// `alphaddot = [t_W.(-a_o) - 2 Wdot alphadot]/|W|`, `Wdot = u_W.(-V_o)`, in rad/s^2, with the
 /// velocity and acceleration of the body.
 #[inline(always)]
-fn goal_bearing_acceleration<R: Real, B: Wide<R>>(body: &Body<B>, approach: &Approach<R>) -> R {
+fn goal_bearing_acceleration<R: Real>(body: &Body<R>, approach: &Approach<R>) -> R {
     let state = &body.state;
-    let moving = B::wide_mask(!(at_rest(state.velocity) & at_rest(state.acceleration)));
+    let moving = !(at_rest(state.velocity) & at_rest(state.acceleration));
     if !moving.any() {
         return R::zero();
     }
     let w = approach.to_goal;
     let length_squared = w.dot(&w);
-    let turning = w.perp(&widened(state.acceleration));
-    let closing = w.dot(&widened(state.velocity));
+    let turning = w.perp(&Vector2::from(state.acceleration));
+    let closing = w.dot(&Vector2::from(state.velocity));
     let value = (R::splat(2.0) * closing * approach.goal_bearing_rate - turning) / length_squared;
     R::select(length_squared.gt(R::zero()) & moving, value, R::zero())
 }

@@ -2,7 +2,7 @@
 
 use crate::arguments::{Arguments, Named};
 use crate::error::Result;
-use crate::lanes::{Real, Vector2};
+use crate::lanes::Vector2;
 use crate::laws::impedance::attraction::Attraction;
 use crate::laws::impedance::law::{Form, Impedance, Prepared};
 use crate::laws::{Command, Law, LawFamily, Situation};
@@ -99,8 +99,6 @@ impl Named for ImpedanceFamily {
 }
 
 impl LawFamily for ImpedanceFamily {
-    type Law<R: Real, const RECORD: bool> = ImpedanceLaw;
-
     fn gain_names(&self) -> &'static [&'static str] {
         &GAIN_NAMES
     }
@@ -125,30 +123,28 @@ impl LawFamily for ImpedanceFamily {
         self.with(gains).map(|_| ())
     }
 
-    fn with_gains<R: Real, const RECORD: bool>(
+    fn at_work(
         &self,
-        gains: &[R],
+        gains: &[f64],
         scenario: &Scenario,
-    ) -> Result<ImpedanceLaw> {
-        let lane = |lane: usize| -> Result<_> {
-            let gains: Vec<f64> = gains.iter().map(|gain| gain.lane(lane)).collect();
-            let law = self.with(&gains)?;
-            Ok((law.impedance.prepared(), law.attraction))
-        };
-        Ok(ImpedanceLaw {
-            lanes: (0..R::WIDTH).map(lane).collect::<Result<_>>()?,
+        _record: bool,
+    ) -> Result<Box<dyn Law<f64>>> {
+        let law = self.with(gains)?;
+        Ok(Box::new(ImpedanceLaw {
+            repulsion: law.impedance.prepared(),
+            attraction: law.attraction,
             goal: scenario.goal().into(),
             robot_radius: scenario.point_mass().radius,
             reach: self.reach,
             least_cosine: self.view.cos(),
-        })
+        }))
     }
 }
 
 /// The law at work in one scenario.
 pub struct ImpedanceLaw {
-    /// Repulsion and attraction of every lane.
-    lanes: Vec<(Prepared, Attraction)>,
+    repulsion: Prepared,
+    attraction: Attraction,
     goal: Vector2<f64>,
     robot_radius: f64,
     reach: f64,
@@ -157,47 +153,39 @@ pub struct ImpedanceLaw {
 }
 
 impl ImpedanceLaw {
-    /// Force of one lane in N.
-    fn force(&self, lane: usize, situation: &Situation<'_, f64>) -> Vector2<f64> {
-        let (law, attraction) = &self.lanes[lane];
+    /// Force in N.
+    fn force(&self, situation: &Situation<'_, f64>) -> Vector2<f64> {
         let RobotState { position, velocity } = situation.robot;
         let offset = self.goal - position;
-        let pull = attraction.force(offset, velocity);
+        let pull = self.attraction.force(offset, velocity);
         // A robot that stands looks to where it is going.
         let speed = velocity.x.hypot(velocity.y);
         let ahead = if speed > STANDING { velocity } else { offset };
         let length = ahead.x.hypot(ahead.y);
-        let push = law.force_of_points(situation.bodies.iter().filter_map(|body| {
-            let from_obstacle = body.offset(position);
-            let distance = from_obstacle.distance_squared.sqrt();
-            let contact = self.robot_radius + body.shape.inner_radius();
-            let gap = (distance - contact).max(TOUCHING);
-            if !body.state.present || gap > self.reach || distance == 0.0 {
-                return None;
-            }
-            let away = from_obstacle.vector;
-            if -away.dot(&ahead) < self.least_cosine * distance * length {
-                return None;
-            }
-            let moving = Vector2::from(body.state.velocity);
-            Some((-away * (gap / distance), moving - velocity))
-        }));
+        let push = self
+            .repulsion
+            .force_of_points(situation.bodies.iter().filter_map(|body| {
+                let from_obstacle = body.offset(position);
+                let distance = from_obstacle.distance_squared.sqrt();
+                let contact = self.robot_radius + body.shape.inner_radius();
+                let gap = (distance - contact).max(TOUCHING);
+                if !body.state.present || gap > self.reach || distance == 0.0 {
+                    return None;
+                }
+                let away = from_obstacle.vector;
+                if -away.dot(&ahead) < self.least_cosine * distance * length {
+                    return None;
+                }
+                let moving = Vector2::from(body.state.velocity);
+                Some((-away * (gap / distance), moving - velocity))
+            }));
         pull + push
     }
 }
 
-impl<R: Real> Law<R> for ImpedanceLaw {
-    fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
-        let mut force = Vector2::<R>::zeros();
-        for lane in 0..R::WIDTH {
-            let own = self.force(lane, &situation.of_lane(lane));
-            force = Vector2::new(force.x.replace(lane, own.x), force.y.replace(lane, own.y));
-        }
-        Command {
-            force,
-            stabilizing: Vector2::zeros(),
-            lyapunov: R::splat(f64::NAN),
-        }
+impl Law<f64> for ImpedanceLaw {
+    fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
+        Command::plain(self.force(situation))
     }
 
     fn felt_within(&self, obstacle: &PlacedObstacle) -> f64 {

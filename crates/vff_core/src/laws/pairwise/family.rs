@@ -2,14 +2,14 @@
 
 use crate::arguments::{Arguments, Named};
 use crate::error::{Result, not_negative};
-use crate::lanes::{Real, Vector2, Wide};
+use crate::lanes::{Real, Vector2};
 use crate::laws::pairwise::{Neighbor, PairwiseField, PairwiseLaw, Push};
-use crate::laws::{FieldTerms, LawFamily, Situation};
+use crate::laws::{FieldTerms, LaneFamily, Law, LawFamily, Situation};
 use crate::world::geometry::RobotState;
 use crate::world::scenario::Scenario;
 
 /// A field with its gains, by which it is known to a search.
-pub trait PairwiseFamily: Copy + Sync {
+pub trait PairwiseFamily: Copy + Send + Sync {
     /// The field for gain sets side by side.
     type Field<R: Real>: PairwiseField<R> + Into<AnyField<R>>;
     /// Words for the gains, in their order.
@@ -64,9 +64,9 @@ macro_rules! any_field {
             }
 
             #[inline(always)]
-            fn push<B: Wide<R>>(
+            fn push(
                 &self,
-                neighbor: &Neighbor<'_, R, B>,
+                neighbor: &Neighbor<'_, R>,
                 robot: &RobotState<R>,
             ) -> Push<R> {
                 match self {
@@ -79,8 +79,6 @@ macro_rules! any_field {
 pairwise_laws!(any_field);
 
 impl<F: PairwiseFamily> LawFamily for Pairwise<F> {
-    type Law<R: Real, const RECORD: bool> = PairwiseLaw<R, AnyField<R>>;
-
     fn gain_names(&self) -> &'static [&'static str] {
         F::GAIN_NAMES
     }
@@ -105,7 +103,19 @@ impl<F: PairwiseFamily> LawFamily for Pairwise<F> {
         Ok(())
     }
 
-    #[inline(always)]
+    fn at_work(
+        &self,
+        gains: &[f64],
+        scenario: &Scenario,
+        _record: bool,
+    ) -> Result<Box<dyn Law<f64>>> {
+        Ok(Box::new(self.with_gains::<f64, false>(gains, scenario)?))
+    }
+}
+
+impl<F: PairwiseFamily> LaneFamily for Pairwise<F> {
+    type Law<R: Real, const RECORD: bool> = PairwiseLaw<R, AnyField<R>>;
+
     fn with_gains<R: Real, const RECORD: bool>(
         &self,
         gains: &[R],

@@ -5,8 +5,8 @@ mod family;
 
 pub use family::{Pairwise, PairwiseFamily};
 
-use crate::lanes::{Mask, Planar, Real, Truth, Vector2, Wide};
-use crate::laws::{Command, FieldTerms, Law, ObstacleTerms, SceneLaw, Situation};
+use crate::lanes::{Mask, Planar, Real, Truth, Vector2};
+use crate::laws::{Command, FieldTerms, LaneLaw, Law, ObstacleTerms, Situation};
 use crate::world::geometry::{Body, Offset, RobotState};
 use crate::world::scenario::{PlacedObstacle, Scenario};
 
@@ -16,9 +16,9 @@ const LEAST_GAP: f64 = 1e-3;
 
 /// What a law needs of one obstacle.
 #[derive(Clone, Copy, Debug)]
-pub struct Neighbor<'a, R, B: Real = f64> {
+pub struct Neighbor<'a, R: Real> {
     /// The obstacle.
-    pub body: &'a Body<B>,
+    pub body: &'a Body<R>,
     /// Offset of the robot from it.
     pub offset: Offset<R>,
     /// `d` in m.
@@ -28,15 +28,15 @@ pub struct Neighbor<'a, R, B: Real = f64> {
     /// Distance of the surfaces in m, at least [`LEAST_GAP`].
     pub gap: R,
     /// `r2` measured between the surfaces, in m.
-    pub reach: B,
+    pub reach: R,
 }
 
 /// Forces of one law, gains in lanes.
-pub trait PairwiseField<R: Real>: Copy {
+pub trait PairwiseField<R: Real>: Copy + Send {
     /// Attraction in N; `inside`: lanes inside an active region.
     fn attraction(&self, to_goal: Vector2<R>, velocity: Vector2<R>, inside: R::Mask) -> Vector2<R>;
     /// Push of an obstacle on the robot inside its active region.
-    fn push<B: Wide<R>>(&self, neighbor: &Neighbor<'_, R, B>, robot: &RobotState<R>) -> Push<R>;
+    fn push(&self, neighbor: &Neighbor<'_, R>, robot: &RobotState<R>) -> Push<R>;
 }
 
 /// Parts of the force of one obstacle, in N.
@@ -78,33 +78,29 @@ impl<R: Real, F: PairwiseField<R>> PairwiseLaw<R, F> {
     }
 
     #[inline(always)]
-    fn neighbor<'a, B: Wide<R>>(&self, body: &'a Body<B>, offset: Offset<R>) -> Neighbor<'a, R, B> {
+    fn neighbor<'a>(&self, body: &'a Body<R>, offset: Offset<R>) -> Neighbor<'a, R> {
         let distance = offset.distance_squared.sqrt();
         let apart = distance.gt(R::zero());
         // A robot exactly on the centre, or inside a rectangle, is pushed nowhere.
         let outward = offset.vector * (R::splat(1.0) / distance);
-        let touching = B::splat(self.robot_radius) + body.shape.inner_radius();
+        let touching = R::splat(self.robot_radius) + body.shape.inner_radius();
         Neighbor {
             body,
             offset,
             distance,
             outward: Vector2::select(apart, outward, Vector2::zeros()),
-            gap: (distance - touching.wide()).max(R::splat(LEAST_GAP)),
+            gap: (distance - touching).max(R::splat(LEAST_GAP)),
             reach: body.regions.active_radius - touching,
         }
     }
 
     /// Lanes inside the active region of an obstacle, and its push there; `None` if no lane is.
     #[inline(always)]
-    fn push_of<B: Wide<R>>(
-        &self,
-        body: &Body<B>,
-        robot: &RobotState<R>,
-    ) -> Option<(R::Mask, Push<R>)> {
+    fn push_of(&self, body: &Body<R>, robot: &RobotState<R>) -> Option<(R::Mask, Push<R>)> {
         let offset = body.offset(robot.position);
         let r2 = body.regions.active_radius;
-        let here = B::wide_mask(body.state.present);
-        let active = offset.distance_squared.lt((r2 * r2).wide()) & here;
+        let here = body.state.present;
+        let active = offset.distance_squared.lt(r2 * r2) & here;
         if !active.any() {
             return None;
         }
@@ -150,17 +146,16 @@ impl<F: PairwiseField<f64>> PairwiseLaw<f64, F> {
     }
 }
 
-impl<R: Real + Wide<R>, F: PairwiseField<R>> SceneLaw<R> for PairwiseLaw<R, F> {
-    fn enter(&mut self, lane: usize, scenario: &Scenario) {
-        let [x, y] = scenario.goal;
-        self.goal.x.set(lane, x);
-        self.goal.y.set(lane, y);
+impl<R: Real, F: PairwiseField<R>> LaneLaw<R> for PairwiseLaw<R, F> {
+    fn enter(&mut self, lane: usize, fresh: Self) {
+        self.field = fresh.field;
+        self.goal.set_lane(lane, fresh.goal.lane(lane));
     }
 }
 
-impl<R: Real, B: Wide<R>, F: PairwiseField<R>> Law<R, B> for PairwiseLaw<R, F> {
+impl<R: Real, F: PairwiseField<R>> Law<R> for PairwiseLaw<R, F> {
     #[inline(always)]
-    fn command(&mut self, situation: &Situation<'_, R, B>) -> Command<R> {
+    fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
         let robot = &situation.robot;
         let mut force = Vector2::zeros();
         let mut inside = R::Mask::none();

@@ -3,17 +3,17 @@
 
 use crate::arguments::{Arguments, Named};
 use crate::error::{Failure, Given, Result, not_negative, positive};
-use crate::lanes::{Lanes, Real, Vector2};
+use crate::lanes::Real;
 use crate::laws::field_d_star::{FieldDStar, FieldDStarPlanner};
 use crate::laws::planning::{Planner, ScenePlanner};
 use crate::laws::reciprocal::{ReciprocalAvoidance, ReciprocalPlanner};
 use crate::laws::tree::{RapidlyExploringRandomTree, TreePlanner};
 use crate::laws::velocity_obstacle::{Selection, VelocityObstacle, VelocityObstaclePlanner};
-use crate::laws::{Command, Law, LawFamily, SceneLaw, Situation, force_toward};
+use crate::laws::{Command, LaneFamily, LaneLaw, Law, LawFamily, Situation, force_toward};
 use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// A planner up to its numbers.
-pub trait PlannerFamily: Sync {
+pub trait PlannerFamily: Send + Sync {
     /// The planner at work.
     type Planner: Planner;
     /// Words for the numbers, in their order.
@@ -45,53 +45,48 @@ impl<F: Named> Named for Planned<F> {
     }
 }
 
+/// A planner as the law of one robot.
+struct PlannerLaw<P> {
+    planner: P,
+    mass: f64,
+}
+
+impl<P: Planner> Law<f64> for PlannerLaw<P> {
+    fn thinks(&self) -> bool {
+        true
+    }
+
+    fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
+        let wanted = self.planner.desired_velocity(situation);
+        Command::plain(force_toward(wanted.into(), situation, self.mass))
+    }
+
+    fn felt_within(&self, obstacle: &PlacedObstacle) -> f64 {
+        self.planner.felt_within(obstacle)
+    }
+
+    fn aim(&mut self, goal: [f64; 2]) {
+        self.planner.aim(goal);
+    }
+}
+
 /// Planners of robots side by side, one a lane.
-#[derive(Clone, Debug)]
 pub struct LanePlanners<P> {
     planners: Vec<P>,
     mass: f64,
 }
 
-impl<R: Real, P: Planner> Law<R> for LanePlanners<P> {
-    fn thinks(&self) -> bool {
-        true
-    }
-
-    #[inline]
-    fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
-        let mut wanted = Vector2::<R>::zeros();
-        for (lane, planner) in self.planners.iter_mut().enumerate() {
-            let [x, y] = planner.desired_velocity(&situation.of_lane(lane));
-            wanted.x = wanted.x.replace(lane, x);
-            wanted.y = wanted.y.replace(lane, y);
-        }
-        Command::plain(force_toward(wanted, situation, self.mass))
-    }
-
-    fn felt_within(&self, obstacle: &PlacedObstacle) -> f64 {
-        let each = self.planners.iter();
-        let felt = each.map(|planner| planner.felt_within(obstacle));
-        felt.fold(0.0, f64::max)
-    }
-
-    fn aim(&mut self, goal: [f64; 2]) {
-        for planner in &mut self.planners {
-            planner.aim(goal);
-        }
-    }
-}
-
-impl<const N: usize, P: ScenePlanner> Law<Lanes<N>, Lanes<N>> for LanePlanners<P> {
+impl<R: Real, P: ScenePlanner> Law<R> for LanePlanners<P> {
     #[inline(always)]
-    fn command(&mut self, situation: &Situation<'_, Lanes<N>, Lanes<N>>) -> Command<Lanes<N>> {
+    fn command(&mut self, situation: &Situation<'_, R>) -> Command<R> {
         let wanted = P::desired_velocities(&mut self.planners, situation);
         Command::plain(force_toward(wanted, situation, self.mass))
     }
 }
 
-impl<const N: usize, P: ScenePlanner> SceneLaw<Lanes<N>> for LanePlanners<P> {
-    fn enter(&mut self, lane: usize, scenario: &Scenario) {
-        self.planners[lane].enter(scenario);
+impl<R: Real, P: ScenePlanner> LaneLaw<R> for LanePlanners<P> {
+    fn enter(&mut self, lane: usize, mut fresh: Self) {
+        self.planners[lane] = fresh.planners.swap_remove(lane);
     }
 
     fn is_told_of_all(&self) -> bool {
@@ -100,8 +95,6 @@ impl<const N: usize, P: ScenePlanner> SceneLaw<Lanes<N>> for LanePlanners<P> {
 }
 
 impl<F: PlannerFamily> LawFamily for Planned<F> {
-    type Law<R: Real, const RECORD: bool> = LanePlanners<F::Planner>;
-
     fn gain_names(&self) -> &'static [&'static str] {
         self.0.number_names()
     }
@@ -124,15 +117,32 @@ impl<F: PlannerFamily> LawFamily for Planned<F> {
         self.0.check_numbers(gains)
     }
 
+    fn at_work(
+        &self,
+        gains: &[f64],
+        scenario: &Scenario,
+        _record: bool,
+    ) -> Result<Box<dyn Law<f64>>> {
+        Ok(Box::new(PlannerLaw {
+            planner: self.0.planner(gains, scenario)?,
+            mass: scenario.robot.mass,
+        }))
+    }
+}
+
+impl<F: PlannerFamily<Planner: ScenePlanner>> LaneFamily for Planned<F> {
+    const MIXES_GAINS: bool = false;
+    const MOST_OBSTACLES: usize = 32;
+
+    type Law<R: Real, const RECORD: bool> = LanePlanners<F::Planner>;
+
     fn with_gains<R: Real, const RECORD: bool>(
         &self,
         gains: &[R],
         scenario: &Scenario,
     ) -> Result<Self::Law<R, RECORD>> {
-        let planner = |lane| {
-            let numbers: Vec<f64> = gains.iter().map(|gain| gain.lane(lane)).collect();
-            self.0.planner(&numbers, scenario)
-        };
+        let numbers: Vec<f64> = gains.iter().map(|gain| gain.lane(0)).collect();
+        let planner = |_| self.0.planner(&numbers, scenario);
         Ok(LanePlanners {
             planners: (0..R::WIDTH).map(planner).collect::<Result<_>>()?,
             mass: scenario.robot.mass,

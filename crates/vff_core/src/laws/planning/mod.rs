@@ -8,9 +8,9 @@ pub mod half_planes;
 pub mod outline;
 pub mod path;
 
-use crate::lanes::{Real, Vector2, Wide};
+use crate::lanes::{Real, Vector2};
 use crate::laws::Situation;
-use crate::world::scenario::{PlacedObstacle, Scenario};
+use crate::world::scenario::PlacedObstacle;
 
 /// A planner at work in one scenario; it owns its state between control steps.
 pub trait Planner: Send + 'static {
@@ -30,14 +30,10 @@ pub trait Planner: Send + 'static {
 
 /// A planner that decides for robots side by side, each in a scene of its own.
 pub trait ScenePlanner: Planner + Sized {
-    /// A run begins in another scene, with the same robot and the same rules: forgets everything of the
-    /// one before.
-    fn enter(&mut self, scenario: &Scenario);
-
     /// What [`Planner::desired_velocity`] of the planner of every lane is, bit for bit; all of them have
     /// the same numbers.
-    fn desired_velocities<R: Real + Wide<R>>(
+    fn desired_velocities<R: Real>(
         planners: &mut [Self],
-        situation: &Situation<'_, R, R>,
+        situation: &Situation<'_, R>,
     ) -> Vector2<R>;
 }

@@ -2,13 +2,12 @@
 //! for each robot whose wanted velocity one of them forbids.
 
 use super::{ReciprocalPlanner, avoiding, pass_disc};
-use crate::lanes::{Mask, Planar, Real, Truth, Vector2, Wide, widened};
+use crate::lanes::{Mask, Planar, Real, Truth, Vector2};
 use crate::laws::Situation;
+use crate::laws::planning::ScenePlanner;
 use crate::laws::planning::half_planes::{HalfPlane, not_faster};
 use crate::laws::planning::outline::Outline;
-use crate::laws::planning::{Planner, ScenePlanner};
 use crate::world::geometry::{Body, at_rest};
-use crate::world::scenario::Scenario;
 
 /// A disc as the robots see it.
 struct DiscPlane<R: Real> {
@@ -20,25 +19,25 @@ struct DiscPlane<R: Real> {
     plane: HalfPlane<R>,
 }
 
-impl<R: Real + Wide<R>> DiscPlane<R> {
+impl<R: Real> DiscPlane<R> {
     /// `None` where no robot looks at it.
     #[inline(always)]
     fn new(
         planner: &ReciprocalPlanner,
         body: &Body<R>,
-        situation: &Situation<'_, R, R>,
+        situation: &Situation<'_, R>,
     ) -> Option<Self> {
         let (robot, settings) = (&situation.robot, &planner.settings);
         let radius = body.shape.inner_radius();
         let touch = planner.touch(radius);
-        let to: Vector2<R> = widened::<R, R>(body.state.position) - robot.position;
+        let to: Vector2<R> = Vector2::from(body.state.position) - robot.position;
         let squared = to.dot(&to);
         let gap = squared.sqrt() - touch;
         let looked_at = body.state.present & gap.lt(R::splat(settings.reach));
         if !looked_at.any() {
             return None;
         }
-        let relative = robot.velocity - widened::<R, R>(body.state.velocity);
+        let relative = robot.velocity - Vector2::from(body.state.velocity);
         let (direction, change) = pass_disc((to, touch), relative, settings.horizon);
         let point = robot.velocity + change * R::splat(settings.share);
         let mut seen = Self {
@@ -68,7 +67,7 @@ impl<R: Real + Wide<R>> DiscPlane<R> {
         touched: R::Mask,
         planner: &ReciprocalPlanner,
         (to, touch, body): (Vector2<R>, R, &Body<R>),
-        situation: &Situation<'_, R, R>,
+        situation: &Situation<'_, R>,
     ) {
         let settings = &planner.settings;
         for lane in (0..R::WIDTH).filter(|lane| touched.lane(*lane)) {
@@ -81,8 +80,8 @@ impl<R: Real + Wide<R>> DiscPlane<R> {
                 situation.interval,
                 settings.share,
             );
-            set(&mut self.plane.point, lane, plane.point);
-            set(&mut self.plane.direction, lane, plane.direction);
+            self.plane.point.set_lane(lane, plane.point.into());
+            self.plane.direction.set_lane(lane, plane.direction.into());
         }
     }
 
@@ -95,14 +94,9 @@ impl<R: Real + Wide<R>> DiscPlane<R> {
     }
 }
 
-fn set<R: Real>(vector: &mut Vector2<R>, lane: usize, value: Vector2<f64>) {
-    vector.x.set(lane, value.x);
-    vector.y.set(lane, value.y);
-}
-
 impl ReciprocalPlanner {
     /// The permitted velocity of one lane.
-    fn permitted<R: Real + Wide<R>>(
+    fn permitted<R: Real>(
         &mut self,
         seen: &[DiscPlane<R>],
         lane: usize,
@@ -121,14 +115,10 @@ impl ReciprocalPlanner {
 }
 
 impl ScenePlanner for ReciprocalPlanner {
-    fn enter(&mut self, scenario: &Scenario) {
-        self.aim(scenario.goal);
-    }
-
     #[inline(always)]
-    fn desired_velocities<R: Real + Wide<R>>(
+    fn desired_velocities<R: Real>(
         planners: &mut [Self],
-        situation: &Situation<'_, R, R>,
+        situation: &Situation<'_, R>,
     ) -> Vector2<R> {
         let goal = Vector2::new(
             R::from_fn(|lane| planners[lane].goal.x),
@@ -151,7 +141,7 @@ impl ScenePlanner for ReciprocalPlanner {
             let lane = left.trailing_zeros() as usize;
             left &= left - 1;
             let permitted = planners[lane].permitted(&seen, lane, wanted.lane(lane).into());
-            set(&mut chosen, lane, permitted);
+            chosen.set_lane(lane, permitted.into());
         }
         chosen
     }

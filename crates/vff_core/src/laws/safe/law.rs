@@ -11,7 +11,7 @@ use crate::laws::shield::{
 };
 use crate::laws::trace::Trace;
 use crate::laws::yielding::{Outlook, Yielder};
-use crate::laws::{BoxedLaw, Command, Situation};
+use crate::laws::{Command, Law, Situation};
 use crate::robots::differential::{DifferentialLimits, Twist};
 use crate::robots::drives::velocity_of;
 use crate::world::geometry::RobotState;
@@ -22,7 +22,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// A law with its parts.
 pub struct SafeLaw {
-    law: BoxedLaw,
+    law: Box<dyn Law<f64>>,
     guard: Option<Guard>,
     /// The shield of a robot with two wheels.
     twist_guard: Option<TwistGuard>,
@@ -105,7 +105,7 @@ impl SafeLaw {
             mass: robot.mass,
             goal: scenario.goal.into(),
             around: Surroundings::new(family, &inner),
-            law: family.law.erased().steering_with(gains, &inner, record)?,
+            law: family.law.at_work(gains, &inner, record)?,
             trace: Trace {
                 wanted: zero,
                 command: zero,
@@ -117,23 +117,14 @@ impl SafeLaw {
             },
         })
     }
+}
 
-    /// What the parts did in the last control period.
-    #[must_use]
-    pub fn trace(&self) -> &Trace {
-        &self.trace
+impl Law<f64> for SafeLaw {
+    fn thinks(&self) -> bool {
+        true
     }
 
-    /// Heads for another goal from now on, in m; with a guide of its own it keeps to its plan.
-    pub(crate) fn aim(&mut self, goal: [f64; 2]) {
-        if self.guidance.is_none() {
-            self.goal = goal.into();
-            self.law.aim(goal);
-        }
-    }
-
-    /// Force for the time until the next sample.
-    pub(crate) fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
+    fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
         self.set_period(situation.interval);
         self.around
             .look(situation, self.guard.as_ref(), self.yielder.as_ref());
@@ -180,6 +171,20 @@ impl SafeLaw {
         Command::plain(change * (self.mass / situation.interval))
     }
 
+    /// Heads for another goal from now on; with a guide of its own it keeps to its plan.
+    fn aim(&mut self, goal: [f64; 2]) {
+        if self.guidance.is_none() {
+            self.goal = goal.into();
+            self.law.aim(goal);
+        }
+    }
+
+    fn trace(&self) -> Option<Trace> {
+        Some(self.trace)
+    }
+}
+
+impl SafeLaw {
     /// Whether no part has a say in what the law commands: the robot itself keeps to its limits, and does what it does
     /// under the law alone.
     fn lets_through(&self, heading: &Heading) -> bool {

@@ -69,7 +69,7 @@ impl Surroundings {
         Self {
             known: known.map(|placed| Known::of(family, placed)).collect(),
             map,
-            hiding: if family.law.erased().chooses_velocities() {
+            hiding: if family.law.chooses_velocities() {
                 (1.0, REACH)
             } else {
                 (0.5, boundary.active_radius)

@@ -14,7 +14,7 @@ use crate::run::episode::Episode;
 use crate::run::metrics::{Nominal, Weights, score};
 use crate::run::nominal::Ways;
 use crate::run::outcome::{Contact, RunSummary};
-use crate::run::table::{BatchTable, Cell, Strip};
+use crate::run::table::{BatchTable, Cell};
 use crate::world::geometry::Body;
 use crate::world::scenario::Scenario;
 use numeric::threads::{on_threads, try_map};
@@ -154,10 +154,7 @@ impl Many<'_> {
         let nominal = try_map(self.laws.len() * along, |index| {
             let way = &ways.scenarios[index % along];
             self.one(way, index / along, &ideal, NoListener)
-                .map(|(run, _)| Nominal {
-                    arrival_time: run.arrival_time.unwrap_or(f64::NAN),
-                    energy: run.energy,
-                })
+                .map(|(run, _)| Nominal::of(&run.totals()))
                 .map_err(|error| error.of_run(|_| ways.run_of(index % along, index / along)))
         })?;
         let runs = try_map(self.laws.len() * count, |row| {
@@ -203,27 +200,25 @@ impl Many<'_> {
         free: &dyn Fn(usize) -> Nominal,
     ) -> ManyRuns {
         let count = self.scenarios.len();
-        let room = |scenario: &Scenario| Strip::new(self.laws.len(), scenario.obstacle_count());
-        let mut strips: Vec<Strip> = self.scenarios.iter().map(room).collect();
+        let (mut cells, mut distances) = (Vec::new(), Vec::new());
         let (mut contact, mut histories) = (Vec::new(), Vec::new());
         for (row, (summary, history)) in runs.into_iter().enumerate() {
-            let (scenario, law) = (&self.scenarios[row % count], row / count);
-            let (totals, own) = (summary.totals(), &summary.min_distance);
-            let weights = self.options.weights;
-            let distances = own.iter().copied();
-            let strip = &mut strips[row % count];
-            strip.cells[law] = Cell {
+            let (scenario, totals) = (&self.scenarios[row % count], summary.totals());
+            let (own, weights) = (summary.min_distance.iter().copied(), self.options.weights);
+            cells.push(Cell {
                 run: totals,
-                performance: score(scenario, (&totals).into(), distances, free(row), weights),
-            };
-            strip.distances[law * own.len()..(law + 1) * own.len()].copy_from_slice(own);
+                performance: score(scenario, (&totals).into(), own, free(row), weights),
+            });
+            distances.push(summary.min_distance);
             contact.push(summary.contact);
             if self.options.histories {
                 histories.push(history);
             }
         }
         ManyRuns {
-            table: BatchTable::gather(self.scenarios, &strips),
+            table: BatchTable::of_rows(self.scenarios, cells.len(), |row| {
+                (&cells[row], &distances[row][..])
+            }),
             contact,
             histories,
         }

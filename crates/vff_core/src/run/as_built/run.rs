@@ -61,7 +61,7 @@ pub(crate) fn robot_under(
     built: &AsBuilt,
     law: Option<&AnyLaw>,
 ) -> Result<Box<dyn MotorDrive>> {
-    if scenario.differential.is_some() && law.is_some_and(|law| law.erased().steers_by_velocity()) {
+    if scenario.differential.is_some() && law.is_some_and(|law| law.steers_by_velocity()) {
         let steering_law = SteeringLaw::Velocity;
         return robot_of(
             scenario,

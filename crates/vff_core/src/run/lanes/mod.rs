@@ -1,6 +1,7 @@
-//! Gain sets and scenes side by side in lanes.
+//! The kernel of runs of ideal point masses: side by side in lanes, or one after the other.
 
-pub(super) mod group;
-pub(crate) mod kernels;
-mod rollout;
+pub(crate) mod group;
+mod integrators;
+pub(crate) mod kernel;
 pub(crate) mod scenes;
+mod sensors;

@@ -1,27 +1,41 @@
 //! Scenes of robots side by side, one a lane: where the obstacles of each are.
 
-use crate::lanes::{Mask, Real, Truth, Vector2, Wide};
+use crate::lanes::{Mask, Real, Truth, Vector2};
 use crate::run::scene::World;
 use crate::world::geometry::Body;
+use crate::world::map::StaticMap;
 use crate::world::motion::{BodyState, Piece};
 use crate::world::obstacle::{Regions, Shape};
 use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// Most lanes.
-const MOST_LANES: usize = 16;
+const MOST_LANES: usize = 8;
 
-/// Whether a scenario may share its lanes with others: its obstacles are discs, which are known
-/// exactly, and nothing else is around. Rectangles, maps and measurements take the kernel of one scene.
-pub(crate) fn fits(scenario: &Scenario) -> bool {
-    let disc = |placed: &PlacedObstacle| matches!(placed.obstacle.shape, Shape::Disc { .. });
-    let alone =
-        scenario.measurement.is_none() && scenario.map.is_none() && scenario.walls.is_none();
-    alone && scenario.obstacles.iter().all(disc)
+/// Whether two scenarios may be side by side: everything but ways, seeds, and sizes and motions of
+/// obstacles is the same.
+pub(crate) fn agree(one: &Scenario, other: &Scenario) -> bool {
+    if std::ptr::eq(one, other) {
+        return true;
+    }
+    let box_at = |scenario: &Scenario, index: usize| {
+        let placed = scenario.obstacles.get(index);
+        placed.is_some_and(|placed| matches!(placed.obstacle.shape, Shape::Rectangle { .. }))
+    };
+    let most = one.obstacles.len().max(other.obstacles.len());
+    same(one.map.as_ref(), other.map.as_ref())
+        && same(one.walls.as_ref(), other.walls.as_ref())
+        && one.robot == other.robot
+        && one.differential == other.differential
+        && one.rules == other.rules
+        && one.measurement == other.measurement
+        && (0..most).all(|index| box_at(one, index) == box_at(other, index))
 }
 
-/// Whether two scenarios may be side by side: everything but ways and obstacles is the same.
-pub(crate) fn agree(one: &Scenario, other: &Scenario) -> bool {
-    one.robot == other.robot && one.differential == other.differential && one.rules == other.rules
+fn same(one: Option<&StaticMap>, other: Option<&StaticMap>) -> bool {
+    match (one, other) {
+        (Some(one), Some(other)) => one.is(other),
+        (one, other) => one.is_none() && other.is_none(),
+    }
 }
 
 /// The scenarios of the lanes.
@@ -38,27 +52,18 @@ impl<'a> LaneScenes<'a> {
         }
     }
 
-    /// A scenario with the robot and the rules of all.
-    pub fn of_first(&self) -> &'a Scenario {
-        self.of[0]
+    /// The scenario of a lane.
+    pub fn in_lane(&self, lane: usize) -> &'a Scenario {
+        self.of[lane]
     }
 
     /// Gives a lane another scenario.
     pub fn enter(&mut self, lane: usize, scenario: &'a Scenario) {
         self.of[lane] = scenario;
     }
-
-    /// A number of each of so many obstacles in every lane, `0` where a lane has no such obstacle.
-    fn of_obstacles<R: Real>(&self, count: usize, of: fn(&PlacedObstacle) -> f64) -> Vec<R> {
-        let placed = |lane: usize, obstacle| self.of[lane].obstacles.get(obstacle);
-        let number = |obstacle| R::from_fn(|lane| placed(lane, obstacle).map_or(0.0, of));
-        (0..count).map(number).collect()
-    }
 }
 
-impl<R: Real + Wide<R>> World<R> for LaneScenes<'_> {
-    type Number = R;
-
+impl World for LaneScenes<'_> {
     fn common(&self) -> &Scenario {
         self.of[0]
     }
@@ -66,24 +71,85 @@ impl<R: Real + Wide<R>> World<R> for LaneScenes<'_> {
     fn of_lane(&self, lane: usize) -> &Scenario {
         self.of[lane]
     }
+}
 
-    fn reaches(&self, count: usize) -> Vec<R> {
-        self.of_obstacles(count, |placed| placed.contact_distance)
+/// The obstacles of every lane that are looked at.
+#[derive(Clone)]
+pub(crate) struct LaneObstacles<R: Real> {
+    /// Places of them in the lists of their scenarios.
+    pub told: Vec<usize>,
+    obstacles: Vec<LaneObstacle<R>>,
+    pub bodies: Vec<Body<R>>,
+}
+
+impl<R: Real> LaneObstacles<R> {
+    /// Obstacles of a scenario in every lane, with places for so many.
+    pub fn all_in(scenario: &Scenario, count: usize) -> Self {
+        let (obstacles, bodies) = (0..count).map(|_| LaneObstacle::absent()).unzip();
+        let mut all = Self {
+            told: (0..count).collect(),
+            obstacles,
+            bodies,
+        };
+        for lane in 0..R::WIDTH {
+            all.enter(lane, scenario, false);
+        }
+        all
     }
 
-    fn speed_bounds(&self, count: usize) -> Vec<R> {
-        self.of_obstacles(count, PlacedObstacle::fastest)
+    /// Gives a lane the obstacles of another scenario, or again those that it had, at the start of its run.
+    pub fn enter(&mut self, lane: usize, scenario: &Scenario, again: bool) {
+        let obstacles = self.obstacles.iter_mut().zip(&mut self.bodies);
+        for (number, (obstacle, body)) in obstacles.enumerate() {
+            // On its first piece of motion it is as it was.
+            if !again || obstacle.index[lane] > 0 {
+                obstacle.enter(lane, scenario.obstacles.get(number), body);
+            }
+        }
     }
 
-    /// Only searches ask, which run many gain sets in one scene.
-    fn stands_from(&self) -> f64 {
-        f64::INFINITY
+    /// Brings the obstacles of some places to the instant of each lane, in s; time never runs back in
+    /// a lane.
+    #[inline(always)]
+    pub fn place(&mut self, time: R, scenes: &LaneScenes<'_>, chosen: impl Fn(usize) -> bool) {
+        let obstacles = self.obstacles.iter_mut().zip(&mut self.bodies);
+        for (slot, (obstacle, body)) in obstacles.enumerate() {
+            if chosen(slot) {
+                obstacle.place(time, (scenes, self.told[slot]), &mut body.state);
+            }
+        }
+    }
+
+    /// Takes one in, as it is now.
+    pub fn insert(&mut self, slot: usize, (index, placed): (usize, &PlacedObstacle), now: &Body) {
+        let (mut obstacle, mut body) = LaneObstacle::absent();
+        for lane in 0..R::WIDTH {
+            obstacle.enter(lane, Some(placed), &mut body);
+        }
+        body.state = now.widened().state;
+        self.told.insert(slot, index);
+        self.obstacles.insert(slot, obstacle);
+        self.bodies.insert(slot, body);
+    }
+
+    /// Forgets one.
+    pub fn remove(&mut self, slot: usize) {
+        self.told.remove(slot);
+        self.obstacles.remove(slot);
+        self.bodies.remove(slot);
+    }
+
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.told.clear();
+        self.obstacles.clear();
+        self.bodies.clear();
     }
 }
 
 /// An obstacle of each lane. Where a lane has none it is absent, which adds nothing.
 #[derive(Clone)]
-pub(crate) struct LaneObstacle<R: Real> {
+struct LaneObstacle<R: Real> {
     /// Index of the piece of motion of each lane, and the piece.
     index: [usize; MOST_LANES],
     piece: Piece<R>,
@@ -98,7 +164,7 @@ pub(crate) struct LaneObstacle<R: Real> {
     steady: bool,
 }
 
-impl<R: Real + Wide<R>> LaneObstacle<R> {
+impl<R: Real> LaneObstacle<R> {
     /// Absent in every lane, and its body.
     pub fn absent() -> (Self, Body<R>) {
         let zero = [R::zero(); 2];
@@ -151,9 +217,7 @@ impl<R: Real + Wide<R>> LaneObstacle<R> {
             self.take_piece(lane, placed);
         }
         self.turns = (0..R::WIDTH).any(|lane| self.until.lane(lane) < f64::INFINITY);
-        if let Shape::Disc { radius } = &mut body.shape {
-            radius.set(lane, placed.obstacle.shape.inner_radius());
-        }
+        body.shape.set_lane(lane, &placed.obstacle.shape);
         let (own, regions) = (placed.regions, &mut body.regions);
         regions.critical_radius.set(lane, own.critical_radius);
         regions.active_radius.set(lane, own.active_radius);
@@ -237,7 +301,7 @@ impl<R: Real + Wide<R>> LaneObstacle<R> {
     }
 }
 
-/// The obstacles that the robots feel, close up: the first one of each lane, the second one, and so
+/// The discs that the robots feel, close up: the first one of each lane, the second one, and so
 /// on in their order. Lanes feel different ones, so that all of them together are more than those of
 /// any lane.
 #[derive(Clone)]
@@ -245,7 +309,7 @@ pub(crate) struct FeltObstacles<R: Real> {
     bodies: Vec<Body<R>>,
 }
 
-impl<R: Real + Wide<R>> FeltObstacles<R> {
+impl<R: Real> FeltObstacles<R> {
     /// Room for a number of obstacles.
     pub fn of_at_most(count: usize) -> Self {
         let absent = |_| LaneObstacle::absent().1;

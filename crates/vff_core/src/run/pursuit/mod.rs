@@ -13,7 +13,7 @@ use nalgebra::Vector2;
 
 use crate::error::{Failure, Given, Result};
 use crate::lanes::Planar;
-use crate::laws::BoxedLaw;
+use crate::laws::Law;
 use crate::laws::{Situation, Stop};
 use crate::robots::drives::{MotorDrive, Reading};
 use crate::run::Interrupted;
@@ -160,7 +160,7 @@ struct PursuitParts<'a> {
     /// How long a force acts, in s.
     interval: f64,
     robot: Box<dyn MotorDrive>,
-    law: BoxedLaw,
+    law: Box<dyn Law<f64>>,
     tracked: Tracked,
     maps: Maps,
     sight: Sight,
@@ -206,7 +206,7 @@ pub fn pursue(
         pursuer,
         interval: clock.interval,
         robot,
-        law: law.erased().steering(sight.known(scenario))?,
+        law: law.with_own_gains(sight.known(scenario))?,
         tracked: Tracked::new(scenario, pursuer.start, clock.step),
         maps: Maps::of(scenario, law.map(), &built.sensors),
         sight,

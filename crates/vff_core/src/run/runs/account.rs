@@ -2,12 +2,12 @@
 
 use super::touch::Since;
 use super::{BOUND_MARGIN, Runs};
-use crate::lanes::{Mask, Planar, Real, Truth, Vector2, Wide};
+use crate::lanes::{Mask, Planar, Real, Truth, Vector2};
 use crate::run::options::Clock;
 use crate::run::scene::{World, body_at};
 use crate::world::geometry::Body;
 
-impl<W: World<R>, R: Real> Runs<W, R> {
+impl<W: World, R: Real> Runs<W, R> {
     /// Counts a sample of the force.
     #[inline(always)]
     pub fn count_sample(&mut self) {
@@ -18,13 +18,7 @@ impl<W: World<R>, R: Real> Runs<W, R> {
     /// Accounts for a motion step from `before`, after which the obstacles are as given. `record`:
     /// the currents are looked at afterwards.
     #[inline(always)]
-    pub fn account(
-        &mut self,
-        bodies: &[Body<W::Number>],
-        before: Vector2<R>,
-        time: W::Number,
-        record: bool,
-    ) {
+    pub fn account(&mut self, bodies: &[Body<R>], before: Vector2<R>, time: R, record: bool) {
         let speeds = self.wheels.speeds(self.velocity);
         let currents = self.wheels.currents(&self.wheel_speeds, &speeds);
         self.wheel_speeds = speeds;
@@ -36,7 +30,7 @@ impl<W: World<R>, R: Real> Runs<W, R> {
         let way = self.speed * R::splat(self.clock.step);
         let since = Since {
             place: before,
-            time: time.wide() - R::splat(self.clock.step),
+            time: time - R::splat(self.clock.step),
         };
         if self.near_goal {
             let to_goal = self.goal - self.position;
@@ -55,7 +49,7 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             }
         }
         if self.walls.is_some() {
-            self.watch_walls(Some(&since), time.wide(), self.running);
+            self.watch_walls(Some(&since), time, self.running);
         }
     }
 
@@ -70,15 +64,15 @@ impl<W: World<R>, R: Real> Runs<W, R> {
 
     /// Least distance and contact of some lanes with an obstacle; `since`: the start of the motion step.
     #[inline(always)]
-    pub(super) fn watch<B: Wide<R>>(
+    pub(super) fn watch(
         &mut self,
         index: usize,
-        body: &Body<B>,
-        time: B,
+        body: &Body<R>,
+        time: R,
         lanes: R::Mask,
         since: Option<&Since<R>>,
     ) {
-        let here = B::wide_mask(body.state.present);
+        let here = body.state.present;
         if !here.any() {
             return;
         }
@@ -87,16 +81,16 @@ impl<W: World<R>, R: Real> Runs<W, R> {
         let squared = offset.distance_squared;
         let least = &mut self.min_distance_squared[index];
         *least = R::select(lanes, squared, R::splat(f64::INFINITY)).min(*least);
-        let near = lanes & squared.le(self.alert[index].wide());
+        let near = lanes & squared.le(self.alert[index]);
         if near.any() {
-            self.meet(index, (body, time.wide()), near, since);
+            self.meet(index, (body, time), near, since);
         }
     }
 
     /// Finds out what cannot happen before the next sample, so that it need not be looked for:
     /// nothing moves farther than its largest speed takes it.
     #[inline(always)]
-    pub fn look_ahead(&mut self, bodies: &[Body<W::Number>]) {
+    pub fn look_ahead(&mut self, bodies: &[Body<R>]) {
         let Clock {
             interval,
             steps_per_sample,
@@ -111,17 +105,15 @@ impl<W: World<R>, R: Real> Runs<W, R> {
         let reach = common.rules.arrival_tolerance + own * interval + BOUND_MARGIN;
         let near = to_goal.dot(&to_goal).lt(R::splat(reach * reach));
         self.near_goal = (near & self.running).any();
-        let number = W::Number::splat;
         for (slot, body) in bodies.iter().enumerate() {
             let index = self.obstacle(slot);
             let speed = self.speed_bound[index];
-            let way = (number(own) + speed) * number(interval) + number(BOUND_MARGIN);
+            let way = (R::splat(own) + speed) * R::splat(interval) + R::splat(BOUND_MARGIN);
             // Within a contact the robot may turn toward the obstacle, however near they have been.
-            let reach = self.reach[index].wide();
-            let least = self.min_distance_squared[index].sqrt().max(reach) + way.wide();
+            let reach = self.reach[index];
+            let least = self.min_distance_squared[index].sqrt().max(reach) + way;
             let squared = body.offset(self.position).distance_squared;
-            let here = W::Number::wide_mask(body.state.present);
-            let near = squared.lt(least * least) | !here;
+            let near = squared.lt(least * least) | !body.state.present;
             self.watched[slot] = (near & self.running).any();
         }
     }
@@ -130,7 +122,7 @@ impl<W: World<R>, R: Real> Runs<W, R> {
     /// instant of entry, linear inside the step.
     #[cold]
     #[inline(never)]
-    fn arrive(&mut self, since: &Since<R>, time: W::Number, arrived: R::Mask, squared: R, way: R) {
+    fn arrive(&mut self, since: &Since<R>, time: R, arrived: R::Mask, squared: R, way: R) {
         let tolerance = self.scenario.common().rules.arrival_tolerance;
         let (before, after) = (since.place, self.position);
         let length = |vector: Vector2<R>| vector.dot(&vector).sqrt();
@@ -142,7 +134,7 @@ impl<W: World<R>, R: Real> Runs<W, R> {
         self.path += R::select(arrived, way * share, R::zero());
         for lane in (0..R::WIDTH).filter(|lane| arrived.lane(*lane)) {
             let step = self.clock.step;
-            let instant = (time.wide().lane(lane) - step) + share.lane(lane) * step;
+            let instant = (time.lane(lane) - step) + share.lane(lane) * step;
             self.arrival_time = self.arrival_time.replace(lane, instant);
             self.end_time = self.end_time.replace(lane, instant);
             // Only this lane is watched at its own instant.
@@ -150,22 +142,21 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             let only = others.fold(R::Mask::splat(true), Mask::without);
             let world = self.scenario.clone();
             for (index, placed) in world.of_lane(lane).obstacles.iter().enumerate() {
-                let body = body_at(placed, instant, &mut 0);
-                self.watch(index, &body, instant, only, Some(since));
+                let body = body_at(placed, instant, &mut 0).widened();
+                self.watch(index, &body, R::splat(instant), only, Some(since));
             }
             self.watch_walls(Some(since), R::splat(instant), only);
         }
         self.running = self.running & !arrived;
     }
 
-    /// Whether any robot is in the active region of an obstacle.
+    /// Whether any robot that runs is in the active region of an obstacle.
     #[inline(always)]
-    pub fn feels_any(&self, bodies: &[Body<W::Number>]) -> bool {
+    pub fn feels_any(&self, bodies: &[Body<R>]) -> bool {
         bodies.iter().any(|body| {
             let reach = body.regions.active_radius;
             let squared = body.offset(self.position).distance_squared;
-            let here = W::Number::wide_mask(body.state.present);
-            (here & squared.lt((reach * reach).wide())).any()
+            (body.state.present & squared.lt(reach * reach) & self.running).any()
         })
     }
 }

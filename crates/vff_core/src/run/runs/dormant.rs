@@ -7,8 +7,9 @@ use std::collections::BinaryHeap;
 
 use super::{BOUND_MARGIN, Runs};
 use crate::lanes::{Planar, Real, Truth, Vector2};
+use crate::run::lanes::scenes::{LaneObstacles, LaneScenes};
 use crate::run::options::Clock;
-use crate::run::scene::{Scene, bodies_at, body_at};
+use crate::run::scene::{bodies_at, body_at};
 use crate::world::geometry::Body;
 use crate::world::scenario::{PlacedObstacle, Scenario};
 
@@ -32,7 +33,7 @@ const SHARE: f64 = 1e-9;
 const ROUNDING: f64 = 1e-12;
 
 /// The dormant obstacles of one run.
-pub(crate) struct Dormant<'a> {
+pub(crate) struct Dormant<'a, R: Real> {
     scenario: &'a Scenario,
     clock: Clock,
     bounds: Vec<Bound>,
@@ -42,7 +43,7 @@ pub(crate) struct Dormant<'a> {
     alarms: BinaryHeap<Reverse<(usize, usize)>>,
     path: Path,
     /// All obstacles, for a law that feels some of them from anywhere.
-    everything: Option<Scene<&'a Scenario>>,
+    everything: Option<LaneObstacles<R>>,
 }
 
 /// Places of the robot after motion steps.
@@ -82,20 +83,21 @@ impl Bound {
     }
 }
 
-impl<'a> Dormant<'a> {
+impl<'a, R: Real> Dormant<'a, R> {
     /// Whether a scenario has so many obstacles that it pays.
     pub fn pays(scenario: &Scenario) -> bool {
         scenario.obstacle_count() >= FEWEST_OBSTACLES
     }
 
-    /// Robots that have not seen the obstacles yet look at them, for a law that feels each within a distance in m;
-    /// the scene at the start, without those that are far away.
-    pub fn begin<R: Real>(
-        runs: &mut Runs<&'a Scenario, R>,
-        steps: usize,
+    /// A robot that has not seen the obstacles yet looks at them, for a law that feels each within a distance in m;
+    /// those that are far away leave the scene.
+    pub fn begin(
+        scenario: &'a Scenario,
+        runs: &mut Runs<LaneScenes<'a>, R>,
+        scene: &mut LaneObstacles<R>,
         felt_within: impl Fn(&PlacedObstacle) -> f64,
-    ) -> (Self, Scene<&'a Scenario>) {
-        let (scenario, clock) = (runs.scenario, runs.clock);
+    ) -> Self {
+        let clock = runs.clock;
         let obstacles = &scenario.obstacles;
         let mut felt: Vec<f64> = obstacles.iter().map(felt_within).collect();
         let told_all = felt.contains(&f64::INFINITY);
@@ -115,36 +117,35 @@ impl<'a> Dormant<'a> {
                 first: 0,
                 places: vec![(scenario.start.into(), 0.0)],
             },
-            everything: told_all.then(|| Scene::new(scenario, 0, false)),
+            everything: told_all.then(|| scene.clone()),
         };
-        let mut scene = Scene::of(scenario, Vec::new(), (steps, false));
+        scene.clear();
         for (index, body) in bodies_at(scenario, 0.0).iter().enumerate() {
-            runs.watch(index, body, 0.0, runs.running, None);
             let distance = runs.min_distance_squared[index].lane(0).sqrt();
             if dormant.sleeps(index, 0, distance) {
                 dormant.since[index] = 1;
             } else {
-                scene.insert(scene.told.len(), index, body);
+                scene.insert(scene.told.len(), (index, &obstacles[index]), body);
             }
         }
         runs.watched.truncate(scene.told.len());
         runs.awake = Some(scene.told.clone());
-        (dormant, scene)
+        dormant
     }
 
     /// All obstacles at the sample of a step, where the law is told of more than is looked at.
-    pub fn everything(&mut self, step: usize) -> Option<&[Body]> {
+    pub fn everything(&mut self, time: R, scenes: &LaneScenes<'_>) -> Option<&[Body<R>]> {
         let scene = self.everything.as_mut()?;
-        scene.begin(&self.clock, step);
-        Some(&scene.frames[0])
+        scene.place(time, scenes, |_| true);
+        Some(&scene.bodies)
     }
 
     /// At the sample of a step, for which the scene has begun: wakes obstacles that may be felt soon, and leaves
     /// those alone that are far away.
-    pub fn sample<R: Real>(
+    pub fn sample(
         &mut self,
-        scene: &mut Scene<&Scenario>,
-        runs: &mut Runs<&Scenario, R>,
+        scene: &mut LaneObstacles<R>,
+        runs: &mut Runs<LaneScenes<'a>, R>,
         step: usize,
     ) {
         while let Some(Reverse((alarm, index))) = self.alarms.peek().copied() {
@@ -157,7 +158,7 @@ impl<'a> Dormant<'a> {
         let mut slot = 0;
         while slot < scene.told.len() {
             let index = scene.told[slot];
-            let squared = scene.frames[0][slot]
+            let squared = scene.bodies[slot]
                 .offset(runs.position)
                 .distance_squared
                 .lane(0);
@@ -175,23 +176,23 @@ impl<'a> Dormant<'a> {
     }
 
     /// Looks at a dormant obstacle at the sample of a step.
-    fn look<R: Real>(
+    fn look(
         &mut self,
         index: usize,
-        scene: &mut Scene<&Scenario>,
-        runs: &mut Runs<&Scenario, R>,
+        scene: &mut LaneObstacles<R>,
+        runs: &mut Runs<LaneScenes<'a>, R>,
         step: usize,
     ) {
         let time = self.clock.time(step);
         let body = body_at(&self.scenario.obstacles[index], time, &mut 0);
-        let squared = body.offset(runs.position).distance_squared.lane(0);
+        let squared = body.offset(runs.position.lane(0).into()).distance_squared;
         if self.sleeps(index, step, squared.sqrt()) {
             return;
         }
         self.count(index, runs);
         self.since[index] = AWAKE;
         let slot = scene.told.partition_point(|other| *other < index);
-        scene.insert(slot, index, &body);
+        scene.insert(slot, (index, &self.scenario.obstacles[index]), &body);
         runs.wake(slot, index);
     }
 
@@ -214,7 +215,7 @@ impl<'a> Dormant<'a> {
 
     /// The robot has made a motion step; one that has arrived has been looked at where it did.
     #[inline]
-    pub fn pass<R: Real>(&mut self, runs: &mut Runs<&Scenario, R>) {
+    pub fn pass(&mut self, runs: &mut Runs<LaneScenes<'a>, R>) {
         if !runs.running.any() {
             return;
         }
@@ -228,7 +229,7 @@ impl<'a> Dormant<'a> {
 
     /// Counts all steps so far.
     #[inline(never)]
-    pub fn count_all<R: Real>(&mut self, runs: &mut Runs<&Scenario, R>) {
+    pub fn count_all(&mut self, runs: &mut Runs<LaneScenes<'a>, R>) {
         let last = self.path.last();
         for index in 0..self.since.len() {
             if self.since[index] <= last {
@@ -240,7 +241,7 @@ impl<'a> Dormant<'a> {
 
     /// Counts the steps so far in which an obstacle was dormant: the least of the distances that a look at each of
     /// them would have found.
-    fn count<R: Real>(&mut self, index: usize, runs: &mut Runs<&Scenario, R>) {
+    fn count(&mut self, index: usize, runs: &mut Runs<LaneScenes<'a>, R>) {
         let (first, last) = (self.since[index] - 1, self.path.last());
         if first >= last {
             return;

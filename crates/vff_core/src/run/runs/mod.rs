@@ -8,7 +8,7 @@ mod touch;
 
 pub(crate) use dormant::Dormant;
 
-use crate::lanes::{Mask, Planar, Real, Vector2, Zero};
+use crate::lanes::{Mask, Planar, Real, Vector2};
 use crate::laws::Command;
 use crate::robots::WheelModel;
 use crate::run::options::Clock;
@@ -27,7 +27,7 @@ const BOUND_MARGIN: f64 = 1e-6;
 /// `W` is where they run: one scenario for all, a reference in the kernel and a shared owner in an
 /// episode that is stepped from outside, or a scenario for each lane.
 #[derive(Clone)]
-pub(crate) struct Runs<W: World<R>, R: Real> {
+pub(crate) struct Runs<W: World, R: Real> {
     pub scenario: W,
     pub clock: Clock,
     pub position: Vector2<R>,
@@ -41,8 +41,6 @@ pub(crate) struct Runs<W: World<R>, R: Real> {
     pub acceleration: Vector2<R>,
     /// Change of velocity in one step of the held force, in m/s.
     pub push: Vector2<R>,
-    /// Measured position at the sample before, if it was measured with an error.
-    pub last_measured: Option<Vector2<R>>,
     /// Positions at the last motion steps, if they are measured late.
     pub past: Option<Past<R>>,
     goal: Vector2<R>,
@@ -59,12 +57,12 @@ pub(crate) struct Runs<W: World<R>, R: Real> {
     awake: Option<Vec<usize>>,
     /// Distance in m at which robot and obstacle touch, and the largest speed of each obstacle in
     /// m/s, infinite if there is none.
-    reach: Vec<W::Number>,
-    speed_bound: Vec<W::Number>,
+    reach: Vec<R>,
+    speed_bound: Vec<R>,
     /// Square of the distance in m beyond which they do not touch in the motion step before, in m^2.
-    alert: Vec<W::Number>,
+    alert: Vec<R>,
     /// Instant from which no obstacle moves any more, in s.
-    all_stand_from: f64,
+    all_stand_from: R,
     /// Last sample at which each robot was not at rest, in s.
     moved: R,
     end_time: R,
@@ -80,17 +78,17 @@ pub(crate) struct Runs<W: World<R>, R: Real> {
     walls: Option<Box<Walls<R>>>,
 }
 
-impl<W: World<R>, R: Real> Runs<W, R> {
+impl<W: World, R: Real> Runs<W, R> {
     /// With the obstacles at the start.
     pub fn new(
         scenario: W,
         clock: Clock,
-        bodies: impl ExactSizeIterator<Item = Body<W::Number>>,
+        bodies: impl ExactSizeIterator<Item = Body<R>>,
         maps: Maps,
     ) -> Self {
         let mut runs = Self::at_start(scenario, clock, bodies.len(), maps);
         for (index, body) in bodies.enumerate() {
-            runs.watch(index, &body, W::Number::zero(), runs.running, None);
+            runs.watch(index, &body, R::zero(), runs.running, None);
         }
         runs
     }
@@ -98,17 +96,11 @@ impl<W: World<R>, R: Real> Runs<W, R> {
     /// Robots at their starts, before the first look at the obstacles.
     pub fn at_start(world: W, clock: Clock, count: usize, maps: Maps) -> Self {
         let scenario = world.common();
-        let velocity = Vector2::zeros();
         let wheels = WheelModel::new(&scenario.robot, scenario.rules.heading, clock.step);
-        let unset = R::splat(f64::NAN);
-        let (reach, speed_bound) = (world.reaches(count), world.speed_bounds(count));
-        let bounds = reach.iter().zip(&speed_bound);
-        let own = scenario.robot.max_speed;
-        let alert = bounds.map(|(reach, bound)| alert_squared(*reach, *bound, own, clock.step));
         let mut runs = Self {
             clock,
-            position: Vector2::splat(scenario.start),
-            velocity,
+            position: Vector2::zeros(),
+            velocity: Vector2::zeros(),
             speed: R::zero(),
             currents: [R::zero(); 3],
             running: R::Mask::splat(true),
@@ -119,31 +111,35 @@ impl<W: World<R>, R: Real> Runs<W, R> {
             },
             acceleration: Vector2::zeros(),
             push: Vector2::zeros(),
-            last_measured: None,
             past: Past::new(scenario, clock.step),
-            goal: Vector2::splat(scenario.goal),
+            goal: Vector2::zeros(),
             wheels,
-            wheel_speeds: wheels.speeds(velocity),
+            wheel_speeds: [R::zero(); 3],
             squared_current: R::zero(),
             path: R::zero(),
             near_goal: true,
             watched: vec![true; count],
             awake: None,
-            alert: alert.collect(),
-            reach,
-            speed_bound,
-            all_stand_from: world.stands_from(),
+            reach: vec![R::zero(); count],
+            speed_bound: vec![R::zero(); count],
+            alert: vec![R::zero(); count],
+            all_stand_from: R::zero(),
             moved: R::zero(),
-            end_time: unset,
-            arrival_time: unset,
+            end_time: R::zero(),
+            arrival_time: R::zero(),
             stopped: R::Mask::none(),
             touched: false,
             force_evaluations: R::zero(),
-            min_distance_squared: vec![R::splat(f64::INFINITY); count],
+            min_distance_squared: vec![R::zero(); count],
             touches: vec![Touch::default(); count * R::WIDTH],
             walls: Walls::new(maps, scenario.robot.radius).map(Box::new),
             scenario: world,
         };
+        let world = runs.scenario.clone();
+        for lane in 0..R::WIDTH {
+            runs.take_obstacles(lane, world.of_lane(lane));
+            runs.enter(lane, world.of_lane(lane));
+        }
         runs.watch_walls(None, R::zero(), runs.running);
         runs.remember();
         runs
@@ -151,49 +147,96 @@ impl<W: World<R>, R: Real> Runs<W, R> {
 
     /// A lane takes another scenario, whose robot is at its start.
     pub fn enter(&mut self, lane: usize, scenario: &Scenario) {
-        let ([x, y], [goal_x, goal_y]) = (scenario.start, scenario.goal);
-        let set = |number: &mut R, value: f64| number.set(lane, value);
-        set(&mut self.position.x, x);
-        set(&mut self.position.y, y);
-        set(&mut self.goal.x, goal_x);
-        set(&mut self.goal.y, goal_y);
-        set(&mut self.velocity.x, 0.0);
-        set(&mut self.velocity.y, 0.0);
+        for number in self.numbers() {
+            number.set(lane, 0.0);
+        }
+        self.position.set_lane(lane, scenario.start);
+        self.goal.set_lane(lane, scenario.goal);
         let standing = self.wheels.speeds(Vector2::<f64>::zeros());
         for (speed, standing) in self.wheel_speeds.iter_mut().zip(standing) {
-            set(speed, standing);
+            speed.set(lane, standing);
         }
-        for number in [
-            &mut self.speed,
-            &mut self.squared_current,
-            &mut self.path,
-            &mut self.moved,
-            &mut self.force_evaluations,
-        ] {
-            set(number, 0.0);
+        self.end_time.set(lane, f64::NAN);
+        self.arrival_time.set(lane, f64::NAN);
+        for index in 0..self.reach.len() {
+            self.touches[index * R::WIDTH + lane] = Touch::default();
+            self.min_distance_squared[index].set(lane, f64::INFINITY);
         }
-        set(&mut self.end_time, f64::NAN);
-        set(&mut self.arrival_time, f64::NAN);
-        for index in 0..self.watched.len() {
+        if let Some(past) = &mut self.past {
+            past.enter(lane, scenario.start);
+        }
+        if let Some(walls) = &mut self.walls {
+            walls.enter(lane);
+        }
+    }
+
+    /// What is known of the obstacles of a lane.
+    pub fn take_obstacles(&mut self, lane: usize, scenario: &Scenario) {
+        self.all_stand_from.set(lane, scenario.stands_from());
+        for index in 0..self.reach.len() {
             let (reach, bound) = reach_and_bound(scenario.obstacles.get(index));
             self.reach[index].set(lane, reach);
             self.speed_bound[index].set(lane, bound);
             let alert = alert_squared(reach, bound, scenario.robot.max_speed, self.clock.step);
             self.alert[index].set(lane, alert);
-            self.touches[index * R::WIDTH + lane] = Touch::default();
-            set(&mut self.min_distance_squared[index], f64::INFINITY);
         }
     }
 
+    /// A lane goes on from where the first lane of another group is, in the same scenario.
+    pub fn follow(&mut self, lane: usize, leader: &mut Self) {
+        for (number, own) in self.numbers().into_iter().zip(leader.numbers()) {
+            number.set(lane, own.lane(0));
+        }
+        let least = self.min_distance_squared.iter_mut();
+        for (number, own) in least.zip(&leader.min_distance_squared) {
+            number.set(lane, own.lane(0));
+        }
+        for index in 0..self.reach.len() {
+            self.touches[index * R::WIDTH + lane] = leader.touches[index * R::WIDTH];
+        }
+        if let (Some(walls), Some(own)) = (&mut self.walls, &mut leader.walls) {
+            walls.follow(lane, own);
+        }
+    }
+
+    /// What changes with time in every lane, beside what is counted of obstacles and walls.
+    fn numbers(&mut self) -> [&mut R; 14] {
+        let [first, second, third] = &mut self.wheel_speeds;
+        let [position, velocity] = [&mut self.position, &mut self.velocity];
+        let [[x, y]] = &mut position.data.0;
+        let [[along_x, along_y]] = &mut velocity.data.0;
+        [
+            x,
+            y,
+            along_x,
+            along_y,
+            &mut self.speed,
+            first,
+            second,
+            third,
+            &mut self.squared_current,
+            &mut self.path,
+            &mut self.moved,
+            &mut self.end_time,
+            &mut self.arrival_time,
+            &mut self.force_evaluations,
+        ]
+    }
+
     /// The runs of some lanes begin, with the obstacles as given.
-    pub fn begin(&mut self, lanes: R::Mask, world: W, bodies: &[Body<W::Number>]) {
+    pub fn begin(&mut self, lanes: R::Mask, bodies: &[Body<R>]) {
+        for (index, body) in bodies.iter().enumerate() {
+            self.watch(index, body, R::zero(), lanes, None);
+        }
+        self.watch_walls(None, R::zero(), lanes);
+    }
+
+    /// The runs of some lanes go on from where they are.
+    pub fn start(&mut self, lanes: R::Mask) {
         self.running = self.running | lanes;
         self.stopped = self.stopped & !lanes;
-        (self.near_goal, self.scenario) = (true, world);
+        self.near_goal = true;
         self.watched.fill(true);
-        for (index, body) in bodies.iter().enumerate() {
-            self.watch(index, body, W::Number::zero(), lanes, None);
-        }
     }
 
     /// Obstacle of a place in the scene.

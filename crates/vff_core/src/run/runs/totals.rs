@@ -6,7 +6,7 @@ use crate::run::outcome::{CONTACT_SPEED, Contact, ContactCounts, Outcome, RunSum
 use crate::run::record::Recorder;
 use crate::run::scene::World;
 
-impl<W: World<R>, R: Real> Runs<W, R> {
+impl<W: World, R: Real> Runs<W, R> {
     /// Least distance `d` to an obstacle in m; infinite if it was never present.
     pub fn min_distance(&self, obstacle: usize, lane: usize) -> f64 {
         self.min_distance_squared[obstacle].lane(lane).sqrt()

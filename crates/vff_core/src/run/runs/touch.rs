@@ -1,7 +1,7 @@
 //! Contacts with obstacles, also between two motion steps, and who came toward whom.
 
 use super::Runs;
-use crate::lanes::{Planar, Real, Truth, Vector2, Wide};
+use crate::lanes::{Number, Planar, Real, Truth, Vector2};
 use crate::run::outcome::{CONTACT_SPEED, Contact};
 use crate::run::scene::{World, body_at};
 use crate::run::way::Way;
@@ -35,27 +35,27 @@ pub(super) struct Since<R> {
 }
 
 /// Distances beyond which robots do not touch obstacles within the motion step that ends there, squared, in m^2.
-pub(super) fn alert_squared<B: Real>(reach: B, speed_bound: B, own: f64, step: f64) -> B {
-    let speed = speed_bound.min(B::splat(JUMP_SPEED)) + B::splat(own);
-    let alert = reach + speed * B::splat(step) + B::splat(super::BOUND_MARGIN);
+pub(super) fn alert_squared(reach: f64, speed_bound: f64, own: f64, step: f64) -> f64 {
+    let speed = Number::min(speed_bound, JUMP_SPEED) + own;
+    let alert = reach + speed * step + super::BOUND_MARGIN;
     alert * alert
 }
 
-impl<W: World<R>, R: Real> Runs<W, R> {
+impl<W: World, R: Real> Runs<W, R> {
     /// Contacts of lanes whose robots are near an obstacle at an instant, or have touched it in the motion step that
     /// ends then: robot and obstacle move straight at constant speed in it.
     #[cold]
     #[inline(never)]
-    pub(super) fn meet<B: Wide<R>>(
+    pub(super) fn meet(
         &mut self,
         index: usize,
-        (body, time): (&Body<B>, R),
+        (body, time): (&Body<R>, R),
         near: R::Mask,
         since: Option<&Since<R>>,
     ) {
         let offset = body.offset(self.position);
         let world = self.scenario.clone();
-        let reaches: R = self.reach[index].wide();
+        let reaches = self.reach[index];
         for lane in (0..R::WIDTH).filter(|lane| near.lane(*lane)) {
             let slot = index * R::WIDTH + lane;
             let Some(placed) = world.of_lane(lane).obstacles.get(index) else {
