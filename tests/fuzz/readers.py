@@ -46,6 +46,8 @@ def readers(folder: Path) -> dict[str, tuple[Path, Callable[[Path], Any]]]:
     _sweeps(folder, found)
     add_logs(folder, found)
     for form, (path, call) in people_files(folder, walk(rows=8, people=2)).items():
+        if form == "juelich-hdf5":  # read by a process of its own, which takes a second
+            continue
         found[f"load_people, {form}"] = (path, functools.partial(_people, call=call))
     return found | places(folder)
 

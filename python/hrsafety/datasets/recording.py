@@ -322,7 +322,7 @@ class Recording(Played):
         done = self.switches
         if not done:
             return self
-        person, whose = self.person.copy(), {}
+        person, whose = self.person.copy(), dict[Any, Any]()
         for one, other, when in done:
             # Whose rows stand under an id, since the last exchange.
             whose[one], whose[other] = whose.get(other, other), whose.get(one, one)

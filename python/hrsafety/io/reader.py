@@ -23,6 +23,7 @@ __all__ = ["READERS", "Document", "Reader", "Source", "reader_of", "readers"]
 READERS: dict[str, tuple[str, ...]] = {
     "people": (
         "hrsafety.io.people.databases",
+        "hrsafety.io.people.hdf5",
         "hrsafety.io.people.scenes",
         "hrsafety.io.people.splines",
         "hrsafety.io.people.mocap",

@@ -1,8 +1,7 @@
-"""JuPedSim SQLite and HDF5 of the Juelich archive: trajectories with the geometry that people walk in."""
+"""JuPedSim SQLite: trajectories with the geometry that people walk in."""
 
 from __future__ import annotations
 
-import io
 import math
 import sqlite3
 from typing import Any
@@ -10,35 +9,27 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety.errors import FileError, MissingExtraError, Shown
-from hrsafety.io.cells import short
+from hrsafety.errors import Shown
+from hrsafety.io.cells import MOST_ROWS, short
 from hrsafety.io.people.geometry import rings
 from hrsafety.io.people.request import Request
 from hrsafety.io.people.rows import Rows
 from hrsafety.io.reader import Document, Reader
 
-__all__ = ["READERS"]
+__all__ = ["READERS", "finite_number", "refuse_fractions", "walls_of"]
 
 Array = npt.NDArray[np.float64]
 
-_SQLITE, _HDF5 = b"SQLite format 3\0", b"\x89HDF\r\n\x1a\n"
+_SQLITE = b"SQLite format 3\0"
 VERSIONS = (1, 2, 3)
 _JOURNAL = slice(18, 20)
 """Bytes that say that changes stand in a second file."""
-MOST_ROWS = 30_000_000
 MOST_STEPS = 20_000
 """Times a thousand instructions of the database in one query."""
 
 
 def _is_sqlite(document: Document) -> bool:
     return document.data.startswith(_SQLITE)
-
-
-def _is_hdf5(document: Document) -> bool:
-    return document.data.startswith(_HDF5)
-
-
-# ---- SQLite -------------------------------------------------------------------------------------
 
 
 def _read_sqlite(document: Document, _request: Request) -> Rows:
@@ -62,11 +53,11 @@ def _read_sqlite(document: Document, _request: Request) -> Rows:
 
 def _of_database(document: Document, connection: sqlite3.Connection) -> Rows:
     told = dict(connection.execute("SELECT key, value FROM metadata").fetchmany(1000))
-    version = _number(document, told.get("version"), "metadata.version")
+    version = finite_number(document, told.get("version"), "metadata.version")
     if version not in VERSIONS:
         rule = f"be of version {', '.join(map(str, VERSIONS))}"
         raise document.error("unknown_version", rule, Shown(f"{version:g}"), key="metadata.version")
-    rate = _number(document, told["fps"], "metadata.fps") if told.get("fps") is not None else None
+    rate = finite_number(document, told["fps"], "metadata.fps") if told.get("fps") is not None else None
     if rate is not None and not rate > 0.0:
         raise document.error("unreadable_number", "be positive", rate, key="metadata.fps")
     (count,) = connection.execute("SELECT count(*) FROM trajectory_data").fetchone()
@@ -74,7 +65,7 @@ def _of_database(document: Document, connection: sqlite3.Connection) -> Rows:
         raise document.error("too_large", f"have at most {MOST_ROWS:,} rows", count)
     values = connection.execute("SELECT frame, id, pos_x, pos_y FROM trajectory_data").fetchall()
     table = _matrix(document, values, ("frame", "id", "pos_x", "pos_y"))
-    _check_ids(document, table[:, 1])
+    refuse_fractions(document, table[:, 1], "trajectory_data")
     has = connection.execute("SELECT count(*) FROM sqlite_master WHERE name = 'geometry'").fetchone()[0]
     shapes = connection.execute("SELECT wkt FROM geometry").fetchmany(1000) if has else []
     return Rows(
@@ -85,12 +76,13 @@ def _of_database(document: Document, connection: sqlite3.Connection) -> Rows:
         rate=rate,
         unit="m",
         format="jupedsim-sqlite",
-        walls=_walls(document, [shape for (shape,) in shapes]),
+        walls=walls_of(document, [shape for (shape,) in shapes]),
         details={"version": int(version)},
     )
 
 
-def _number(document: Document, value: object, key: str) -> float:
+def finite_number(document: Document, value: object, key: str) -> float:
+    """Return a number that stands as such or as text."""
     try:
         found = float(value)  # type: ignore[arg-type]  # what is no number fails here
     except (TypeError, ValueError, OverflowError):
@@ -116,14 +108,16 @@ def _matrix(document: Document, values: list[Any], names: tuple[str, ...]) -> Ar
     return table
 
 
-def _check_ids(document: Document, ids: Array) -> None:
+def refuse_fractions(document: Document, ids: Array, table: str) -> None:
+    """Refuse ids that are no integers."""
     wrong = np.flatnonzero(~((ids == np.floor(ids)) & (np.abs(ids) < 2.0**53)))
     if len(wrong):
-        where = f"trajectory_data, row {int(wrong[0]) + 1}, id"
+        where = f"{table}, row {int(wrong[0]) + 1}, id"
         raise document.error("unreadable_number", "be an integer", float(ids[wrong[0]]), key=where)
 
 
-def _walls(document: Document, shapes: list[object]) -> tuple[Array, ...]:
+def walls_of(document: Document, shapes: list[Any]) -> tuple[Array, ...]:
+    """Return the rings of well-known texts, each text once."""
     found: list[Array] = []
     for shape in dict.fromkeys(shapes):
         if not isinstance(shape, str):
@@ -135,65 +129,6 @@ def _walls(document: Document, shapes: list[object]) -> tuple[Array, ...]:
     return tuple(found)
 
 
-# ---- HDF5 ---------------------------------------------------------------------------------------
-
-
-def _read_hdf5(document: Document, _request: Request) -> Rows:
-    try:
-        import h5py
-    except ModuleNotFoundError:
-        raise MissingExtraError(f"{document.name} is HDF5, which needs h5py: pip install 'hrsafety[hdf5]'") from None
-    try:
-        with h5py.File(io.BytesIO(document.data), "r") as file:
-            return _of_hdf5(document, file)
-    except FileError:
-        raise
-    except Exception as error:  # of a damaged file: the library raises errors of many kinds
-        found = Shown(short(f"{type(error).__name__}: {error}"))
-        raise document.error("unreadable", "be HDF5 of the Juelich archive", found) from None
-
-
-def _of_hdf5(document: Document, file: Any) -> Rows:
-    names = ("frame", "id", "x", "y")
-    if "trajectory" not in file:
-        raise document.error("unreadable", "have a dataset /trajectory", Shown(", ".join(list(file)[:5]) or "none"))
-    data = file["trajectory"]
-    absent = [each for each in names if each not in (data.dtype.names or ())]
-    if absent:
-        raise document.error(
-            "unreadable", f"have fields {', '.join(names)}", Shown(f"no {absent[0]}"), key="/trajectory"
-        )
-    if data.size > MOST_ROWS:
-        raise document.error("too_large", f"have at most {MOST_ROWS:,} rows", int(data.size))
-    table = data[()].ravel()
-    columns = np.stack([np.asarray(table[each], dtype=np.float64) for each in names], axis=1)
-    if np.isinf(columns).any():
-        row = int(np.flatnonzero(np.isinf(columns).any(axis=1))[0])
-        raise document.error(
-            "unreadable_number", "be finite", Shown("an infinite one"), key=f"/trajectory, row {row + 1}"
-        )
-    _check_ids(document, columns[:, 1])
-    rate = data.attrs.get("fps", file.attrs.get("fps"))
-    if rate is not None:
-        rate = _number(document, np.asarray(rate).ravel()[0] if np.size(rate) == 1 else None, "/trajectory fps")
-        if not rate > 0.0:
-            raise document.error("unreadable_number", "be positive", rate, key="/trajectory fps")
-    shape = file.attrs.get("wkt_geometry")
-    if isinstance(shape, bytes):
-        shape = shape.decode("utf-8", "replace")
-    return Rows(
-        clock=columns[:, 0],
-        person=columns[:, 1].astype(np.int64),
-        position=columns[:, 2:],
-        frames=True,
-        rate=rate,
-        unit="m",
-        format="juelich-hdf5",
-        walls=() if shape is None else _walls(document, [shape if isinstance(shape, str) else str(shape)]),
-    )
-
-
 READERS = [
     Reader(name="jupedsim-sqlite", title="JuPedSim SQLite, versions 1 to 3", recognizes=_is_sqlite, read=_read_sqlite),
-    Reader(name="juelich-hdf5", title="HDF5 of the Juelich archive", recognizes=_is_hdf5, read=_read_hdf5),
 ]
