@@ -199,6 +199,14 @@ def test_blocks_are_read_where_they_are_placed(tmp_path: Path) -> None:
     assert len(found.walls) == 6
     for place in ((10.0, 2.5), (10.5, 1.0), (0.5, 9.0), (2.5, 9.0), (4.5, 9.0), (1.0, 1.0)):
         assert found.clearance(place) == pytest.approx(0.0, abs=1e-9)
+    space.add_blockref(
+        "LEAF",
+        (0, 9),
+        dxfattribs={"column_count": 30_000, "row_count": 30_000, "column_spacing": 1.0, "row_spacing": 1.0},
+    )
+    with pytest.raises(FileError, match="100000 entities") as caught:
+        load_map(written(tmp_path, "many.dxf", saved(document)), blocks=True)
+    assert caught.value.code == "too_large"
     with pytest.raises(FileError, match="EOF"):
         load_map(written(tmp_path, "cut.dxf", saved(document)[:-8]), blocks=True)
 

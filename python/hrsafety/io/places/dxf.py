@@ -9,7 +9,6 @@ from io import StringIO
 from typing import Any, NamedTuple
 
 from hrsafety._arguments import Pair, flag, meant, not_negative, sequence, word
-from hrsafety._bounds import MOST_WALL_POINTS
 from hrsafety.errors import FileError, InvalidParameterError, MissingExtraError, Shown
 from hrsafety.io.places.curves import arc_points, bulge_points
 from hrsafety.io.places.drawing import UNITS, Drawing, check_size
@@ -24,6 +23,8 @@ SAME = 1e-6
 """A line goes on where another one ends if its start is at most so far away, in m."""
 MOST_BULGE = 1e6
 MOST_STREAMED = 1 << 27
+MOST_EXPANDED = 100_000
+"""Entities with those of blocks, some kilobytes each."""
 MOST_NESTED = 16
 """Blocks within blocks."""
 _INSUNITS = {1: "inch", 2: "ft", 4: "mm", 5: "cm", 6: "m"}
@@ -100,12 +101,14 @@ def _expanded(document: Document) -> str:
         space = drawing.modelspace()
         for _ in range(MOST_NESTED):
             for insert in space.query("INSERT"):
+                block = insert.block()
+                size = insert.mcount * (len(block) if block is not None else 0)
+                if len(space) + size > MOST_EXPANDED:
+                    rule = f"hold at most {MOST_EXPANDED} entities with its blocks"
+                    raise document.error("too_large", rule, Shown(f"{len(space) + size}"))
                 for part in insert.multi_insert() if insert.mcount > 1 else (insert,):
                     for entity in part.virtual_entities():
                         space.add_entity(entity)
-                        if len(space) > MOST_WALL_POINTS:
-                            rule = f"hold at most {MOST_WALL_POINTS} entities"
-                            raise document.error("too_large", rule, Shown("more"))
                 space.delete_entity(insert)
         drawing.write(stream)
     except FileError:
