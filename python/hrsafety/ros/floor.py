@@ -116,6 +116,7 @@ class _Put:
         self._walls = sum(len(wall) - 1 if isinstance(wall, tuple) else 1 for wall in told)
         self._next = self._people
         self._guests = (np.empty(0, dtype=np.int64), np.empty((0, 2)))
+        """Numbers and places of those who came from sources, by their places in the list; below 0 where nobody is."""
 
     def velocity(self, situation: Situation) -> Pair:
         """Return the velocity that brings the robot where it is to be."""
@@ -132,24 +133,28 @@ class _Put:
         position, velocity = situation.obstacle_position[there], situation.obstacle_velocity[there]
         known = int(np.searchsorted(there, self._people))
         number = there.astype(np.int64)
-        if len(there) > known or len(self._guests[0]):
-            number[known:] = self._named(position[known:])
+        if last > self._people:
+            number[known:] = self._named(there[known:] - self._people, position[known:], last - self._people)
         return Crowd(number, position, velocity, situation.obstacle_radius[there])
 
-    def _named(self, position: Array) -> npt.NDArray[np.int64]:
-        """Return numbers of those who came from sources: whoever stands near the place of a step before is the same."""
+    def _named(self, slot: npt.NDArray[np.intp], position: Array, slots: int) -> npt.NDArray[np.int64]:
+        """Return numbers of those who came from sources, by their places in the list, which somebody else may take."""
         numbers, places = self._guests
-        found = np.full(len(position), -1, dtype=np.int64)
-        if len(numbers) and len(position):
+        found = np.full(len(slot), -1, dtype=np.int64)
+        if len(numbers) == slots:
+            same = np.hypot(*(position - places[slot]).T) <= _STRIDE * self._step
+            found[same] = numbers[slot[same]]
+        elif (numbers >= 0).any() and len(slot):  # the list has grown, and everybody has another place
             away = np.linalg.norm(position[:, None] - places[None], axis=2)
-            for flat in np.argsort(away, axis=None, kind="stable"):
-                row, column = divmod(int(flat), len(numbers))
-                if away[row, column] > _STRIDE * self._step:
-                    break
-                if found[row] < 0 and numbers[column] not in found:
-                    found[row] = numbers[column]
+            nearest = np.argmin(np.where(numbers >= 0, away, np.inf), axis=1)
+            same = away[np.arange(len(slot)), nearest] <= _STRIDE * self._step
+            found[same] = numbers[nearest[same]]
+            _, first = np.unique(found, return_index=True)
+            found[np.setdiff1d(np.arange(len(slot)), first)] = -1
         new = np.flatnonzero(found < 0)
         found[new] = self._next + np.arange(len(new))
         self._next += len(new)
-        self._guests = (found, position.copy())
+        numbers, places = np.full(slots, -1, dtype=np.int64), np.full((slots, 2), np.nan)
+        numbers[slot], places[slot] = found, position
+        self._guests = (numbers, places)
         return found

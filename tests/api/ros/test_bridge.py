@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -233,6 +234,17 @@ def test_people_keep_their_names_also_those_who_come_later(served_hall: tuple[An
         last, names = now, names | set(now)
     assert {"0", "1"} < names
     assert len(names) > 3
+
+
+def test_people_from_doors_have_the_numbers_of_the_world_itself() -> None:
+    source = nav.Source(low=(8.0, -2.5), high=(9.5, 2.5), rate=4.0, route=[(4.0, 0.0)], desired_speed=1.3)
+    away = nav.Robot(ROBOT, start=(-1.5, -2.5), goal=(8.0, 0.0))
+    world = replace(hall(people=[], sources=[source], time_limit=30.0), robots=[away])
+    record, _ = served(world, lambda bus: bus.say("cmd_vel", stamped(bus.now)), lidar=nav.Lidar(beams=8))
+    mine, whole = record.legs[0].trajectory, nav.simulate(world)
+    assert whole.obstacle_position.shape[1] > 60
+    rows = min(len(mine.time), len(whole.time))
+    np.testing.assert_allclose(mine.obstacle_position[:rows], whole.obstacle_position[:rows], atol=1e-9)
 
 
 def test_people_react_to_the_robot() -> None:
