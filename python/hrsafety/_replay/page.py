@@ -22,7 +22,7 @@ from hrsafety import __version__
 from hrsafety._atomic import write_file
 from hrsafety._replay.ground import ground_of
 from hrsafety._replay.packing import Block, Scale, block, counted
-from hrsafety._replay.record import VERDICTS, Decisions, PlayedRobot, Replay
+from hrsafety._replay.record import VERDICTS, Decisions, Event, PlayedRobot, Replay
 
 __all__ = ["LIMIT", "PlayerPage", "digest", "frame_rows", "least_since", "player_page", "verdicts_of"]
 
@@ -216,13 +216,22 @@ class _Content:
             "kind": [words.index(each) for each in kinds],
             "boxes": {str(index): list(size) for index, size in (replay.boxes or {}).items()},
             "ground": ground,
-            "events": [_event(each) for each in sorted(replay.events, key=lambda each: each.time)],
+            "events": [self._event(each) for each in sorted(replay.events, key=lambda each: each.time)],
             "notJudged": [[float(each.begin), float(each.end), each.reason] for each in replay.not_judged],
             "verdicts": list(VERDICTS),
             "frames": len(self.rows),
             "instants": len(replay.time),
             "hashes": {"sha256": self._hash(), "hrsafety": __version__},
         }
+
+    def _event(self, event: Event) -> list[Any]:
+        """Return an event; a contact without a place is where the robot was."""
+        place = event.place
+        if place is None and event.kind in ("contact", "fault") and self.robots.shape[1] == 1:
+            row = min(int(np.searchsorted(self.time, event.time - 1e-9)), len(self.time) - 1)
+            place = tuple(self.robots[row, 0].tolist())
+        known = place is not None and all(map(math.isfinite, place))
+        return [round(float(event.time), 4), event.kind, event.words, [round(x, 4) for x in place] if known else None]  # type: ignore[union-attr]  # known
 
     def _robot(self, index: int, robot: PlayedRobot) -> dict[str, Any]:
         """Return one robot, its series packed."""
@@ -298,11 +307,6 @@ def _thinned(line: Array) -> Array:
         return line
     kept: Array = line[np.unique(np.round(np.linspace(0, len(line) - 1, MOST_PLAN)).astype(int))]
     return kept
-
-
-def _event(event: Any) -> list[Any]:
-    place = None if event.place is None else [round(float(part), 4) for part in event.place]
-    return [round(float(event.time), 4), event.kind, event.words, place]
 
 
 def _page(replay: Replay, rows: Rows) -> str:
