@@ -145,6 +145,11 @@ impl StaticMap {
         Ok(points.map(|point| self.0.knows((*point).into())).collect())
     }
 
+    /// A scenario in which the map stands, which laws are not told of.
+    fn around(&self, scenario: &Scenario) -> Scenario {
+        Scenario(scenario.0.clone().with_walls(self.0.clone()))
+    }
+
     /// Ends and radii of the segments, a row each.
     fn segments<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
         let capsules = self.0.capsules();

@@ -229,17 +229,15 @@ pub struct Scenario(pub scenario::Scenario);
 
 #[pymethods]
 impl Scenario {
-    /// Robot, start and goal, obstacles, rules of the run, measurement and seed, and walls that laws are not told of;
-    /// positional, since a study makes millions.
+    /// Robot, start and goal, obstacles, rules of the run, measurement and seed; positional, since a
+    /// study makes millions.
     #[new]
-    #[pyo3(signature = (robot, ends, obstacles, rules, noise, walls = None))]
     fn new(
         robot: &Bound<'_, PyAny>,
         ends: (Place, Place),
         obstacles: Vec<PyRef<'_, Obstacle>>,
         rules: (f64, f64, f64, f64, f64),
         noise: (Option<PyRef<'_, Measurement>>, u64),
-        walls: Option<&crate::maps::StaticMap>,
     ) -> PyResult<Self> {
         let obstacles = obstacles.iter();
         let obstacles = obstacles.map(|obstacle| obstacle.0.clone()).collect();
@@ -256,11 +254,7 @@ impl Scenario {
         let ends = [ends.0.into(), ends.1.into()];
         let scenario =
             scenario::Scenario::sensed(mover_of(robot)?, ends, obstacles, rules, measurement);
-        let scenario = scenario.map_err(CoreError::from)?.reseeded(seed);
-        Ok(Self(match walls {
-            Some(walls) => scenario.with_walls(walls.0.clone()),
-            None => scenario,
-        }))
+        Ok(Self(scenario.map_err(CoreError::from)?.reseeded(seed)))
     }
 
     /// Critical and active radius of every obstacle.

@@ -112,8 +112,8 @@ class Scenario(Parameters):
         walls = None if self.walls is None else self._standing(self.walls)
         try:
             natives = [obstacle._native for obstacle in given]
-            parts = robot._native, (start, goal), natives, rules, noise
-            native = _hrsafety.Scenario(*parts) if walls is None else _hrsafety.Scenario(*parts, walls)
+            native = _hrsafety.Scenario(robot._native, (start, goal), natives, rules, noise)
+            native = native if walls is None else walls.around(native)
         except InvalidParameterError as error:
             raise _naming_kinds(error, given) from None
         if start is not self.start or goal is not self.goal:

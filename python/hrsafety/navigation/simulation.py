@@ -281,13 +281,16 @@ def evaluate(
 def _score_of_world(scenario: World, law: AnyLaw | None, weights: tuple[float, float, float]) -> Performance:
     """Return the score of the robot of a world."""
     # Here: runs of scenarios load nothing of it.
-    from hrsafety.navigation.crowd.performance import evaluated
+    from hrsafety.navigation.crowd.performance import lone, scores
     from hrsafety.navigation.crowd.world import World
 
     instance("scenario", scenario, Scenario, World)
     if len(scenario.robots) != 1:
         raise InvalidParameterError("scenario.robots", "be one to be scored", Shown(str(len(scenario.robots))))
-    return evaluated(scenario, None if law is None else as_law(law), weights)
+    run = _of_world(scenario, law)
+    alone = lone(scenario, run.robot)
+    nominal = simulate(alone.scenario, run.law, built=alone.built, step=alone.step)
+    return Performance(**scores(run, nominal, weights), trajectory=run, nominal=nominal)
 
 
 def as_built(

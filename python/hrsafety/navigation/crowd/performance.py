@@ -3,30 +3,44 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 
 from hrsafety._arguments import Array
-from hrsafety.navigation.crowd.simulation import driven, simulated
 from hrsafety.navigation.crowd.world import World
-from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.obstacles.moving import MovingDisc
-from hrsafety.navigation.performance import Performance
 from hrsafety.navigation.regions import region_radii
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
-from hrsafety.navigation.simulation import simulate
 from hrsafety.navigation.trajectory import Trajectory
 
-__all__ = ["alone", "evaluated", "scores"]
+__all__ = ["Lone", "lone", "scores"]
 
 STEP = 0.01
 """Longest motion step of the robot alone, in s."""
 
 
-def alone(world: World, robot: int, law: Law | None = None) -> Trajectory:
-    """Return the run of a robot of a world without people, walls and errors of measurement.
+class Lone(NamedTuple):
+    """A robot of a world without people, walls and errors of measurement.
+
+    Attributes
+    ----------
+    scenario : Scenario
+        Its way.
+    built : AsBuilt or None
+        How it is built.
+    step : float
+        Motion step of its run in s.
+    """
+
+    scenario: Scenario
+    built: AsBuilt | None
+    step: float
+
+
+def lone(world: World, robot: int) -> Lone:
+    """Return a robot of a world alone.
 
     Parameters
     ----------
@@ -34,13 +48,11 @@ def alone(world: World, robot: int, law: Law | None = None) -> Trajectory:
         The world.
     robot : int
         Which of its robots.
-    law : Law or None
-        What drives it; its own when ``None``.
 
     Returns
     -------
-    Trajectory
-        The run of a scenario.
+    Lone
+        What `simulate` takes for it.
     """
     own = world.robots[robot]
     period = world.step if own.control_period is None else own.control_period
@@ -53,9 +65,8 @@ def alone(world: World, robot: int, law: Law | None = None) -> Trajectory:
         arrival_tolerance=own.arrival_tolerance,
         heading=own.heading,
     )
-    built: AsBuilt | None = own.as_built()
-    step = period / math.ceil(period / STEP - 1e-9)
-    return simulate(scene, own.law if law is None else law, built=built and built.seeing_all(), step=step)
+    built = own.as_built()
+    return Lone(scene, None if built is None else built.seeing_all(), period / math.ceil(period / STEP - 1e-9))
 
 
 def scores(run: Trajectory, nominal: Trajectory, weights: tuple[float, float, float]) -> dict[str, float]:
@@ -66,7 +77,7 @@ def scores(run: Trajectory, nominal: Trajectory, weights: tuple[float, float, fl
     run : Trajectory
         The run of a world as its robot has it.
     nominal : Trajectory
-        The robot alone, as of `alone`.
+        The robot alone, see `lone`.
     weights : tuple of float
         Weights of time, distance and energy.
 
@@ -108,27 +119,3 @@ def _avoidance(run: Trajectory) -> float:
             known[kind] = regions.active_radius - own.body.radius - radius
         wanted[index] = known[kind]
     return float(np.minimum(run.min_clearance / wanted, 1.0).mean())
-
-
-def evaluated(world: World, law: Law | None, weights: tuple[float, float, float]) -> Performance:
-    """Return the score of the robot of a world.
-
-    Parameters
-    ----------
-    world : World
-        One robot among people.
-    law : Law or None
-        What drives it; its own when ``None``.
-    weights : tuple of float
-        Weights of time, distance and energy.
-
-    Returns
-    -------
-    Performance
-        H, its parts, and both runs.
-    """
-    placed = world if law is None else driven(world, law)
-    (run,) = simulated([placed], threads=1)
-    nominal = alone(placed, run.robot)
-    parts: dict[str, Any] = scores(run, nominal, weights)
-    return Performance(**parts, trajectory=run, nominal=nominal)

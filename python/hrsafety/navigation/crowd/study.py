@@ -15,7 +15,7 @@ from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.crowd.contacts import Contacts, contacts_of
 from hrsafety.navigation.crowd.episodes import outcome_of
-from hrsafety.navigation.crowd.performance import alone, scores
+from hrsafety.navigation.crowd.performance import lone, scores
 from hrsafety.navigation.crowd.scores import episodes_of, world_metrics
 from hrsafety.navigation.crowd.simulation import driven, simulated
 from hrsafety.navigation.crowd.world import World
@@ -25,6 +25,7 @@ from hrsafety.navigation.metrics.between import doubts_between
 from hrsafety.navigation.metrics.declared import METRICS, WORLD_METRICS
 from hrsafety.navigation.metrics.scores import MetricTable, table_of
 from hrsafety.navigation.run_arguments import Progress
+from hrsafety.navigation.simulation import simulate
 from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plausibility import ResultWarning, gathered
@@ -164,7 +165,9 @@ class WorldStudy:
         """Return the run of a robot of a world alone, under a law with a gain set; noise does not matter."""
         key = job.scenario, robot, job.law, job.gains
         if key not in self._nominal:
-            self._nominal[key] = alone(world, robot)
+            alone = lone(world, robot)
+            law = world.robots[robot].law
+            self._nominal[key] = simulate(alone.scenario, law, built=alone.built, step=alone.step)
         return self._nominal[key]
 
     def _world(self, job: Job) -> World:
