@@ -12,7 +12,7 @@ import numpy as np
 from hrsafety._arguments import Array, positive
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
-from hrsafety.navigation.judging.synchronized import Synchronized
+from hrsafety.navigation.judging.synchronized import Flags, Synchronized
 from hrsafety.navigation.judging.touches import runs_of
 
 __all__ = ["Passing", "PermitRules", "passings"]
@@ -149,17 +149,18 @@ def passings(
     doubtful : str
         Why nothing counts as kept; empty if it may.
     """
-    context = _Context(np.hypot(*both.velocity.T), reach, bound, jumps, doubtful)
+    context = _Context(np.hypot(*both.velocity.T), reach, bound, both.leaps, jumps, doubtful)
     found = [each for column in range(len(both.ids)) for each in _of_person(both, column, rules, context)]
     return sorted(found, key=lambda each: (each.pass_time, str(each.person)))
 
 
 class _Context(NamedTuple):
-    """Speed of the robot (T,), sum of the radii, distances of the unseen, jumps, and why nothing counts as kept."""
+    """Speed of the robot (T,), sum of the radii, distances of the unseen, jumps of people and robot, and a doubt."""
 
     speed: Array
     reach: float
     bound: Array
+    leaps: Flags
     jumps: Jumps
     doubtful: str
 
@@ -230,7 +231,7 @@ def _passing(both: Synchronized, pair: _Pair, rows: slice, rules: PermitRules, c
     judged = np.isfinite(predicted)
     judged[: len(joined)] &= joined
     share = float(judged.mean())
-    reason = context.doubtful or _open(both, pair, rows, nearest, context.bound[:, pair.column])
+    reason = context.doubtful or _open(both, pair, rows, nearest, context)
     if not reason and share < rules.judged_share:
         reason = f"{100.0 * share:.0f} % of the encounter is judged"
     early = lead >= rules.lead_time and lead_distance >= rules.lead_distance
@@ -303,14 +304,14 @@ def _lead(time: Array, distance: Array, predicted: Array, clearance: float) -> t
     return float(time[-1] - time[short[-1]]), float(distance[short[-1]]), False
 
 
-def _open(both: Synchronized, pair: _Pair, rows: slice, nearest: int, bound: Array) -> str:
+def _open(both: Synchronized, pair: _Pair, rows: slice, nearest: int, context: _Context) -> str:
     """Return why it is not known how near both came: somebody was lost, or the log ends before the passing."""
-    if (bound[rows.start : rows.stop + 1] < pair.distance[nearest]).any():
+    if (context.bound[rows.start : rows.stop + 1, pair.column] < pair.distance[nearest]).any():
         return "person_lost_nearby" if both.known[rows].all() else "no_pose"
-    if both.leaps[rows.start : rows.stop - 1, pair.column].any():
+    if context.leaps[rows.start : rows.stop - 1, pair.column].any():
         return "the person jumps"
     if nearest == pair.last and nearest != rows.start:
-        return "the log ends before the passing" if pair.last == len(bound) - 1 else "person_lost_nearby"
+        return "the log ends before the passing" if pair.last == len(context.bound) - 1 else "person_lost_nearby"
     return ""
 
 
