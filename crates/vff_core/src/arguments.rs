@@ -1,4 +1,4 @@
-//! What laws and sensors are made of by name: from a caller, a file, or the command line.
+//! Arguments of laws and sensors by name: from a caller, a file, or the command line.
 
 use crate::error::Result;
 
@@ -12,26 +12,26 @@ pub trait Arguments {
     /// A truth value.
     ///
     /// # Errors
-    /// As for numbers.
+    /// The argument is missing, or is of another kind.
     fn flag(&self, name: &str) -> Result<bool>;
     /// A count.
     ///
     /// # Errors
-    /// As for numbers.
+    /// The argument is missing, or is of another kind.
     fn count(&self, name: &str) -> Result<usize>;
     /// A word.
     ///
     /// # Errors
-    /// As for numbers.
+    /// The argument is missing, or is of another kind.
     fn word(&self, name: &str) -> Result<String>;
     /// Places on a robot, x forward and y left in m, with an angle in rad each.
     ///
     /// # Errors
-    /// As for numbers.
+    /// The argument is missing, or is of another kind.
     fn places(&self, name: &str) -> Result<Vec<[f64; 3]>>;
 }
 
-/// What is made of arguments by its name: a law, a sensor.
+/// Class that is made of arguments by its name: a law, a sensor.
 pub trait Named: Sized {
     /// Its name in files and on the command line.
     const NAME: &'static str;

@@ -106,7 +106,7 @@ pub struct Situation<'a, R: Real> {
     pub stop: Stop<'a>,
 }
 
-/// What a law answers.
+/// Command of a law.
 #[derive(Clone, Copy, Debug)]
 pub struct Command<R> {
     /// Force in N, before the limits of the robot.
@@ -162,7 +162,7 @@ pub trait Law<R: Real>: Send {
     /// Laws that plan the whole way themselves keep theirs.
     fn aim(&mut self, _goal: [f64; 2]) {}
 
-    /// What parts around the law did in the last control period, if there are any.
+    /// Record of the parts around the law in the last control period, if there are any.
     fn trace(&self) -> Option<Trace> {
         None
     }
@@ -193,19 +193,19 @@ pub trait LawFamily: Send + Sync {
     fn terms(&self, _scenario: &Scenario, _situation: &Situation<'_, f64>) -> Option<FieldTerms> {
         None
     }
-    /// Whether it chooses a velocity, and so knows no regions.
+    /// True for a law that chooses a velocity, and so knows no regions.
     fn chooses_velocities(&self) -> bool {
         false
     }
-    /// Whether it can reach a goal in the active region of an obstacle that stands.
+    /// True for a law that can reach a goal in the active region of an obstacle that stands.
     fn takes_any_goal(&self) -> bool {
         self.chooses_velocities()
     }
-    /// Whether it steers a robot with two wheels by velocities, not by a point mass to follow.
+    /// True for a law that steers a robot with two wheels by velocities, not by a point mass to follow.
     fn steers_by_velocity(&self) -> bool {
         false
     }
-    /// What it knows to stand, beside the obstacles of a scenario: runs count contacts with it.
+    /// Map that the law knows, beside the obstacles of a scenario: runs count contacts with it.
     fn map(&self) -> Option<&StaticMap> {
         None
     }
@@ -233,7 +233,7 @@ pub trait LawFamily: Send + Sync {
 
 /// A law up to its gains whose robots are stepped side by side.
 pub trait LaneFamily: LawFamily {
-    /// Whether it has a Lyapunov function, whose descent is counted.
+    /// True for a law with a Lyapunov function, whose descent is counted.
     const LYAPUNOV: bool = false;
     /// Whether lanes may have different gains.
     const MIXES_GAINS: bool = true;

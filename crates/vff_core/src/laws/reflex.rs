@@ -6,7 +6,7 @@ use crate::sensing::fixes::Heard;
 use crate::world::frame::Frame;
 use crate::world::geometry::Body;
 
-/// What such a law knows at a sample.
+/// Input of a reflex at a sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Percept<'a> {
     /// Where the robot is and where it looks, by its wheels.
@@ -25,9 +25,9 @@ pub struct Percept<'a> {
 
 /// A law that decides by what sensors read; it may remember what it needs.
 pub trait Reflex {
-    /// What it asks for.
+    /// Type of its commands.
     type Answer;
 
-    /// What to do until the next sample.
+    /// Command until the next sample.
     fn answer(&mut self, percept: &Percept<'_>) -> Self::Answer;
 }

@@ -1,9 +1,9 @@
-//! What the parts around a law did.
+//! Record of the parts around a law.
 
 use crate::lanes::Vector2;
 use crate::laws::shield::{Course, Deviation, Shield, Status};
 
-/// What the parts did in the last control period.
+/// Record of the parts in the last control period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trace {
     /// Velocity that the law wanted, or the takeover, within its limit, in m/s.
@@ -12,12 +12,12 @@ pub struct Trace {
     pub command: Vector2<f64>,
     /// Whether the law was taken over from.
     pub taken_over: bool,
-    /// What became of the wanted velocity.
+    /// Treatment of the wanted velocity.
     pub status: Status,
     /// The plan that the robot executes, if there is a shield.
     pub course: Option<Course>,
     /// How far it was measured to be from the plan before, if that refutes what the shield assumes.
     pub off_plan: Option<Deviation>,
-    /// What the shield assumes, if there is one.
+    /// Assumptions of the shield, if there is one.
     pub shield: Option<Shield>,
 }

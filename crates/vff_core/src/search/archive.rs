@@ -40,7 +40,7 @@ impl Archive {
         }
     }
 
-    /// The same points at the start of a round.
+    /// Points of the archive at the start of a round.
     pub fn renewed(&mut self) -> Self {
         Self {
             entries: std::mem::take(&mut self.entries),

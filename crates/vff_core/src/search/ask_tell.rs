@@ -5,13 +5,13 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use crate::search::evaluated::Evaluated;
 
-/// What a solver says.
+/// Message of a solver.
 enum Message {
     Ask(usize, Vec<f64>),
     Done,
 }
 
-/// What a solver asks with.
+/// Channel that a solver asks through.
 pub(crate) struct Asker {
     who: usize,
     /// Answers from an earlier session, used up first.

@@ -12,7 +12,7 @@ use crate::search::{GlobalMethod, GlobalOptions, global_search};
 use crate::world::scenario::Scenario;
 use numeric::threads::{on_threads, try_map};
 
-/// What is to hold; its margin is not negative where it does.
+/// Property that is to hold; its margin is not negative where it does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Property {
     /// The robot never moves toward somebody whom it touches.
@@ -48,9 +48,9 @@ impl Property {
 pub struct Hunt<'a> {
     /// Where; the pursuer takes the place of its last obstacle.
     pub scenario: &'a Scenario,
-    /// What drives the robot.
+    /// Law that drives the robot.
     pub law: &'a AnyLaw,
-    /// How it is built.
+    /// Robot as it is built.
     pub built: &'a AsBuilt,
     /// Largest speed of the pursuer in m/s.
     pub max_speed: f64,
@@ -78,7 +78,7 @@ impl Hunt<'_> {
     /// One episode with noise of its own.
     ///
     /// # Errors
-    /// As [`pursue`].
+    /// Errors of [`pursue`].
     pub fn episode(
         &self,
         pursuer: &Pursuer,
@@ -94,7 +94,7 @@ impl Hunt<'_> {
     /// Episodes against random pursuers.
     ///
     /// # Errors
-    /// As [`pursue`].
+    /// Errors of [`pursue`].
     pub fn sweep(
         &self,
         episodes: usize,
@@ -118,7 +118,7 @@ impl Hunt<'_> {
     /// The worst pursuer that CMA-ES finds, and the margin against him.
     ///
     /// # Errors
-    /// As [`pursue`].
+    /// Errors of [`pursue`].
     pub fn worst(
         &self,
         property: Property,

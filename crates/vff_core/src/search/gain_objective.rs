@@ -1,4 +1,4 @@
-//! What a search over gains is for: metrics of runs, objectives and constraints built from them.
+//! Metrics of runs, and objectives and constraints of a search over gains.
 
 use crate::error::{Failure, Given, Result};
 use crate::run::metrics::Performance;
@@ -95,12 +95,12 @@ pub enum Over {
     Scenario(usize),
 }
 
-/// What is to be as good as possible.
+/// Objective of a search over gains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Objective {
     /// The metric.
     pub metric: Metric,
-    /// How it is put together.
+    /// Combination over the scenarios.
     pub over: Over,
 }
 
@@ -175,7 +175,7 @@ impl Robustness {
     }
 }
 
-/// What is kept of a run for objectives and constraints.
+/// Numbers of a run that objectives and constraints are made of.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Judged {
     pub performance: Performance,

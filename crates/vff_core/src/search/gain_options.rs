@@ -13,9 +13,9 @@ pub struct GainOptions {
     pub run: Options,
     /// Weights of the criterion.
     pub weights: Weights,
-    /// What is to be as good as possible.
+    /// Objectives.
     pub objectives: Vec<Objective>,
-    /// What has to hold.
+    /// Constraints.
     pub constraints: Vec<MetricConstraint>,
     /// Whether every scenario has to be arrived in without a contact: one more constraint, the
     /// last, which is missed by the number of runs that fail.

@@ -135,7 +135,7 @@ pub struct LocalSearch {
     pub best: Candidate,
     /// Number of evaluations.
     pub evaluations: u64,
-    /// How it ended.
+    /// Reason of the end.
     pub status: LocalStatus,
 }
 

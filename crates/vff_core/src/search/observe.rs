@@ -17,7 +17,7 @@ pub struct Report<'a> {
     pub best: Option<&'a Candidate>,
 }
 
-/// What an observer wants.
+/// Answer of an observer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Control {
     /// Go on.

@@ -1,4 +1,4 @@
-//! What is searched: a function over a box, its constraints, and the order of its points.
+//! Problems of searches: a function over a box, its constraints, and the order of its points.
 
 use std::cmp::Ordering;
 
@@ -38,7 +38,7 @@ pub trait Problem: Sync {
     /// on its own point only.
     ///
     /// # Errors
-    /// Whatever keeps the values from being computed; it ends the search.
+    /// Any failure to compute the values; it ends the search.
     fn evaluate(&self, points: &[f64], into: &mut Evaluation<'_>) -> Result<()>;
     /// Axes from the slowest to the fastest in which neighbours are best handed in.
     fn slowest_first(&self) -> Vec<usize> {

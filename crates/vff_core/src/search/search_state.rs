@@ -1,4 +1,4 @@
-//! What has been computed in a search: enough to resume it without computing it again.
+//! State of a search: enough to resume it without computing anything again.
 
 use std::collections::BTreeMap;
 

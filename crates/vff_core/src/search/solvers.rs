@@ -24,7 +24,7 @@ pub(crate) enum Halt {
     Stopped,
 }
 
-/// What a solver knows of the problem, and what it has found.
+/// Problem as a solver sees it, and its best points.
 pub(crate) struct Oracle<'a> {
     bounds: &'a Bounds,
     constraints: usize,
@@ -37,11 +37,11 @@ struct Inner<'a> {
     found: Found,
     /// Last point in shares of the sides, and its values: cost and constraints are asked apart.
     last: Option<(Vec<f64>, Evaluated)>,
-    /// What a value or margin that is not finite is replaced by, for a method with models.
+    /// Replacement of a value or margin that is not finite, for a method with models.
     floor: Option<Evaluated>,
 }
 
-/// What a solver has found.
+/// Best points of a solver.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Found {
     pub best: Option<Candidate>,

@@ -19,7 +19,7 @@ pub enum Distribution {
     Gaussian,
 }
 
-/// What is measured with an error.
+/// Positions that are measured with an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Noisy {
     /// Positions of moving obstacles.

@@ -1,4 +1,4 @@
-//! What every sensor can do: watch the scene, and tell the controller of the robot or of obstacles.
+//! Interface of sensors: watch the scene, and tell the controller of the robot or of obstacles.
 
 use crate::error::Result;
 use crate::lanes::Vector2;
@@ -113,7 +113,7 @@ pub trait RobotSensor {
     /// Regions of what it reads, for the robot of a scenario.
     ///
     /// # Errors
-    /// As [`crate::world::region::radii`].
+    /// Errors of [`crate::world::region::radii`].
     fn regions(&self, scenario: &Scenario) -> Result<Regions>;
 
     /// Distance from the center of the robot within which it reads, in m.

@@ -17,7 +17,7 @@ pub struct RobotLimits {
     pub turn_time: f64,
 }
 
-/// What is known of the sensing when regions are sized.
+/// Sensing errors that regions are sized for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sensing {
     /// How positions are measured; exactly if `None`.

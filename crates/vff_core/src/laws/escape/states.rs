@@ -70,7 +70,7 @@ impl Direction {
     }
 }
 
-/// What the robot does next.
+/// Next action of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     /// Go on as before.
@@ -81,7 +81,7 @@ pub enum Action {
     Move(Direction),
 }
 
-/// What decides when the pattern is not in Table 1.
+/// Rule for a pattern that is not in Table 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Policy {
     /// The nearest triggered sensor, by Table 3.

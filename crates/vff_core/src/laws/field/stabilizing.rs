@@ -45,7 +45,7 @@ pub enum Stabilizing {
     Off,
     /// With a largest magnitude.
     Capped(Cap),
-    /// As it is.
+    /// The force without a limit.
     Full,
 }
 
@@ -100,7 +100,7 @@ pub struct Dissipation<R> {
     pub force: Vector2<R>,
 }
 
-/// What Omega needs to know of the robot.
+/// State of the robot that Omega depends on.
 #[derive(Clone, Copy, Debug)]
 pub struct Dissipative<R> {
     /// Mass in kg.

@@ -133,7 +133,7 @@ impl FieldDStarPlanner {
         })
     }
 
-    /// What came of the last step.
+    /// Result of the last step.
     #[must_use]
     pub fn status(&self) -> PathStatus {
         self.status

@@ -216,7 +216,7 @@ impl IncrementalSearch {
         self.start
     }
 
-    /// What a cell costs; infinite outside the grid. Numbers count from the first cell.
+    /// Cost of a cell; infinite outside the grid. Numbers count from the first cell.
     pub(super) fn cell_cost(&self, cell: [isize; 2]) -> f64 {
         let place = |i: usize, count: usize| {
             let inside = usize::try_from(cell[i]).ok();

@@ -1,4 +1,4 @@
-//! What surrounds a corner of cells, and how cheap the way between two corners can be.
+//! Cells around a corner, and the least cost between two corners.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 

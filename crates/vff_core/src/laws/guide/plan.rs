@@ -55,7 +55,7 @@ pub struct LocalGoal {
     pub point: Vector2<f64>,
     /// Cost-to-go `G` from it, in m.
     pub cost_to_go: f64,
-    /// Whether it is the goal itself.
+    /// Set where the local goal is the goal itself.
     pub is_goal: bool,
 }
 

@@ -12,7 +12,7 @@ use crate::world::map::StaticMap;
 const NEAR: f64 = 0.3;
 /// How much dearer it is at the map.
 const DEARER: f64 = 2.0;
-/// What keeps a robot and its margin away from a map.
+/// Clearance of a robot and its margin from a map.
 #[derive(Clone, Debug)]
 pub(super) struct Room {
     pub map: StaticMap,

@@ -7,7 +7,7 @@ pub(super) const MOVED: f64 = 0.1;
 /// ... in this time, in s, stands.
 pub(super) const WINDOW: f64 = 2.0;
 
-/// What a person did of late.
+/// Recent positions of a person.
 #[derive(Clone, Copy, Debug)]
 struct Track {
     /// Place from which the person has moved less than [`MOVED`], in m.

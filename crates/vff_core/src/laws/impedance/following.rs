@@ -21,7 +21,7 @@ pub(crate) const BANKS: usize = 2;
 /// Distance of surfaces that touch or overlap, in m: the force needs a direction.
 const TOUCHING: f64 = 1e-9;
 
-/// What the repulsion is taken from.
+/// Source of the repulsion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sight {
     /// Readings of banks of three sonars.
@@ -41,14 +41,14 @@ pub(crate) struct Forces {
     pub repulsion: Vector2<f64>,
 }
 
-/// What does not change of the law.
+/// Constants of the law.
 #[derive(Clone, Debug)]
 pub(crate) struct FollowingLaw {
     /// Attraction to the source.
     pub attraction: Attraction,
     /// Repulsion of a collision vector.
     pub repulsion: Prepared,
-    /// What it is taken from.
+    /// Source of the repulsion.
     pub sight: Sight,
     /// Sensors in the axes of their bank.
     pub layout: BankLayout,
@@ -83,7 +83,7 @@ impl<L: Deref<Target = FollowingLaw>> Following<L> {
         }
     }
 
-    /// What its repulsion is taken from.
+    /// Source of its repulsion.
     #[inline]
     pub fn sight(&self) -> Sight {
         self.law.sight

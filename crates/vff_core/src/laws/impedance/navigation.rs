@@ -40,7 +40,7 @@ pub struct ImpedanceFamily {
 }
 
 impl ImpedanceFamily {
-    /// The same law with other gains; ratios of the reference coefficients stay.
+    /// Law with other gains; ratios of the reference coefficients stay.
     fn with(&self, gains: &[f64]) -> Result<Self> {
         let own = &self.impedance;
         let impedance = Impedance {

@@ -17,7 +17,7 @@ pub enum Speed {
 /// First-order filter of the change of a collision vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateFilter {
-    /// What is filtered.
+    /// Quantity that is filtered.
     pub speed: Speed,
     /// Time constant, in s; no filter at zero.
     pub time_constant: f64,

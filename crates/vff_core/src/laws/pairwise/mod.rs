@@ -14,7 +14,7 @@ use crate::world::scenario::{PlacedObstacle, Scenario};
 /// divide by the distance of the surfaces would pull the robot into an obstacle that it touches.
 const LEAST_GAP: f64 = 1e-3;
 
-/// What a law needs of one obstacle.
+/// One obstacle and its distance from the robot.
 #[derive(Clone, Copy, Debug)]
 pub struct Neighbor<'a, R: Real> {
     /// The obstacle.

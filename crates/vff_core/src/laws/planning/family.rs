@@ -276,7 +276,7 @@ impl PlannerFamily for FieldDStar {
 }
 
 impl RapidlyExploringRandomTree {
-    /// The same with other numbers.
+    /// Planner with other numbers.
     fn with_numbers(self, numbers: &[f64]) -> Result<Self> {
         Self {
             step: numbers[0],

@@ -29,12 +29,12 @@ impl<R: Real> HalfPlane<R> {
     }
 }
 
-/// What is wanted.
+/// Objective of a program.
 #[derive(Clone, Copy, Debug)]
 enum Wish {
-    /// As near as possible to a velocity.
+    /// Least distance from a velocity.
     Near(Vector),
-    /// As far as possible along a direction of length 1.
+    /// Greatest component along a direction of length 1.
     Along(Vector),
 }
 

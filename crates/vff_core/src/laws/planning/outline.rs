@@ -1,4 +1,4 @@
-//! What a robot must keep its center out of: an obstacle grown by the robot's radius.
+//! Outlines that the center of a robot keeps out of: obstacles grown by the robot's radius.
 
 use crate::lanes::{Planar, Real, Vector2};
 use crate::world::geometry::Body;
@@ -76,7 +76,7 @@ impl Outline {
         }
     }
 
-    /// The same outline after the robot has moved.
+    /// Outline relative to a robot that has moved.
     #[must_use]
     pub fn seen_after(mut self, way: Vector) -> Self {
         for corner in &mut self.corners {
@@ -85,7 +85,7 @@ impl Outline {
         self
     }
 
-    /// The same outline at another scale.
+    /// Outline at another scale.
     #[must_use]
     pub fn scaled(mut self, factor: f64) -> Self {
         for corner in &mut self.corners {

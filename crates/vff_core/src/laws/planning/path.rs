@@ -1,6 +1,6 @@
 //! From a path to a desired velocity.
 
-/// What came of planning at one control step.
+/// Result of planning at one control step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PathStatus {
     /// Nothing was planned yet, or the state of the robot is not finite.

@@ -1,4 +1,4 @@
-//! What needs no outline, for robots in lanes: discs, boundary points, the way to the goal.
+//! Half-planes without outlines, for robots in lanes: discs, boundary points, the way to the goal.
 
 use super::ReciprocalPlanner;
 use crate::lanes::{Planar, Real, Truth, Vector2};

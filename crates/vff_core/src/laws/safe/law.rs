@@ -408,7 +408,7 @@ impl SafeLaw {
         decision
     }
 
-    /// What yielding and a shield make of a wanted velocity.
+    /// Command of yielding and shield for a wanted velocity.
     fn judged(
         &self,
         guard: Option<&Guard>,

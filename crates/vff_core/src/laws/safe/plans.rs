@@ -21,7 +21,7 @@ impl Plans {
     /// The plan of a guide in a map, for a robot of a radius in m, from a start to a goal.
     ///
     /// # Errors
-    /// As [`Guide::plan`].
+    /// Errors of [`Guide::plan`].
     pub(super) fn get(
         &self,
         guide: &Guide,

@@ -1,4 +1,4 @@
-//! What safe navigation is made of, and what it makes of a scenario.
+//! Parts of safe navigation, and the scenario that its law works in.
 
 use crate::error::{Failure, Given, Result, not_negative, positive};
 use crate::laws::guide::{Guidance, Guide, TakeoverOptions};
@@ -15,7 +15,7 @@ use crate::world::scenario::Scenario;
 pub struct SafeNavigation {
     /// The law that wants a velocity.
     pub law: AnyLaw,
-    /// What stands and is known before.
+    /// Map of what stands, if it is known before.
     pub map: Option<StaticMap>,
     /// How ways are planned, if they are.
     pub guide: Option<Guide>,

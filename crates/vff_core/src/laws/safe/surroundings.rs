@@ -1,4 +1,4 @@
-//! What the law, the shield and yielding look at, each in its own words.
+//! Surroundings of the robot in the terms of the law, of the shield and of yielding.
 
 use crate::lanes::Vector2;
 use crate::laws::Situation;
@@ -27,7 +27,7 @@ enum Kind {
     Mapped,
 }
 
-/// What is known of an obstacle before the run.
+/// Properties of an obstacle that are known before the run.
 #[derive(Clone, Copy, Debug)]
 struct Known {
     kind: Kind,
@@ -35,7 +35,7 @@ struct Known {
     regions: Regions,
     /// Largest speed that the shield reckons with, in m/s.
     max_speed: f64,
-    /// Whether it never moves.
+    /// Set for an obstacle that never moves.
     stationary: bool,
     /// Distance of the centers at contact in m.
     touch: f64,
@@ -83,7 +83,7 @@ impl Surroundings {
         }
     }
 
-    /// What does not move.
+    /// Static obstacles.
     pub fn walls(&self) -> Walls<'_> {
         Walls {
             shapes: &self.shapes,

@@ -64,7 +64,7 @@ impl Course {
         }
     }
 
-    /// The same plan, begun at another time in s.
+    /// Plan that begins at another time in s.
     #[must_use]
     pub fn begun(self, begun: f64) -> Self {
         Self { begun, ..self }

@@ -68,7 +68,7 @@ impl Friendly {
     }
 }
 
-/// What the shield assumes.
+/// Assumptions of the shield.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shield {
     /// Largest speed of people in m/s; that of the scene where `None`.
@@ -135,12 +135,12 @@ impl Shield {
         Ok(self)
     }
 
-    /// What the radius of the robot grows by, in m.
+    /// Margin added to the radius of the robot, in m.
     fn around(&self) -> f64 {
         self.margin + self.position_tracking
     }
 
-    /// The same with twice the tracking errors.
+    /// Shield with twice the tracking errors.
     fn doubled(&self) -> Self {
         Self {
             position_tracking: 2.0 * self.position_tracking,
@@ -242,7 +242,7 @@ impl Limits {
     }
 }
 
-/// What the shield has done with a wanted velocity.
+/// Treatment of a wanted velocity by the shield.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
     /// Verified as it was.
@@ -279,7 +279,7 @@ pub struct Deviation {
 pub struct Decision {
     /// Velocity at the next sample in m/s.
     pub velocity: Vector2<f64>,
-    /// How it came about.
+    /// Treatment of the wanted velocity.
     pub status: Status,
 }
 
@@ -290,14 +290,14 @@ pub struct View<'a> {
     pub robot: RobotState<f64>,
     /// People.
     pub people: &'a [Person],
-    /// What does not move.
+    /// Static obstacles.
     pub walls: Walls<'a>,
 }
 
 /// The shield of one robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guard {
-    /// What it assumes.
+    /// Assumptions of the shield.
     pub shield: Shield,
     /// Limits of the robot, the radius with the margin and the tracking of the shield.
     pub limits: Limits,

@@ -1,4 +1,4 @@
-//! What the shield assumes of somebody: where he is, and what bounds his motion.
+//! Assumptions of the shield about a person: position, and bounds of the motion.
 
 use crate::lanes::Vector2;
 use crate::laws::shield::half_disc::{Look, half_disc_distance};

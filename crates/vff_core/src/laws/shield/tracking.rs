@@ -54,7 +54,7 @@ impl Tracking {
         self.relative + self.absolute / speed.max(f64::MIN_POSITIVE)
     }
 
-    /// The same with twice the differences.
+    /// Tracking errors of twice the size.
     #[must_use]
     pub fn doubled(&self) -> Self {
         Self {

@@ -26,7 +26,7 @@ const MOST_TURN: f64 = 1.5;
 /// The shield of a robot with two wheels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwistGuard {
-    /// What it assumes.
+    /// Assumptions of the shield.
     pub shield: Shield,
     /// Limits of the robot.
     pub limits: TwistLimits,
@@ -39,7 +39,7 @@ pub struct TwistView<'a> {
     pub robot: TwistState,
     /// People.
     pub people: &'a [Person],
-    /// What does not move.
+    /// Static obstacles.
     pub walls: Walls<'a>,
 }
 

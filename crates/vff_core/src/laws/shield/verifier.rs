@@ -34,7 +34,7 @@ impl<'a> Verifier<'a> {
         }
     }
 
-    /// The same with fewer people.
+    /// Verifier with fewer people.
     pub(super) fn among<'b>(&self, people: &'b [Person]) -> Verifier<'b>
     where
         'a: 'b,

@@ -1,4 +1,4 @@
-//! What does not move, as the shield sees it: rectangles that stand, and the map.
+//! Static obstacles of the shield: rectangles that stand, and the map.
 
 use crate::lanes::Vector2;
 use crate::world::map::StaticMap;

@@ -195,7 +195,7 @@ impl TreePlanner {
         })
     }
 
-    /// What came of the last step.
+    /// Result of the last step.
     #[must_use]
     pub fn status(&self) -> PathStatus {
         self.status

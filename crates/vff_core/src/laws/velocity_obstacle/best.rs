@@ -12,7 +12,7 @@ const SLACK: f64 = 1e-6;
 /// A line that anything reachable lies on.
 #[derive(Clone, Copy)]
 pub(super) struct Promising {
-    /// What its velocities are worth at most.
+    /// Upper bound of the value of its velocities.
     pub promise: f64,
     /// Its place among the lines.
     pub index: usize,
@@ -151,7 +151,7 @@ impl<'a> Best<'a> {
         }
     }
 
-    /// What a velocity is worth at most, without a look at the obstacles.
+    /// Upper bound of the value of a velocity, without a look at the obstacles.
     #[inline]
     fn at_most(&self, velocity: Vector) -> f64 {
         match self.planner.settings.selection {
@@ -185,7 +185,7 @@ impl<'a> Best<'a> {
         order.into_iter().map(|(_, place)| found[place]).collect()
     }
 
-    /// What the velocities between two are worth at most.
+    /// Upper bound of the value of the velocities between two.
     fn promise(&self, ends: [Vector; 2]) -> f64 {
         let largest = |value: &dyn Fn(Vector) -> f64| value(ends[0]).max(value(ends[1]));
         let exact = match self.planner.settings.selection {
@@ -225,7 +225,7 @@ impl<'a> Best<'a> {
     }
 }
 
-/// What velocities are worth.
+/// Value of velocities.
 impl VelocityObstaclePlanner {
     /// Speeds that differ by roundings have the same rank.
     fn rank(&self, speed: f64) -> f64 {
@@ -245,7 +245,7 @@ impl VelocityObstaclePlanner {
         left.max(0.0) / self.max_speed
     }
 
-    /// What a rule prefers: larger is better, then by the second number.
+    /// Preference of a rule: larger is better, then by the second number.
     pub(super) fn worth(
         &self,
         situation: &Situation<'_, f64>,

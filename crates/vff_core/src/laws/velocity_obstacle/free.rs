@@ -51,7 +51,7 @@ impl VelocityObstaclePlanner {
         self.free_of(0..self.cones.len(), situation, velocity)
     }
 
-    /// The same for a velocity that only some cones may forbid.
+    /// Test of a velocity that only some cones may forbid.
     #[inline]
     pub(super) fn free_of(
         &self,

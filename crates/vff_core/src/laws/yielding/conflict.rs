@@ -47,7 +47,7 @@ impl Passerby {
     }
 }
 
-/// Those who have a part in prices.
+/// People who have a part in prices.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Crowd<'a> {
     /// First those who can be met while a velocity is taken up.

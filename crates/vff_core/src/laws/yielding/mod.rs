@@ -41,7 +41,7 @@ const LOOKED_AT: usize = 2;
 /// More than what rounding adds to a distance, in m.
 const SLACK: f64 = 1e-6;
 
-/// What is nearer to a wall meets it, in m.
+/// Distance from a wall in m below which a robot meets it.
 const TOUCHING: f64 = 1e-3;
 
 /// How the robot gives way.
@@ -96,7 +96,7 @@ impl Yielding {
     }
 }
 
-/// What the robot wants, and where it is.
+/// Wanted velocity and state of the robot.
 #[derive(Clone, Copy, Debug)]
 pub struct Outlook<'a> {
     /// The robot.
@@ -109,7 +109,7 @@ pub struct Outlook<'a> {
     pub people: &'a [Passerby],
     /// Whether somebody who cannot be met has been left out.
     pub left_out: bool,
-    /// What does not move.
+    /// Static obstacles.
     pub walls: Walls<'a>,
 }
 
@@ -145,7 +145,7 @@ impl Yielder {
         })
     }
 
-    /// What it goes by.
+    /// Settings of yielding.
     #[must_use]
     pub fn settings(&self) -> &Yielding {
         &self.settings

@@ -30,7 +30,7 @@ const NEAREST: f64 = 1e-9;
 /// `range_min`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lidar {
-    /// What stands still.
+    /// Static map.
     pub map: StaticMap,
     /// Number of beams.
     pub beams: usize,
@@ -43,7 +43,7 @@ pub struct Lidar {
     pub range_max: f64,
     /// Standard deviation of a range in m.
     pub range_noise: f64,
-    /// Whether it sees the obstacles of the scene, too.
+    /// Set for a lidar that sees the obstacles of the scene, too.
     pub sees_obstacles: bool,
     /// Share `kappa` behind which points are left out.
     pub kappa: f64,
@@ -166,7 +166,7 @@ impl Lidar {
         }
     }
 
-    /// What the lidar shows for a noisy distance: it has no ranges beyond its ends.
+    /// Reading of the lidar for a noisy distance: it has no ranges beyond its ends.
     fn reading(&self, noisy: f64) -> f64 {
         if noisy < self.range_min {
             0.0

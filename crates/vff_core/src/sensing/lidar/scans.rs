@@ -86,7 +86,7 @@ impl Sensor for Scans {
 }
 
 impl Scans {
-    /// What a law can know of points.
+    /// Points as a law can know them.
     pub fn points(&self) -> &[PlacedObstacle] {
         &self.obstacles
     }

@@ -18,7 +18,7 @@ const CONTENT: u64 = u64::MAX;
 /// that is a minute.
 const MOST_SAMPLES: f64 = 2_097_152.0;
 
-/// What a burst sounds like.
+/// Waveform of a burst.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sound {
     /// Gaussian noise between two frequencies in Hz.
@@ -47,7 +47,7 @@ pub enum Sound {
 /// A sound of limited length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Burst {
-    /// What it sounds like.
+    /// Waveform.
     pub sound: Sound,
     /// Length, in s.
     pub duration: f64,

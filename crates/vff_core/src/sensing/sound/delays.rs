@@ -11,7 +11,7 @@ const MOST_COMPARED: usize = 1 << 22;
 /// How delays are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DelayOptions {
-    /// What is compared.
+    /// Signals that are compared.
     pub method: Method,
     /// Whether the peak is placed between samples, by a parabola through three values; whole samples
     /// as in (6) otherwise.

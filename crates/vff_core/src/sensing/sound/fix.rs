@@ -86,7 +86,7 @@ pub struct Fix {
     pub covariance: Covariance,
     /// `c (t_1 - 2 t_2 + t_3)`, in m.
     pub curvature: f64,
-    /// How it came out.
+    /// Status of the localization.
     pub status: FixStatus,
 }
 

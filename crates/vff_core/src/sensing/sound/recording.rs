@@ -1,4 +1,4 @@
-//! What three microphones and a converter make of a burst.
+//! Recording of a burst by three microphones and a converter.
 
 use super::Interrupted;
 use super::burst::{Signal, doppler_factor};

@@ -10,7 +10,7 @@ use crate::world::map::index::Bounds;
 /// Most boundary points that are told of.
 pub const MOST_POINTS: usize = 8;
 
-/// What lies behind a boundary point by less than this counts as behind it, in m.
+/// Tolerance in m within which a point counts as behind a boundary point.
 const SPARE: f64 = 1e-9;
 
 /// Segments within reach that are kept in mind from one boundary point to the next; among more of
@@ -61,7 +61,7 @@ impl Beyond {
     }
 }
 
-/// What is left of a capsule.
+/// Remaining part of a capsule.
 #[derive(Clone, Copy, Debug, Default)]
 struct Piece {
     /// Index of the capsule.
@@ -239,7 +239,7 @@ impl StaticMap {
         }
     }
 
-    /// The same with a search through the index for every point.
+    /// Boundary points by a search through the index for every point.
     fn boundary_points_among_many(
         &self,
         position: Vector2<f64>,

@@ -14,7 +14,7 @@ pub struct Capsule {
     pub to: Vector2<f64>,
     /// Radius in m.
     pub radius: f64,
-    /// Whether it is an edge of a filled outline, which lies to its left.
+    /// Set for an edge of a filled outline, which lies to its left.
     pub filled: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What stands still: walls, filled polygons, discs and occupancy grids as one map.
+//! Static maps: walls, filled polygons, discs and occupancy grids as one map.
 //!
 //! Everything becomes segments with a radius, and filled interiors. Distances are exact, and zero
 //! inside. A map is shared by reference count, so a copy costs nothing.
@@ -43,7 +43,7 @@ struct Parts {
     grids: Vec<Cells>,
 }
 
-/// What a map is made of.
+/// Contents of a map.
 #[derive(Clone, Debug, Default)]
 pub struct MapShapes {
     capsules: Vec<Capsule>,
@@ -175,7 +175,7 @@ impl Default for StaticMap {
 }
 
 impl StaticMap {
-    /// Whether it is the same object as another one, which is quicker told than whether it is equal.
+    /// Identity of two maps, which is quicker told than their equality.
     pub(crate) fn is(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.parts, &other.parts)
     }

@@ -7,7 +7,7 @@ use crate::world::map::boundary::Beyond;
 use crate::world::map::index::Bounds;
 use crate::world::shape::{PlacedShape, Shape};
 
-/// What reaches out of the map by less than this lies in it, in m: typed numbers are rounded.
+/// Least overhang in m that lies outside of the map: typed numbers are rounded.
 const ROUNDING: f64 = 1e-9;
 
 impl StaticMap {
@@ -17,7 +17,7 @@ impl StaticMap {
         self.clearance_up_to(point, f64::INFINITY)
     }
 
-    /// The same, where all that is at least `most` m away counts as that far.
+    /// Clearance of a point in m, where all that is at least `most` m away counts as that far.
     #[must_use]
     pub fn clearance_up_to(&self, point: Vector2<f64>, most: f64) -> f64 {
         if self.inside(point) {
@@ -105,7 +105,7 @@ impl StaticMap {
         !self.inside(from) && self.free_segment_keeps(from, to, least)
     }
 
-    /// The same from a point that is known to be outside of everything.
+    /// Distance along a ray from a point that is known to be outside of everything.
     pub(crate) fn free_segment_keeps(
         &self,
         from: Vector2<f64>,
@@ -163,7 +163,7 @@ impl StaticMap {
         self.ray_up_to(from, direction, f64::INFINITY)
     }
 
-    /// The same up to a range in m, beyond which nothing is hit.
+    /// Distance along a ray up to a range in m, beyond which nothing is hit.
     #[must_use]
     pub fn ray_up_to(&self, from: Vector2<f64>, direction: Vector2<f64>, range: f64) -> f64 {
         if self.inside(from) {
