@@ -59,6 +59,15 @@ def _doubled(x: Any) -> dict[str, Any]:
 
 # Arguments without a default.
 REQUIRED: dict[Callable[..., Any], Right] = {
+    zones.Conditions: {
+        "footprint": 0.22,
+        "max_speed": 0.5,
+        "max_turn_rate": 1.0,
+        "deceleration": 2.5,
+        "reaction_time": 0.15,
+        "error": 0.02,
+        "beam_step": 0.01,
+    },
     arms.Arm: {"urdf": arms.Arm.example().urdf},
     arms.Payload: {"link": "tool", "mass": 1.0},
     contact.Avalle: {"plateau": 4e4, "modulus": 1e5, "falloff": 0.1, "densification": 1e3, "exponent": 3.0},

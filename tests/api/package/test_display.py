@@ -12,7 +12,7 @@ import pytest
 from api.documented_units import documented_units
 from api.fuzzing import CALLS
 from fuzz.constructors import NO_CONSTRUCTORS, public_classes
-from hrsafety import _display, impact, plausibility, sweep
+from hrsafety import _display, impact, plausibility, ros, sweep
 from hrsafety import navigation as nav
 from hrsafety._display import fields_with_units, shown_html
 from hrsafety.plausibility import ResultWarning
@@ -31,6 +31,8 @@ NO_RESULTS = {
     nav.maps.Wall: "a kind of wall, for type checkers",
     plausibility.Range: "a row of the table of ranges",
     ResultWarning: "a line of the results that carry it",
+    ros.Bridge: "a node",
+    **dict.fromkeys((ros.Publisher, ros.Quality, ros.Leg, ros.Record), "parts of a node"),
 }
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from hrsafety._arguments import instance
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.judging.judgement import Judgement, Moment
-from hrsafety.plotting import floor, style, walls
+from hrsafety.plotting import floor, notes, style, walls
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -26,7 +26,7 @@ MOST_PEOPLE = 40
 """So many people are drawn, those who came nearest."""
 
 
-@style.styled
+@notes.picture
 def judged_way(judgement: Judgement) -> Figure:
     """Draw the way of a judged robot, the people who came nearest, contacts, and what is not judged.
 
@@ -80,7 +80,7 @@ def judged_way(judgement: Judgement) -> Figure:
     return floor.finish(figure, handles, runs=[judgement])
 
 
-@style.styled
+@notes.picture
 def worst_moments(judgement: Judgement) -> Figure:
     """Draw the worst moments of a judged robot with the ways of 2 s before and after them.
 
