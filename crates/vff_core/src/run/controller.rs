@@ -45,7 +45,7 @@ pub struct Controller {
     latency: f64,
     /// How old what is known of each body can be, in s.
     ages: Vec<f64>,
-    /// What a clock that was set back for good lacks, in s.
+    /// Time that a clock lacks that was set back for good, in s.
     lacking: f64,
     last: Option<Last>,
 }
@@ -96,7 +96,7 @@ impl Controller {
         })
     }
 
-    /// What the robot is to do, from what is known by now.
+    /// Order to the robot, from the measurements so far.
     ///
     /// # Errors
     /// A value is not finite, an obstacle does not exist or stands, a measurement is of a time to come, a
@@ -317,7 +317,7 @@ impl Controller {
         })
     }
 
-    /// What a robot without a shield does: it takes up what the law asks for, and brakes if nothing follows.
+    /// Motion of a robot without a shield: it takes up the command of the law, and brakes if nothing follows.
     fn unverified(&self, time: f64, robot: &RobotState<f64>, force: Vector2<f64>) -> Course {
         let (point, period) = (&self.scenario.robot, self.scenario.rules.control_period);
         let asked = point.acceleration(force) * period;
@@ -386,7 +386,7 @@ impl Controller {
         order
     }
 
-    /// What is left of a plan, from a time of it in s on; the robot rests where there is none.
+    /// Rest of a plan, from a time of it in s on; the robot rests where there is none.
     fn rest(&self, course: Option<(Course, f64)>) -> Order {
         let zero = Vector2::zeros();
         let velocities = course.map_or([zero; 2], |(course, since)| {

@@ -13,7 +13,7 @@ use crate::run::options::Clock;
 ///
 /// Times are those of the clock after a number of motion steps.
 pub trait Parts {
-    /// What is asked for in a control period; its default is the law of the episode.
+    /// Request in a control period; its default is the law of the episode.
     type Request: Default;
     /// Control periods between two questions whether to stop.
     const ATTENTION: usize = 1;
@@ -55,7 +55,7 @@ pub trait Parts {
 
 /// A run that is under way.
 pub struct Episode<P> {
-    /// What it consists of.
+    /// Parts of the episode.
     pub(crate) parts: P,
     clock: Clock,
     /// Motion steps so far.
@@ -120,7 +120,7 @@ impl<P: Parts> Episode<P> {
     /// The first part of a control period: decides; `false` if there is nothing to do after it.
     ///
     /// # Errors
-    /// As [`Self::period`].
+    /// Errors of [`Self::period`].
     #[inline]
     pub(crate) fn begin(
         &mut self,
@@ -166,7 +166,7 @@ impl<P: Parts> Episode<P> {
     /// Runs to the end under the law.
     ///
     /// # Errors
-    /// As [`Self::period`].
+    /// Errors of [`Self::period`].
     #[inline]
     pub(crate) fn run(mut self, interrupted: Interrupted<'_>) -> Result<Self> {
         self.finish(interrupted)?;
@@ -176,7 +176,7 @@ impl<P: Parts> Episode<P> {
     /// Runs to the end under the law.
     ///
     /// # Errors
-    /// As [`Self::period`].
+    /// Errors of [`Self::period`].
     #[inline]
     pub(crate) fn finish(&mut self, interrupted: Interrupted<'_>) -> Result<()> {
         while !self.finished() {

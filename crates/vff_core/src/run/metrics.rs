@@ -68,7 +68,7 @@ pub fn clearances(scenario: &Scenario, run: &RunSummary) -> Vec<f64> {
         .collect()
 }
 
-/// What the criterion takes from a run without obstacles.
+/// Numbers of a run without obstacles for the criterion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nominal {
     /// `T*` in s; NaN without arrival.
@@ -116,7 +116,7 @@ pub fn performance(
     score(scenario, run_measures, distances, nominal, weights)
 }
 
-/// What the criterion takes from a run besides its distances.
+/// Numbers of a run for the criterion, besides its distances.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Measures {
     pub contact: bool,
@@ -136,7 +136,7 @@ impl From<&RunTotals> for Measures {
     }
 }
 
-/// As [`performance`], from least distances to the obstacles in their order.
+/// Score of a run from its least distances to the obstacles in their order.
 #[inline(always)]
 pub(crate) fn score(
     scenario: &Scenario,

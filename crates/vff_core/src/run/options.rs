@@ -29,7 +29,7 @@ pub struct Options {
     pub hold: bool,
     /// End the run at the first contact.
     pub stop_on_contact: bool,
-    /// What a recorded run keeps.
+    /// Rows and columns of a recorded run.
     pub kept: Kept,
 }
 

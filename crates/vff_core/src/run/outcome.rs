@@ -1,4 +1,4 @@
-//! What is left of a run.
+//! Summary of a run.
 
 /// A robot faster than this at a contact was moving, in m/s.
 pub const CONTACT_SPEED: f64 = 0.05;
@@ -42,7 +42,7 @@ impl Outcome {
     }
 }
 
-/// What is left of a run in the same few numbers for every scenario.
+/// Totals of a run, the same few numbers for every scenario.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunTotals {
     /// How it ended.
@@ -98,7 +98,7 @@ pub struct ContactCounts {
     pub standing: u32,
     /// By its own fault; every contact with a map counts.
     pub at_fault: u32,
-    /// Those of all these that are maps: 1 or 0.
+    /// Contacts with maps among all these: 1 or 0.
     pub walls: u32,
     /// Obstacles that appeared in the scene where the robot was, apart from all these.
     pub apart: u32,
@@ -141,7 +141,7 @@ impl ContactCounts {
     }
 }
 
-/// What is left of a run.
+/// Summary of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunSummary {
     /// How it ended.
@@ -171,7 +171,7 @@ pub struct RunSummary {
 }
 
 impl RunSummary {
-    /// The same in the numbers that every scenario has.
+    /// Totals of the run, which every scenario has.
     #[must_use]
     pub fn totals(&self) -> RunTotals {
         let obstacles = self.contact.iter().flatten().copied();

@@ -42,7 +42,7 @@ pub enum Instructions {
     /// The widest vectors that the processor has.
     #[default]
     Widest,
-    /// Those that every processor of its family has.
+    /// Instructions that every processor of its family has.
     Baseline,
 }
 

@@ -1,4 +1,4 @@
-//! What is kept of a run while it lasts.
+//! Records of a run while it lasts.
 
 use crate::lanes::{Planar, Real, Vector2};
 use crate::laws::Command;
@@ -8,7 +8,7 @@ use crate::world::scenario::Scenario;
 
 /// Listens to a run.
 pub trait Recorder<R: Real> {
-    /// Whether it wants to know the state at every step.
+    /// Set for a recorder of the state at every step.
     const EVERY_STEP: bool = false;
     /// A force was computed; `running`: for whom it counts.
     fn sample(&mut self, _command: &Command<R>, _running: R::Mask) {}

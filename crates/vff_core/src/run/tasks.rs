@@ -22,14 +22,14 @@ const FEWEST_OF_TASK: usize = 32;
 /// Most runs of a task one after the other.
 const MOST_IN_TURN: usize = 16;
 
-/// What was kept of many runs.
+/// Results of many runs.
 pub(crate) struct MadeRuns<T> {
     done: Vec<Done<T>>,
     /// Task of each run, and its number there.
     places: Vec<(usize, usize)>,
 }
 
-/// What was kept of the runs of a task in its order, and their distances to the obstacles.
+/// Results of the runs of a task in its order, and their distances to the obstacles.
 struct Done<T> {
     kept: Vec<T>,
     distances: Vec<f64>,
@@ -76,7 +76,7 @@ impl<T: Copy + Send + Sync> MadeRuns<T> {
         Ok(Self { done, places })
     }
 
-    /// What was kept of a run, and its least distances to the obstacles.
+    /// Result of a run, and its least distances to the obstacles.
     pub fn of(&self, run: usize) -> (&T, &[f64]) {
         let (task, place) = self.places[run];
         let done = &self.done[task];

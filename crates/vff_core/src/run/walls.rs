@@ -26,7 +26,7 @@ impl Maps {
         maps
     }
 
-    /// The same with what sensors find.
+    /// Maps of a scenario, a law and sensors.
     pub fn of(scenario: &Scenario, known: Option<&StaticMap>, sensors: &[SensorOptions]) -> Self {
         let mut maps = Self::of_law(scenario, known);
         for sensor in sensors {
@@ -63,7 +63,7 @@ impl Maps {
 /// Numbers of a robot before it is looked at for the first time: no contact, and no room to spare.
 const UNSEEN: [f64; 6] = [f64::INFINITY, f64::NAN, f64::NAN, -1.0, 0.0, 0.0];
 
-/// What is counted of the walls around the robots of one lane group.
+/// Clearance of the robots of one lane group from walls, and contacts.
 #[derive(Clone, Debug)]
 pub(crate) struct Walls<R> {
     maps: Maps,

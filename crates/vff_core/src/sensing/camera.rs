@@ -18,7 +18,7 @@ const FOLD: f64 = -4.0 / 27.0;
 /// Steps after which a bracket has no room left for a double number.
 const MAX_STEPS: usize = 100;
 
-/// What happens between the pinhole and the picture.
+/// Distortion between the pinhole and the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lens {
     /// Focal length f in m.

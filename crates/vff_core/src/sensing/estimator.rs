@@ -101,7 +101,7 @@ fn with_square(name: &str, value: f64) -> Result<f64> {
     }
 }
 
-/// What an estimator says at the time of a measurement.
+/// Estimate at the time of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// Position in m.
@@ -136,7 +136,7 @@ impl Track {
         }
     }
 
-    /// What is known; none before the first measurement.
+    /// Last estimate; none before the first measurement.
     #[must_use]
     pub fn estimate(&self) -> Option<Estimate> {
         self.last

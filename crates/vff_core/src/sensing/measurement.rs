@@ -55,7 +55,7 @@ impl Measurement {
         })
     }
 
-    /// The same measurement of the positions of some time ago.
+    /// Measurement of the positions of some time ago.
     ///
     /// # Errors
     /// The latency is negative, not finite or above a minute.

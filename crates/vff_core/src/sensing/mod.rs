@@ -1,4 +1,4 @@
-//! What a robot knows: sensors with noise and latency, cameras, sonar, sound; estimators.
+//! Sensors with noise and latency, cameras, sonar, sound; estimators.
 
 /// Sensors that ride on a robot and are made by name, by their files; [`options`] makes one kind of them.
 macro_rules! robot_sensors {

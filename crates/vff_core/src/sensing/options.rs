@@ -72,7 +72,7 @@ pub fn sensor_named(name: &str, given: &dyn Arguments) -> Result<SensorOptions> 
 }
 
 impl SensorOptions {
-    /// What stands around it beside the obstacles of a scenario.
+    /// Map around the sensor, beside the obstacles of a scenario.
     pub(crate) fn map(&self) -> Option<&StaticMap> {
         if let Self::Lidar(lidar) = self {
             Some(&lidar.map)
@@ -111,7 +111,7 @@ impl SensorOptions {
         }
     }
 
-    /// Whether it is a camera, which measures in place of the scenario.
+    /// Set for a camera, which measures in place of the scenario.
     #[must_use]
     pub fn is_camera(&self) -> bool {
         !matches!(self.place(), Place::OnRobot(_))

@@ -118,7 +118,7 @@ struct Watched {
     last_position: Option<[f64; 2]>,
 }
 
-/// What the controller sees of a scene through noise and latency.
+/// Scene as the controller sees it through noise and latency.
 #[derive(Clone, Debug)]
 pub struct SampledScene {
     period: f64,
@@ -128,7 +128,7 @@ pub struct SampledScene {
 }
 
 impl SampledScene {
-    /// What the sensors of a scenario see, or `None` if everything is known exactly.
+    /// Sensors of a scenario, or `None` if everything is known exactly.
     #[must_use]
     pub fn new(scenario: &Scenario) -> Option<Self> {
         let measurement = scenario.measurement?;

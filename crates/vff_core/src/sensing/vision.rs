@@ -147,7 +147,7 @@ impl Vision {
     }
 }
 
-/// What one frame gave.
+/// Measurement of one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exposure {
     /// Time of the exposure in s.
@@ -156,7 +156,7 @@ pub struct Exposure {
     pub measured: Option<[f64; 2]>,
 }
 
-/// What is known from a time on.
+/// Estimate that is known from a time on.
 #[derive(Clone, Copy, Debug)]
 struct Knowledge {
     from: f64,
@@ -244,7 +244,7 @@ impl VisionSensor {
         self.forget_before(time);
     }
 
-    /// What is known at a time in s, from frames whose delay has passed; none before the first.
+    /// Estimate at a time in s, from frames whose delay has passed; none before the first.
     #[must_use]
     pub fn estimate(&self, time: f64) -> Option<Estimate> {
         let slack = ROUNDING * self.vision.period;

@@ -7,10 +7,10 @@ use crate::error::{Result, positive};
 /// Axes in which the position error stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ErrorFrame {
-    /// Those of the robot: `x_e` ahead, `y_e` to the left, as Klancar and Skrjanc have them.
+    /// Axes of the robot: `x_e` ahead, `y_e` to the left, as Klancar and Skrjanc have them.
     #[default]
     Robot,
-    /// Those of the world, as (7.2.2) is printed.
+    /// Axes of the world, as (7.2.2) is printed.
     World,
 }
 

@@ -120,7 +120,7 @@ impl TorqueSteering {
         })
     }
 
-    /// As `command`, for a force that comes from elsewhere.
+    /// Command for a force that comes from elsewhere.
     ///
     /// # Errors
     /// The force is not finite.

@@ -119,7 +119,7 @@ impl TrackRun {
     }
 }
 
-/// What a batch keeps of a run. The error is the distance from the reference.
+/// Row of a batch. The error is the distance from the reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackRow {
     /// Error at the end in m.
@@ -166,7 +166,7 @@ impl Instant<'_> {
     }
 }
 
-/// What is followed, how and by whom.
+/// Reference, tracker and robot of a run.
 struct Course<'a> {
     tracking: &'a Tracking,
     limits: &'a DifferentialLimits,

@@ -6,7 +6,7 @@ use super::drive::{Integration, Twist};
 use crate::error::{Result, not_negative, positive};
 use crate::world::frame::Frame;
 
-/// What becomes of the virtual velocity between two steps.
+/// Rule for the virtual velocity between two steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum VelocityRule {
     /// It is integrated on.

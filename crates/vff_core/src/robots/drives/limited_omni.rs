@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 use crate::robots::drives::{Drive, Moved};
 use crate::world::frame::Frame;
 
-/// What it is told.
+/// Order to the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Course {
     /// Keep the course over ground.

@@ -88,14 +88,14 @@ pub(crate) struct Fix {
     pub heading: Option<f64>,
 }
 
-/// What a robot is told at a sample.
+/// Order to a robot at a sample.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Order {
     /// Commanded force in N.
     pub force: Vector2<f64>,
     /// The pose as measured now, `None` where it is known exactly.
     pub fix: Option<Fix>,
-    /// Whether it is outside every active region, as far as it knows.
+    /// Set where the robot is outside every active region, as far as it knows.
     pub clear: bool,
 }
 
@@ -112,11 +112,11 @@ pub(crate) struct Moved {
     pub turn_rate: f64,
 }
 
-/// What turns what a law asks for into motion, one motion step after the other.
+/// Drive that turns the orders of a law into motion, one motion step after the other.
 pub(crate) trait Drive {
-    /// What it is told at a sample.
+    /// Type of its orders.
     type Order;
-    /// What is known at the end of a motion step.
+    /// Type of its readings at the end of a motion step.
     type Reading;
     /// Holds an order until the next sample.
     fn hold(&mut self, order: &Self::Order);
@@ -128,7 +128,7 @@ pub(crate) trait Drive {
 pub(crate) trait MotorDrive: Drive<Order = Order, Reading = Reading> + Send {
     /// Number of its wheels.
     fn wheels(&self) -> usize;
-    /// Whether its energy is that of ideal wheels on a point mass.
+    /// True where its energy is that of ideal wheels on a point mass.
     fn is_ideal(&self) -> bool {
         false
     }

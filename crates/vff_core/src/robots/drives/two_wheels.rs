@@ -59,7 +59,7 @@ pub(super) const DRIVEN: usize = 2;
 /// Wheel speeds below this stand for standstill, so that friction has no sign, in rad/s.
 const WHEEL_STANDSTILL: f64 = 1e-9;
 
-/// What turns an order into a twist.
+/// Steering that turns an order into a twist.
 #[derive(Clone, Debug)]
 enum Steering {
     /// Follows the point mass.
@@ -87,7 +87,7 @@ pub(crate) struct TwoWheels {
     pose: Pose,
     /// The pose as the robot knows it.
     known: Pose,
-    /// Whether it knows it exactly.
+    /// Set where the pose is known exactly.
     exact: bool,
     /// Commanded twist, within all limits.
     twist: Twist,

@@ -5,7 +5,7 @@ use super::drive::{WheelDrive, read_with};
 use super::dynamics::{HeldStep, WheelState};
 use super::reference::WheelWish;
 
-/// What happened in one wheel period.
+/// Sample of one wheel period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WheelSample {
     /// Angle at the end of the period, in rad.

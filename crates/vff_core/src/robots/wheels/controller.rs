@@ -65,7 +65,7 @@ impl WheelController {
     }
 }
 
-/// What a controller knows of its wheel.
+/// Angle and speed of a wheel as its controller knows them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Known {
     pub(super) angle: f64,

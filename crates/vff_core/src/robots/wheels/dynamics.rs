@@ -89,7 +89,7 @@ impl WheelDynamics {
     }
 }
 
-/// What the solution needs for one duration, computed once.
+/// Coefficients of the solution for one duration, computed once.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HeldStep {
     duration: f64,

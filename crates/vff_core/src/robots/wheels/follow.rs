@@ -31,7 +31,7 @@ pub struct WheelHistory {
     pub ideal_current: Vec<f64>,
     /// Loss in the winding `R_a sum i^2 T`, in J.
     pub energy: f64,
-    /// The same of a perfect follower, in J.
+    /// Energy of a perfect follower, in J.
     pub ideal_energy: f64,
 }
 

@@ -1,6 +1,6 @@
 //! Wanted motion of a wheel.
 
-/// What a wheel should do now.
+/// Reference of a wheel at an instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WheelWish {
     /// Angle in rad.

@@ -1,4 +1,4 @@
-//! What a controller makes of the times that it is told: clocks are set back.
+//! Times that a controller is told, from clocks that are set back.
 //!
 //! A clock that is set back by less than what went by since the last update looks as if less time had gone by. A robot
 //! that moves tells better: its place and velocity are those of its plan at the time that really is. While it rests
@@ -30,14 +30,14 @@ pub(super) struct Last {
     pub time: f64,
     /// How long after the one before it, in s.
     pub spacing: f64,
-    /// What the clock showed at the last one of any kind, in s.
+    /// Time that the clock showed at the last update of any kind, in s.
     pub clock: f64,
-    /// What it showed when it was set back last, in s.
+    /// Time that it showed when it was set back last, in s.
     pub restarted: f64,
-    /// Whether it was seen to be set back since the last one that counted.
+    /// Set where it was seen to be set back since the last update that counted.
     pub set_back: bool,
     pub order: Order,
-    /// What the shield assumes, if there is one.
+    /// Assumptions of the shield, if there is one.
     pub shield: Option<Shield>,
 }
 
@@ -64,7 +64,7 @@ pub(super) struct Held {
     pub set_back: Option<f64>,
 }
 
-/// What becomes of an update.
+/// Treatment of an update.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Reckoned {
     /// It counts, and so much more time than the clock tells may have gone by since the last one that did, in s; the
@@ -78,7 +78,7 @@ pub(super) enum Reckoned {
 }
 
 impl Controller {
-    /// What becomes of an update at a time in s.
+    /// Treatment of an update at a time in s.
     pub(super) fn reckon(&self, now: f64, robot: Option<RobotState<f64>>) -> Reckoned {
         let Some(last) = &self.last else {
             return Reckoned::Counts(0.0, None);

@@ -1,4 +1,4 @@
-//! What a controller is told, and what it orders.
+//! Inputs of a controller, and its orders.
 
 use crate::lanes::Vector2;
 use crate::laws::shield::{Course, Deviation, Status};
@@ -18,7 +18,7 @@ pub struct Sighting {
     pub time: Option<f64>,
 }
 
-/// What is told to a controller at an instant.
+/// Input of a controller at an instant.
 #[derive(Clone, Copy, Debug)]
 pub struct Observation<'a> {
     /// When, in s.
@@ -35,7 +35,7 @@ pub struct Observation<'a> {
     pub scan: Option<&'a [f64]>,
 }
 
-/// What became of an update.
+/// Result of an update.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Timing {
     /// It came in time.
@@ -62,24 +62,24 @@ impl Timing {
     }
 }
 
-/// What a robot is to do until the next update.
+/// Order to a robot until the next update.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Order {
     /// Force in N.
     pub force: Vector2<f64>,
     /// Velocity at the next sample in m/s.
     pub velocity: Vector2<f64>,
-    /// The same for two wheels.
+    /// Order for two wheels.
     pub twist: Option<Twist>,
     /// The plan that the robot executes, and its time at the update, in s.
     pub course: Option<(Course, f64)>,
     /// How far the robot was measured to be from the plan before, if that refutes what the shield assumes.
     pub off_plan: Option<Deviation>,
-    /// What the shield has done, if there is one.
+    /// Decision of the shield, if there is one.
     pub status: Option<Status>,
     /// Whether the law was taken over from.
     pub taken_over: bool,
-    /// What became of the update.
+    /// Result of the update.
     pub timing: Timing,
     /// Whether the robot is within the arrival tolerance of the goal.
     pub arrived: bool,

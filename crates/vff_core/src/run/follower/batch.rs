@@ -42,7 +42,7 @@ pub fn run_batch(
 /// obstacle.
 ///
 /// # Errors
-/// As [`run_batch`]; or so few layouts of so many touch that they are not worth waiting for.
+/// Errors of [`run_batch`]; or so few layouts of so many touch that they are not worth waiting for.
 pub fn touching_layouts(
     settings: &Settings,
     layouts: &Layouts,

@@ -142,7 +142,7 @@ impl Follower {
         Ok(ended.parts.outcome())
     }
 
-    /// What does not change of its law.
+    /// Constants of its law.
     pub(crate) fn law(&self) -> &Arc<FollowingLaw> {
         &self.law
     }
@@ -255,7 +255,7 @@ impl<S: Deref<Target = FollowerScene>> Place<S> {
         }
     }
 
-    /// What there is to sense.
+    /// Surroundings that are sensed.
     #[inline]
     fn truth(&self, time: f64) -> Truth<'_> {
         Truth {
@@ -278,7 +278,7 @@ struct Senses {
 }
 
 impl Senses {
-    /// What they tell where the robot is, for a velocity in m/s that the law wants.
+    /// Readings where the robot is, for a velocity in m/s that the law wants.
     #[inline]
     fn percept<S>(&self, place: &Place<S>, wanted: Vector2<f64>) -> Percept<'_> {
         Percept {
@@ -292,7 +292,7 @@ impl Senses {
     }
 }
 
-/// What a run of the follower consists of.
+/// Parts of a run of the follower.
 pub(crate) struct FollowerParts<L, S, O> {
     place: Place<S>,
     senses: Senses,
@@ -317,7 +317,7 @@ impl<L, S, O> FollowerParts<L, S, O> {
         }
     }
 
-    /// What the law decides by.
+    /// Readings that the law decides by.
     #[inline]
     pub(crate) fn percept(&self) -> Percept<'_> {
         self.senses.percept(&self.place, self.drive.velocity())

@@ -9,7 +9,7 @@ use numeric::random::Stream;
 /// Stream of a seed that draws the layout.
 const LAYOUT: u64 = 0;
 
-/// What stands or moves in the way.
+/// Obstacles in the way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Setting {
     /// A moving source and nothing else: experiment 1.
@@ -25,7 +25,7 @@ pub enum Setting {
 /// How layouts are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layouts {
-    /// What is in the way.
+    /// Obstacles in the way.
     pub setting: Setting,
     /// Slowest and fastest lateral speed of the moving boxes, in m/s.
     pub speeds: [f64; 2],

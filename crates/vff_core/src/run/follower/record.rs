@@ -116,7 +116,7 @@ impl FollowerSteps {
         Ok(())
     }
 
-    /// What the law would do next stands in the last sample.
+    /// The next command of the law stands in the last sample.
     fn last_sample(&mut self, interrupted: Interrupted<'_>) -> Result<()> {
         let time = self.0.stepped();
         self.0.parts.decide(time, None, interrupted).map(|_| ())
@@ -125,7 +125,7 @@ impl FollowerSteps {
     /// Runs to the end under the law.
     ///
     /// # Errors
-    /// As [`Self::period`].
+    /// Errors of [`Self::period`].
     pub fn run(&mut self, interrupted: Interrupted<'_>) -> Result<()> {
         if self.0.finished() {
             return Ok(());
@@ -146,7 +146,7 @@ impl FollowerSteps {
         self.0.stepped()
     }
 
-    /// What the law decides by now.
+    /// Readings that the law decides by.
     #[must_use]
     pub fn percept(&self) -> Percept<'_> {
         self.0.parts.percept()

@@ -1,4 +1,4 @@
-//! What is shown of a run of the follower at every sample.
+//! Sample of a run of the follower.
 
 use nalgebra::Vector2;
 

@@ -1,4 +1,4 @@
-//! What is around the follower: obstacles and the leader, as functions of time.
+//! Surroundings of the follower: obstacles and the leader, as functions of time.
 
 use crate::error::{Result, finite_pair, positive};
 use crate::world::motion::Motion;

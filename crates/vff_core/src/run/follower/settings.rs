@@ -31,7 +31,7 @@ pub struct Sensors {
     pub ranging: Ranging,
     /// Which sensors fire when.
     pub firing: Firing,
-    /// The same three sensors once more, turned by half a turn about the center.
+    /// Three more sensors, turned by half a turn about the center.
     pub rear: bool,
 }
 
@@ -109,7 +109,7 @@ pub struct Settings {
     pub impedance: Impedance,
     /// From readings to forces.
     pub bank: BankOptions,
-    /// What becomes of the virtual velocity.
+    /// Rule for the virtual velocity.
     pub velocity: VelocityRule,
     /// Control period, in s.
     pub step: f64,

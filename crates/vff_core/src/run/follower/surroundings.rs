@@ -16,13 +16,13 @@ pub struct Touch {
     pub bearing: f64,
 }
 
-/// What is known of the motion of an obstacle.
+/// Estimated motion of an obstacle.
 struct Track {
     /// Piece of the motion that was the last one.
     cursor: usize,
     /// When it stands for good, in s.
     stands_from: f64,
-    /// Whether it does.
+    /// Set for an obstacle that moves.
     stands: bool,
     /// No point of it is farther from its center, in m.
     extent: f64,
@@ -35,7 +35,7 @@ pub(super) struct Surroundings {
     /// How each of them moves.
     tracks: Vec<Track>,
     leader_cursor: usize,
-    /// Those that a sensor may see.
+    /// Obstacles that a sensor may see.
     pub near: Vec<PlacedShape>,
     /// Squared distance of the nearest one from the center, in m^2, if it is less than ever before or
     /// within the horizon.

@@ -31,7 +31,7 @@ type Enter<'a, R, L> = &'a mut dyn FnMut(&mut Option<Box<L>>, usize, &[R], &Scen
 pub(crate) struct LawInLanes<'a, R, L: ?Sized> {
     /// Makes it ready for a run.
     pub enter: Enter<'a, R, L>,
-    /// Whether it is told of all obstacles.
+    /// True for a law that is told of all obstacles.
     pub told_of_all: fn(&L) -> bool,
 }
 

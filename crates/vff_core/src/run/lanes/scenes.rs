@@ -318,7 +318,7 @@ impl<R: Real> FeltObstacles<R> {
         }
     }
 
-    /// Those in whose active regions the robots of some lanes are.
+    /// Discs in whose active regions the robots of some lanes are.
     #[inline(always)]
     pub fn among(
         &mut self,

@@ -32,7 +32,7 @@ use crate::world::geometry::Body;
 use crate::world::motion::BodyState;
 use crate::world::scenario::Scenario;
 
-/// What came of an episode.
+/// Result of an episode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Encounter {
     /// Least distance of the surfaces in m while the robot moved toward somebody, up to the first overlap with them
@@ -143,7 +143,7 @@ fn whole_of(steps: f64) -> usize {
     (steps + 1e-9).floor() as usize
 }
 
-/// What has come of an obstacle.
+/// Contacts with an obstacle.
 #[derive(Clone, Copy, Default)]
 struct Followed {
     /// From its center to the robot at the last motion step, in m, if it was there.
@@ -153,7 +153,7 @@ struct Followed {
     decided: bool,
 }
 
-/// What an encounter consists of: a robot under a law, and somebody who answers to it.
+/// Parts of an encounter: a robot under a law, and a person who answers to it.
 struct PursuitParts<'a> {
     scenario: &'a Scenario,
     pursuer: &'a Pursuer,

@@ -23,7 +23,7 @@ const ASIDE: f64 = 4.0;
 /// Longest time by which a pursuer is ahead of the robot, in s.
 const LONGEST_LEAD: f64 = 1.5;
 
-/// What he does.
+/// Behavior of the pursuer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Tactic {
     /// Another direction for every leg.
@@ -62,7 +62,7 @@ fn unit(angle: f64) -> Vector2<f64> {
     Vector2::new(cos, sin)
 }
 
-/// The same direction with length 1, or none.
+/// Direction with length 1, or none.
 fn direction(vector: Vector2<f64>) -> Vector2<f64> {
     vector.try_normalize(1e-12).unwrap_or_else(Vector2::zeros)
 }

@@ -1,4 +1,4 @@
-//! What is counted of a motion step: arrival, contacts, least distances, energy, path.
+//! Account of a motion step: arrival, contacts, least distances, energy, path.
 
 use super::touch::Since;
 use super::{BOUND_MARGIN, Runs};

@@ -74,7 +74,7 @@ pub(crate) struct Runs<W: World, R: Real> {
     min_distance_squared: Vec<R>,
     /// Contacts with each obstacle, the lanes fastest.
     touches: Vec<Touch>,
-    /// What is counted of walls, where there are any.
+    /// Clearance and contacts of walls, where there are any.
     walls: Option<Box<Walls<R>>>,
 }
 
@@ -170,7 +170,7 @@ impl<W: World, R: Real> Runs<W, R> {
         }
     }
 
-    /// What is known of the obstacles of a lane.
+    /// Takes sizes and speeds of the obstacles of a lane.
     pub fn take_obstacles(&mut self, lane: usize, scenario: &Scenario) {
         self.all_stand_from.set(lane, scenario.stands_from());
         for index in 0..self.reach.len() {
@@ -199,7 +199,7 @@ impl<W: World, R: Real> Runs<W, R> {
         }
     }
 
-    /// What changes with time in every lane, beside what is counted of obstacles and walls.
+    /// Numbers of every lane that change with time, beside the counts of obstacles and walls.
     fn numbers(&mut self) -> [&mut R; 14] {
         let [first, second, third] = &mut self.wheel_speeds;
         let [position, velocity] = [&mut self.position, &mut self.velocity];

@@ -1,4 +1,4 @@
-//! What is left of a run once it has ended.
+//! Results of a run that has ended.
 
 use super::Runs;
 use crate::lanes::{Real, Truth};
@@ -43,7 +43,7 @@ impl<W: World, R: Real> Runs<W, R> {
         walls.map_or(f64::INFINITY, |walls| walls.least.lane(lane))
     }
 
-    /// What is left of the run of a lane, whatever the number of obstacles.
+    /// Totals of the run of a lane, whatever the number of obstacles.
     pub fn totals(&self, lane: usize, recorder: &impl Recorder<R>) -> RunTotals {
         let obstacles = 0..self.scenario.of_lane(lane).obstacle_count();
         let touched = obstacles.clone();

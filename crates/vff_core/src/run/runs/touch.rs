@@ -14,7 +14,7 @@ type Vector = Vector2<f64>;
 /// A contact so soon after an obstacle appears in the scene is counted apart, in s.
 const APPEARING: f64 = 0.2;
 
-/// What has come of a robot and an obstacle.
+/// Contacts of a robot with an obstacle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Touch {
     /// First contact.

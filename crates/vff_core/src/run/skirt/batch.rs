@@ -33,7 +33,7 @@ pub struct TestPlan {
 /// One test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TestRow {
-    /// What it came to.
+    /// Result.
     pub course: Course,
     /// Whether the sensors could see the disc that was the nearest.
     pub nearest_seen: bool,

@@ -28,7 +28,7 @@ pub struct SkirtRecord {
     pub yaw_rate: Vec<f64>,
     /// Sensors of a firing side by side, in m.
     pub readings: Vec<f64>,
-    /// What was decided.
+    /// Decisions.
     pub action: Vec<Action>,
 }
 
@@ -76,7 +76,7 @@ impl SkirtSteps {
     /// Runs to the end under the skirt's decisions.
     ///
     /// # Errors
-    /// As [`Self::period`].
+    /// Errors of [`Self::period`].
     pub fn run(&mut self, interrupted: Interrupted<'_>) -> Result<()> {
         self.episode.finish(interrupted)
     }
@@ -93,7 +93,7 @@ impl SkirtSteps {
         self.episode.stepped()
     }
 
-    /// What the skirt decides by now.
+    /// Readings that the skirt decides by.
     #[must_use]
     pub fn percept(&self) -> Percept<'_> {
         self.episode.parts.percept()
@@ -105,7 +105,7 @@ impl SkirtSteps {
         &self.scene
     }
 
-    /// What the test came to so far.
+    /// Result of the test so far.
     #[must_use]
     pub fn recorded(&self) -> (Course, &SkirtRecord) {
         (self.episode.parts.found, &self.episode.parts.watch)

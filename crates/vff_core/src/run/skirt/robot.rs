@@ -29,7 +29,7 @@ pub struct SkirtOptions {
     pub safe_distance: f64,
     /// Triggering distances.
     pub rule: Rule,
-    /// What decides between the rows of Table 1.
+    /// Rule between the rows of Table 1.
     pub policy: Policy,
     /// Full angle of a beam, in rad.
     pub beam_width: f64,
@@ -141,7 +141,7 @@ impl Travel {
     }
 }
 
-/// What a run came to.
+/// Result of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Course {
     /// Least distance between the surfaces of robot and discs, in m; not positive after contact.
@@ -165,7 +165,7 @@ pub struct Moment<'a> {
     pub yaw_rate: f64,
     /// Latest readings, in m.
     pub readings: &'a [f64],
-    /// What was decided.
+    /// Decision.
     pub action: Action,
 }
 
@@ -266,28 +266,28 @@ pub fn steps_of(duration: f64, period: f64) -> usize {
     steps.max(1)
 }
 
-/// What a run within a ring of sensors consists of.
+/// Parts of a run within a ring of sensors.
 pub(crate) struct SkirtParts<D, S, W> {
     scene: S,
     /// Discs that the sensors can see.
     outlines: Vec<PlacedShape>,
     sonar: Sonar,
     law: D,
-    /// What was decided last.
+    /// Last decision.
     action: Action,
     drive: LimitedOmni,
     robot: Moved,
     chassis_radius: f64,
     /// Clearance now, in m.
     clearance: f64,
-    /// What it came to so far.
+    /// Result so far.
     pub(crate) found: Course,
     ended: bool,
     pub(crate) watch: W,
 }
 
 impl<D, S: Deref<Target = DiscScene>, W> SkirtParts<D, S, W> {
-    /// What the law decides by.
+    /// Readings that the law decides by.
     #[inline]
     pub(crate) fn percept(&self) -> Percept<'_> {
         Percept {
@@ -349,7 +349,7 @@ impl<D, S: Deref<Target = DiscScene>, W> SkirtParts<D, S, W> {
     }
 }
 
-/// What the drive is told.
+/// Order to the drive.
 fn order_of(action: Action) -> Order {
     match action {
         Action::Keep => Order::Keep,
@@ -364,7 +364,7 @@ where
     S: Deref<Target = DiscScene>,
     W: MomentObserver,
 {
-    /// What to do in place of the law's decision.
+    /// Action in place of the law's decision.
     type Request = Option<Action>;
     const ATTENTION: usize = 1024;
 
