@@ -392,11 +392,16 @@ class _Plant:
         """Return the gaps between legs and footprints, and the speed of the nearest surface toward the legs."""
         away = person - pose[:, :2]
         rho = self.attack.leg
-        gap = np.linalg.norm(away, axis=1) - self.body.circumscribed - rho
-        toward = np.zeros(len(pose))
+        distance = np.linalg.norm(away, axis=1)
+        gap = distance - self.body.circumscribed - rho
+        cos, sin = np.cos(pose[:, 2]), np.sin(pose[:, 2])
+        # Far away the speed of the base toward the leg tells the search where to go.
+        along = away / np.maximum(distance, 1e-9)[:, np.newaxis]
+        toward = (velocity[:, 0] * cos - velocity[:, 1] * sin) * along[:, 0]
+        toward += (velocity[:, 0] * sin + velocity[:, 1] * cos) * along[:, 1]
         rows = np.flatnonzero(gap < self.near)
         if len(rows):
-            cos, sin = np.cos(pose[rows, 2]), np.sin(pose[rows, 2])
+            cos, sin = cos[rows], sin[rows]
             x, y = away[rows].T
             leg = np.stack([cos * x + sin * y, cos * y - sin * x], axis=1)
             distance, nearest, way = self.body.distance(leg)
