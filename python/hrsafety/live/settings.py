@@ -16,7 +16,7 @@ from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.laws.yielding import Yielding
 from hrsafety.navigation.maps.guide import Guide
 from hrsafety.navigation.maps.static_map import StaticMap
-from hrsafety.scenarios.laws import LAWS, law_named, name_of
+from hrsafety.scenarios.laws import LAWS, law_named
 
 __all__ = ["RANGES", "LiveSettings", "laws"]
 
@@ -139,7 +139,9 @@ class LiveSettings:
         """Return the settings by name, with the law of the file by its own name."""
         inner: Any = robot.law.law if isinstance(robot.law, SafeNavigation) else robot.law
         values = {name: getattr(self, name) for name in ("law", "shield", "yielding", "guide", *RANGES)}
-        return values | {"own": "virtual_force_field" if inner is None else name_of(inner)}
+        # A law of one's own has a name that is none of a table.
+        own = "virtual_force_field" if inner is None else getattr(inner, "NAME", None) or inner.name
+        return values | {"own": own}
 
 
 def _part(wanted: bool, own: Any, kind: Callable[[], Any]) -> Any:

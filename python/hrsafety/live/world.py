@@ -40,6 +40,8 @@ LONGEST = 3600.0
 """A world ends after so many seconds of its own time."""
 FAR = 9_000.0
 """Where the run of the robot has its goal, in m: the controller knows the one that counts."""
+FARTHEST = 1000.0
+"""How far people can be dragged, in m."""
 MORE_PEOPLE = 20
 """Room of the controller for those who come from sources."""
 BEHIND = 0.25
@@ -211,8 +213,10 @@ class LiveWorld:
         walker = self._walkers.get(number) if type(number) is int else None
         if walker is None:
             raise InvalidParameterError("number", "be that of a person of the world who is no guest", number)
-        walker.held = None if place is None else finite_pair("place", place)
-        walker.moved = True
+        held = None if place is None else finite_pair("place", place)
+        if held is not None and math.dist(held, self._robot.start) > FARTHEST:
+            raise InvalidParameterError("place", f"be at most {FARTHEST:g} m from the start of the robot", held)
+        walker.held, walker.moved = held, True
         return True
 
     # ---- running --------------------------------------------------------------------------------
@@ -221,7 +225,15 @@ class LiveWorld:
         """Run until `stop` is called, or the time is over."""
         try:
             while not self.finished:
-                world = self._onward()
+                try:
+                    world = self._onward()
+                except HrsafetyError as error:  # a world that cannot be: everybody is let go of
+                    if not any(walker.held for walker in self._walkers.values()):
+                        raise
+                    self._refused = str(error)
+                    for walker in self._walkers.values():
+                        walker.held = None
+                    world = self._onward()
                 self._due = clocks.monotonic()
                 self._first = True
                 diverged = walk(world, self._part, self._meet)
@@ -264,10 +276,32 @@ class LiveWorld:
                     names.append(number)
         self._names = dict(enumerate(names))
         self._base = self._instant
-        robot = replace(self._robot, start=tuple(self._before.position.tolist()))
+        robot = replace(self._robot, start=self._free_start(people))
         limit = LONGEST - time + 1.0
         seed = (self._world.seed + self._instant) % 2**64
         return replace(self._world, people=people, robots=[robot], time_limit=limit, seed=seed)
+
+    def _free_start(self, people: list[Person]) -> Pair:
+        """Return where the robot is; of one that is touched the nearest free place, for it may not start in a contact.
+
+        It is where it is a step later, whatever it touches there.
+        """
+        here, radius = self._before.position, self._robot.body.radius + 1e-3
+        there = [each for each in people if each.enters <= 0.0]
+        centers = np.array([_at_start(each) for each in there], dtype=np.float64).reshape(-1, 2)
+        sizes = np.array([each.radius for each in there])
+        angles = np.arange(24) * (2.0 * math.pi / 24.0)
+        ring = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        for far in (0.0, *np.geomspace(0.01, 50.0, 40)):
+            places = here + far * ring
+            gaps = np.linalg.norm(places[:, None] - centers, axis=2) - sizes - radius
+            free = (gaps > 0.0).all(axis=1)
+            if self.walls.bounds is not None:
+                free &= np.asarray(self.walls.clearance(places)) > radius
+            if free.any():
+                x, y = places[int(free.argmax())].tolist()
+                return x, y
+        raise InvalidParameterError("place", "leave the robot a free place within 50 m", tuple(here.tolist()))
 
     def _paced(self, speed: float | None) -> float | None:
         return None if speed is None else max(speed * self.settings.people_speed, 0.01)
@@ -479,6 +513,17 @@ class LiveWorld:
             events=list(self._events),
             facts=[("people and goal", "were dragged, and the robot set otherwise, while it ran")],
         )
+
+
+def _at_start(person: Person) -> Pair:
+    """Return where somebody is at the start of a world, far away while absent."""
+    if person.recording is None:
+        return person.start
+    times, places = person.recording
+    if not times[0] <= 0.0 <= times[-1]:
+        return FAR, FAR
+    x, y = np.asarray(places, dtype=np.float64).T
+    return float(np.interp(0.0, times, x)), float(np.interp(0.0, times, y))
 
 
 def _told_ways(world: World) -> dict[int, dict[str, Any]]:

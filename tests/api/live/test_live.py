@@ -132,6 +132,32 @@ def test_who_moves_as_told_goes_on_when_others_are_dragged() -> None:
     assert places[3] == pytest.approx((0.5, 3.0), abs=1e-3)
 
 
+@pytest.mark.parametrize("where", ["robot", "wall", "somebody"])
+def test_people_may_be_dragged_onto_anything(where: str) -> None:
+    with running(nav.World(people=walkers(3), robots=[robot(FIELD)], walls=[[(-1, 5), (7, 5)]]), pace=4.0) as live:
+        state = until(live, lambda state: state["time"] > 0.5)
+        for _ in range(12):
+            state = json.loads(live.state)
+            other = next(each for each in state["people"] if each[0] == 1)
+            place = {"robot": state["robot"][:2], "wall": [2.0, 5.0], "somebody": other[1:3]}[where]
+            live.change({"kind": "person", "number": 0, "place": [place[0] + 0.02, place[1]]})
+            time.sleep(0.04)
+        live.change({"kind": "person", "number": 0, "place": None})
+        later = until(live, lambda now: now["time"] > state["time"] + 2.0)
+    assert math.dist(later["robot"][:2], (0.0, 0.0)) < 3.0
+    assert later["contacts"] > 0 or where != "robot"
+
+
+def test_a_contact_stops_no_dragging() -> None:
+    standing = nav.Person(start=(1.2, 0.0), radius=0.3)
+    blind = nav.laws.PythonLaw(function=lambda _: (2.0, 0.0), name="ahead")
+    with running(nav.World(people=[standing, *walkers(2)], robots=[robot(blind)]), pace=4.0) as live:
+        until(live, lambda state: 0 in state["touching"])
+        live.change({"kind": "person", "number": 1, "place": [-3.0, -3.0]})
+        held = until(live, lambda state: state["held"] == [1])
+        until(live, lambda state: state["time"] > held["time"] + 0.5)
+
+
 def test_dragging_moves_nobody_else_by_itself() -> None:
     people = [*walkers(12)]
     with running(nav.World(people=people, robots=[robot()]), pace=8.0) as live:
@@ -184,6 +210,7 @@ def test_goal_law_parts_and_speeds_are_changed_while_it_runs() -> None:
         {"kind": "goal", "place": [math.nan, 0.0]},
         {"kind": "goal", "place": "here"},
         {"kind": "person", "number": 99, "place": [0.0, 0.0]},
+        {"kind": "person", "number": 0, "place": [1e300, 0.0]},
         {"kind": "person", "number": True, "place": [0.0, 0.0]},
         {"kind": "setting", "name": "robot_speed", "value": 1e9},
         {"kind": "setting", "name": "law", "value": "magic"},

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import re
+import subprocess
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,7 +16,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from api.browsers import Tab, tab
+from api.browsers import Tab, program, tab
 from hrsafety import _replay as replay
 from hrsafety import navigation as nav
 from hrsafety import plotting, scenarios
@@ -271,6 +272,17 @@ def test_it_is_ready_soon_and_the_robot_is_where_it_was(browser: Tab, tmp_path: 
     browser.value("location.hash = '#t=12.45'; 1")
     browser.wait("document.body.dataset.time === '12.450'")
     assert browser.data("robot") == "6.225,15.000"  # straight between two frames
+
+
+def test_the_page_can_be_read_without_driving_the_browser(tmp_path: Path) -> None:
+    address = f"{page_of(walkers(100, 3), tmp_path)}#t=2.4"
+    options = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}"]
+    command = [program(), *options, "--virtual-time-budget=5000", "--dump-dom", address]
+    found = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True).stdout
+    body = re.search(r"<body[^>]*>", found)
+    assert body is not None
+    for name, value in (("state", "ready"), ("frame", "24"), ("robot", "1.200,15.000")):
+        assert f'data-{name}="{value}"' in body[0]
 
 
 def test_every_key_does_what_it_says(browser: Tab, tmp_path: Path) -> None:
