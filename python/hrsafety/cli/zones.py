@@ -164,7 +164,8 @@ def _design_report(found: zones.ZoneSet) -> Report:
     note = (
         "Fields reach from the base frame. Travel and time are those of the fastest command of a zone; leg is what was "
         "added so that a leg between two beams is seen. The zones hold for the numbers above: measure deceleration and "
-        "reaction of the loaded robot, and let a velocity smoother keep command_fall."
+        "reaction of the loaded robot, let a velocity smoother keep command_fall, and see that turns end with the way: "
+        "velocity and turn rate are taken to brake together."
     )
     return Report(
         title="Zones that hold",

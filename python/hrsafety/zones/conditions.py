@@ -53,7 +53,8 @@ class Conditions(Parameters):
     max_turn_rate : float
         Largest commanded turn rate in rad/s, either way.
     deceleration : float
-        Deceleration d of a stop in m/s^2 that the robot always reaches: loaded, on its worst floor.
+        Deceleration d of a stop in m/s^2 that the robot always reaches: loaded, on its worst floor. Velocity and turn
+        rate brake together.
     reaction_time : float
         Largest time T in s from the instant at which a leg is in a zone until the robot begins to brake: period and age
         of the scan, period of the commands, processing, drive.
