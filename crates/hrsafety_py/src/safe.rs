@@ -5,7 +5,7 @@ use vff_core::lanes::Vector2;
 use vff_core::laws::guide::TakeoverOptions;
 use vff_core::laws::safe::SafeNavigation;
 use vff_core::laws::shield::{
-    self, Friendly, Guard, KnownVelocity, Limits, Person, Tracking, View, Walls,
+    self, Friendly, Guard, KnownVelocity, Limits, Person, StaticObstacles, Tracking, View,
 };
 use vff_core::laws::yielding;
 use vff_core::world::geometry::RobotState;
@@ -118,7 +118,7 @@ fn seen((position, velocity): MotionState, people: &[Person]) -> View<'_> {
             velocity: velocity.into(),
         },
         people,
-        walls: Walls::NONE,
+        walls: StaticObstacles::NONE,
     }
 }
 

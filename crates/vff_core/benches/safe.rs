@@ -10,7 +10,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use numeric::random::Stream;
 use vff_core::lanes::Vector2;
 use vff_core::laws::safe::SafeNavigation;
-use vff_core::laws::shield::{Guard, Limits, Person, Shield, Status, View, Walls};
+use vff_core::laws::shield::{Guard, Limits, Person, Shield, StaticObstacles, Status, View};
 use vff_core::laws::yielding::{Outlook, Passerby, Yielder, Yielding};
 use vff_core::robots::HolonomicRobot;
 use vff_core::run::{AnyLaw, BatchOptions, BatchTable, Options, run_batch};
@@ -140,7 +140,7 @@ fn decisions(criterion: &mut Criterion) {
         let view = View {
             robot: robot(),
             people: &people,
-            walls: Walls::NONE,
+            walls: StaticObstacles::NONE,
         };
         let decision = guard.decide(&view, wanted);
         assert_eq!(decision.status, status, "{name}");
@@ -163,7 +163,7 @@ fn decisions(criterion: &mut Criterion) {
         to_goal: Vector2::x(),
         people: &people,
         left_out: false,
-        walls: Walls::NONE,
+        walls: StaticObstacles::NONE,
     };
     group.bench_function("yielding", |bencher| {
         bencher.iter(|| yielder.decide(black_box(&outlook), |_| true));

@@ -138,8 +138,8 @@ impl Arm {
     fn effective_mass<'py>(
         &self,
         py: Python<'py>,
-        given: Given<'py>,
-        directions: Rows<'py>,
+        given: PointArguments<'py>,
+        directions: RowAxes<'py>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let directions = directions.broadcast(3)?;
         let found = given.compute(py, &self.0, |places, work| {
@@ -152,7 +152,7 @@ impl Arm {
     fn point_states<'py>(
         &self,
         py: Python<'py>,
-        given: Given<'py>,
+        given: PointArguments<'py>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let found = given.compute(py, &self.0, |places, work| {
             self.0.point_states(places, work)
@@ -185,8 +185,8 @@ impl Arm {
     fn velocities<'py>(
         &self,
         py: Python<'py>,
-        given: Given<'py>,
-        rates: Rows<'py>,
+        given: PointArguments<'py>,
+        rates: RowAxes<'py>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let rates = rates.broadcast(self.0.joints.len())?;
         let found = given.compute(py, &self.0, |places, work| {
@@ -199,9 +199,9 @@ impl Arm {
 
 /// Numbers by rows, and how many rows apart neighbors along each axis of the result are.
 #[derive(FromPyObject)]
-pub struct Rows<'py>(PyReadonlyArray1<'py, f64>, Vec<usize>);
+pub struct RowAxes<'py>(PyReadonlyArray1<'py, f64>, Vec<usize>);
 
-impl Rows<'_> {
+impl RowAxes<'_> {
     fn broadcast(&self, width: usize) -> PyResult<Broadcast<'_>> {
         Ok(Broadcast {
             rows: self.0.as_slice()?,
@@ -214,16 +214,16 @@ impl Rows<'_> {
 /// Arguments of all functions of points.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub struct Given<'py> {
+pub struct PointArguments<'py> {
     link: String,
-    joints: Rows<'py>,
-    points: Rows<'py>,
+    joints: RowAxes<'py>,
+    points: RowAxes<'py>,
     shape: Vec<usize>,
     check_limits: bool,
     threads: Option<usize>,
 }
 
-impl Given<'_> {
+impl PointArguments<'_> {
     /// Computes without the interpreter, which is asked for Ctrl-C meanwhile.
     fn compute<T: Send>(
         &self,

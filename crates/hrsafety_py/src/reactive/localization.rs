@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::sensing::sound::batch::{FixColumns, locate_many};
 use vff_core::sensing::sound::fix::{self, Covariance, FixStatus};
-use vff_core::sensing::sound::microphones::{self, Pair};
+use vff_core::sensing::sound::microphones::{self, MicrophonePair};
 
 use crate::arrays::{Fields, fields};
 use crate::keywords::{parameter_class, word};
@@ -53,9 +53,9 @@ pub fn parallel_ray_bearings<'py>(
     delay_13: Column<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let pairs = [
-        ("12", Pair::First),
-        ("23", Pair::Second),
-        ("13", Pair::Outer),
+        ("12", MicrophonePair::First),
+        ("23", MicrophonePair::Second),
+        ("13", MicrophonePair::Outer),
     ];
     let pair = word("pair", pair, "be one of \"12\", \"23\", \"13\"", &pairs)?;
     let delays = delay_12.as_slice()?.iter().zip(delay_13.as_slice()?);

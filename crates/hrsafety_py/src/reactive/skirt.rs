@@ -6,8 +6,8 @@ use pyo3::types::PyDict;
 use vff_core::laws::escape::states::TABLE_1;
 use vff_core::robots::wheels::TriOmni;
 use vff_core::run::skirt::{
-    Action, Direction, DiscSceneOptions, Policy, Ring, Rule, Skirt, SkirtOptions, TestPlan, Travel,
-    normal_distances, test_batch,
+    Direction, DiscSceneOptions, EscapeAction, Policy, Ring, Rule, Skirt, SkirtOptions,
+    SkirtTravel, TestPlan, normal_distances, test_batch,
 };
 use vff_core::sensing::sonar::ring::{
     Circumference, closing_gap, least_sensors, safe_distance as meeting_distance,
@@ -19,11 +19,11 @@ use crate::keywords::{Keywords, parameter_class, taken, word};
 use crate::watch::{Report, spread};
 
 /// Word of an action.
-pub fn action_word(action: Action) -> &'static str {
+pub fn action_word(action: EscapeAction) -> &'static str {
     match action {
-        Action::Keep => "keep",
-        Action::Spin => "spin",
-        Action::Move(direction) => direction.word(),
+        EscapeAction::Keep => "keep",
+        EscapeAction::Spin => "spin",
+        EscapeAction::Move(direction) => direction.word(),
     }
 }
 
@@ -37,7 +37,8 @@ pub fn skirt_directions() -> Vec<(&'static str, f64)> {
 /// Rows of the state table: sensors that see an obstacle, and the action.
 #[pyfunction]
 pub fn skirt_states() -> Vec<(Vec<usize>, &'static str)> {
-    let row = |(sensors, action): &(&[usize], Action)| (sensors.to_vec(), action_word(*action));
+    let row =
+        |(sensors, action): &(&[usize], EscapeAction)| (sensors.to_vec(), action_word(*action));
     TABLE_1.iter().map(row).collect()
 }
 
@@ -260,7 +261,7 @@ impl SkirtScene {
 
 parameter_class! {
     /// How the robot moves.
-    SkirtMotion(Travel) { speed, acceleration, spin_rate, duration }
+    SkirtMotion(SkirtTravel) { speed, acceleration, spin_rate, duration }
 }
 
 /// Rows of the avoidance test.

@@ -4,7 +4,7 @@ use numeric::error::{Failure, Given};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::lanes::Vector2;
-use vff_core::run::skirt::{Action, Direction, SkirtRecord, SkirtSteps as Steps, TestPlan};
+use vff_core::run::skirt::{Direction, EscapeAction, SkirtRecord, SkirtSteps as Steps, TestPlan};
 
 use crate::arrays::Fields;
 use crate::errors::CoreResult;
@@ -18,9 +18,11 @@ use crate::run::stepped::Stepped;
 pub struct SkirtSteps(Stepped<Steps>);
 
 /// Action of a word.
-fn action_of(given: &str) -> CoreResult<Action> {
-    let moves = Direction::ALL.into_iter().map(Action::Move);
-    let mut known = [Action::Keep, Action::Spin].into_iter().chain(moves);
+fn action_of(given: &str) -> CoreResult<EscapeAction> {
+    let moves = Direction::ALL.into_iter().map(EscapeAction::Move);
+    let mut known = [EscapeAction::Keep, EscapeAction::Spin]
+        .into_iter()
+        .chain(moves);
     known
         .find(|action| action_word(*action) == given)
         .ok_or_else(|| {

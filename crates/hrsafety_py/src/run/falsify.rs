@@ -24,8 +24,8 @@ pub struct Hunt {
 }
 
 impl Hunt {
-    fn with<T>(&self, law: &Law, work: impl FnOnce(&search::Hunt<'_>) -> T) -> T {
-        work(&search::Hunt {
+    fn with<T>(&self, law: &Law, work: impl FnOnce(&search::Falsification<'_>) -> T) -> T {
+        work(&search::Falsification {
             scenario: &self.scenario,
             law: &law.any,
             built: &self.built,

@@ -7,14 +7,14 @@ use crate::error::{Failure, Result};
 use crate::lanes::Vectors;
 use crate::laws::{LaneFamily, Law, LawFamily};
 use crate::run::Interrupted;
-use crate::run::lanes::group::{Group, Job, Keep, LaneKernel};
+use crate::run::lanes::group::{Group, Keep, LaneKernel, RunJob};
 use crate::run::lanes::kernel::{LawInLanes, run_lanes};
 use crate::run::lanes::scenes::LaneScenes;
 use crate::run::options::Options;
 use crate::run::outcome::RunSummary;
-use crate::run::plan::{Plan, key_of};
+use crate::run::plan::{RunPlan, key_of};
 use crate::run::record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
-use crate::run::runs::Runs;
+use crate::run::runs::LaneState;
 use crate::run::scene::bodies_at;
 use crate::run::walls::Maps;
 use crate::world::scenario::Scenario;
@@ -90,7 +90,11 @@ impl AnyLaw {
     }
 
     /// Its lanes, where the plan and the number of runs of a group ask for them.
-    pub(crate) fn lanes_for(&self, plan: &Plan, runs: usize) -> Option<(&dyn LaneKernel, Vectors)> {
+    pub(crate) fn lanes_for(
+        &self,
+        plan: &RunPlan,
+        runs: usize,
+    ) -> Option<(&dyn LaneKernel, Vectors)> {
         let lanes = self.lanes.as_deref()?;
         Some((lanes, plan.vectors()?)).filter(|_| runs >= FEWEST_IN_LANES)
     }
@@ -100,9 +104,9 @@ impl AnyLaw {
         if (group.interrupted)() {
             return Err(Failure::Interrupted);
         }
-        let exact = |job: &Job<'_>| job.scenario.measurement.is_none();
+        let exact = |job: &RunJob<'_>| job.scenario.measurement.is_none();
         let shortcuts = self.keeps_to_regions() && group.jobs.iter().all(exact);
-        let plan = &Plan {
+        let plan = &RunPlan {
             shortcuts: shortcuts && group.plan.shortcuts,
             ..*group.plan
         };
@@ -146,8 +150,8 @@ impl AnyLaw {
     }
 
     /// Whether runs are in one scenario, with gains that differ only in those that act near obstacles.
-    fn are_alike(&self, jobs: &[Job<'_>]) -> bool {
-        let key = |job: &Job<'_>| key_of(self.free_gains(), job.gains);
+    fn are_alike(&self, jobs: &[RunJob<'_>]) -> bool {
+        let key = |job: &RunJob<'_>| key_of(self.free_gains(), job.gains);
         jobs.iter()
             .all(|job| std::ptr::eq(job.scenario, jobs[0].scenario) && key(job) == key(&jobs[0]))
     }
@@ -160,7 +164,7 @@ impl AnyLaw {
         mut recorder: C,
         (index, keep): (usize, Keep<'_>),
     ) -> Result<()> {
-        let mut hand_over = |runs: &Runs<LaneScenes<'_>, f64>, recorder: &mut C| {
+        let mut hand_over = |runs: &LaneState<LaneScenes<'_>, f64>, recorder: &mut C| {
             let totals = runs.totals(0, recorder);
             keep(index, &totals, &|obstacle| runs.min_distance(obstacle, 0));
         };
@@ -172,7 +176,7 @@ impl AnyLaw {
         group: &Group<'_>,
         record: bool,
         recorder: &mut C,
-        hand_over: &mut dyn FnMut(&Runs<LaneScenes<'_>, f64>, &mut C),
+        hand_over: &mut dyn FnMut(&LaneState<LaneScenes<'_>, f64>, &mut C),
     ) -> Result<()> {
         let mut enter =
             |law: &mut Option<Box<dyn Law<f64>>>, _: usize, gains: &[f64], scenario: &Scenario| {
@@ -200,8 +204,8 @@ impl AnyLaw {
     ) -> Result<(RunSummary, Trajectory)> {
         let gains = &self.gains();
         let group = Group {
-            jobs: &[Job { scenario, gains }],
-            plan: &Plan::single(*options),
+            jobs: &[RunJob { scenario, gains }],
+            plan: &RunPlan::single(*options),
             led: false,
             interrupted,
         };

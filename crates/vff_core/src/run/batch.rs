@@ -5,11 +5,11 @@ use numeric::threads::{map, on_threads};
 use crate::error::{Failure, Given, Result};
 use crate::run::Interrupted;
 use crate::run::any_law::AnyLaw;
-use crate::run::lanes::group::{Group, Job};
+use crate::run::lanes::group::{Group, RunJob};
 use crate::run::metrics::{Weights, score};
 use crate::run::nominal::{NominalRuns, Ways};
 use crate::run::options::Options;
-use crate::run::plan::{Instructions, Plan, Width};
+use crate::run::plan::{Instructions, RunPlan, Width};
 use crate::run::table::{BatchTable, Cell};
 use crate::run::tasks::MadeRuns;
 use crate::world::scenario::Scenario;
@@ -105,7 +105,7 @@ impl Batch<'_> {
     fn run(&self) -> Result<BatchTable> {
         let (law, count) = (self.law, self.scenarios.len());
         let sets: Vec<&[f64]> = self.points.chunks_exact(law.gain_names().len()).collect();
-        let plan = &Plan {
+        let plan = &RunPlan {
             run: self.options.run,
             width: self.options.width.unwrap_or(Width::Sixteen),
             instructions: self.options.instructions,
@@ -118,7 +118,7 @@ impl Batch<'_> {
         // Neighbours share their scenario.
         let jobs = self.scenarios.iter().flat_map(|scenario| {
             let each = sets.iter();
-            each.map(move |gains| Job { scenario, gains })
+            each.map(move |gains| RunJob { scenario, gains })
         });
         let group = Group {
             jobs: &jobs.collect::<Vec<_>>(),

@@ -37,9 +37,9 @@ pub use plan::{Instructions, Width};
 pub use record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
 pub use table::BatchTable;
 
-pub(crate) use lanes::group::{Group, Job};
+pub(crate) use lanes::group::{Group, RunJob};
 pub(crate) use nominal::Ways;
-pub(crate) use plan::{Key, Plan, key_of};
+pub(crate) use plan::{Key, RunPlan, key_of};
 pub(crate) use table::min_clearance;
 
 pub use crate::error::Interrupted;

@@ -19,7 +19,7 @@ use crate::run::as_built::{clock_of, robot_under};
 use crate::run::episode::{Episode, Parts};
 use crate::run::options::Clock;
 use crate::run::outcome::{Outcome, RunSummary};
-use crate::run::runs::Runs;
+use crate::run::runs::LaneState;
 use crate::run::scene::{Scene, bodies_at};
 use crate::run::walls::Maps;
 use crate::world::geometry::{Body, RobotState};
@@ -94,7 +94,7 @@ pub struct Navigation<L = Everything> {
     scene: Scene<Arc<Scenario>>,
     sight: Sight,
     known: Known,
-    runs: Runs<Arc<Scenario>, f64>,
+    runs: LaneState<Arc<Scenario>, f64>,
     reading: Reading,
     /// Electrical loss so far in J.
     energy: f64,
@@ -146,7 +146,7 @@ impl<L: Listener> Episode<Navigation<L>> {
             interval: clock.interval,
             sight,
             known: Known::exactly(reading.robot),
-            runs: Runs::new(
+            runs: LaneState::new(
                 Arc::clone(&scenario),
                 clock,
                 bodies.iter().copied(),

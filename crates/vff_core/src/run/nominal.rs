@@ -5,9 +5,9 @@ use std::collections::HashMap;
 use crate::error::Result;
 use crate::run::Interrupted;
 use crate::run::any_law::AnyLaw;
-use crate::run::lanes::group::{Group, Job};
+use crate::run::lanes::group::{Group, RunJob};
 use crate::run::metrics::Nominal;
-use crate::run::plan::{Key, Plan, key_of};
+use crate::run::plan::{Key, RunPlan, key_of};
 use crate::run::tasks::MadeRuns;
 use crate::world::scenario::Scenario;
 
@@ -72,7 +72,7 @@ impl NominalRuns {
         ways: &Ways,
         law: &AnyLaw,
         sets: &[&[f64]],
-        plan: &Plan,
+        plan: &RunPlan,
         interrupted: Interrupted<'_>,
     ) -> Result<Self> {
         let mut known: HashMap<Key, usize> = HashMap::new();
@@ -94,13 +94,13 @@ impl NominalRuns {
         let of = sets.iter().enumerate().map(index_of).collect();
         let jobs = first.iter().flat_map(|set| {
             let along = ways.scenarios.iter();
-            along.map(|scenario| Job {
+            along.map(|scenario| RunJob {
                 scenario,
                 gains: sets[*set],
             })
         });
-        let jobs: Vec<Job<'_>> = jobs.collect();
-        let plan = Plan {
+        let jobs: Vec<RunJob<'_>> = jobs.collect();
+        let plan = RunPlan {
             descent: false,
             ..*plan
         };

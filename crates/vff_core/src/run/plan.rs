@@ -62,7 +62,7 @@ pub(crate) const MAX_GAINS: usize = 8;
 
 /// How the runs of a task are made.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Plan {
+pub(crate) struct RunPlan {
     pub run: Options,
     pub width: Width,
     pub instructions: Instructions,
@@ -73,7 +73,7 @@ pub(crate) struct Plan {
     pub shortcuts: bool,
 }
 
-impl Plan {
+impl RunPlan {
     /// One run by itself.
     pub fn single(run: Options) -> Self {
         Self {

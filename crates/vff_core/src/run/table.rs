@@ -113,7 +113,7 @@ impl BatchTable {
         rows: usize,
         place: impl Fn(usize) -> (&'a Cell, &'a [f64]) + Sync,
     ) -> Self {
-        let source = Source {
+        let source = RowSource {
             scenarios,
             rows,
             place,
@@ -148,14 +148,14 @@ impl BatchTable {
 }
 
 /// Where the columns come from.
-struct Source<'a, P> {
+struct RowSource<'a, P> {
     scenarios: &'a [Scenario],
     rows: usize,
     /// Cell and distances of a row.
     place: P,
 }
 
-impl<'a, P: Fn(usize) -> (&'a Cell, &'a [f64]) + Sync> Source<'a, P> {
+impl<'a, P: Fn(usize) -> (&'a Cell, &'a [f64]) + Sync> RowSource<'a, P> {
     fn column<T: Send>(&self, value: impl Fn(&Cell) -> T + Sync) -> Vec<T> {
         let place = &self.place;
         map(self.rows, |row| value(place(row).0))

@@ -6,7 +6,7 @@ use numeric::threads::{team, try_map};
 
 use crate::error::Result;
 use crate::run::any_law::AnyLaw;
-use crate::run::lanes::group::{Group, Job};
+use crate::run::lanes::group::{Group, RunJob};
 use crate::run::outcome::RunTotals;
 use crate::run::plan::{Key, MAX_GAINS};
 
@@ -51,7 +51,7 @@ impl<T: Copy + Send + Sync> MadeRuns<T> {
         let tasks = tasks(law, group);
         let done = try_map(tasks.len(), |task| {
             let task = &tasks[task];
-            let jobs: Vec<Job<'_>> = task.iter().map(|index| group.jobs[*index]).collect();
+            let jobs: Vec<RunJob<'_>> = task.iter().map(|index| group.jobs[*index]).collect();
             let mut done = Done::room_for(&jobs, unset);
             let own = Group {
                 jobs: &jobs,
@@ -86,7 +86,7 @@ impl<T: Copy + Send + Sync> MadeRuns<T> {
 }
 
 impl<T: Copy> Done<T> {
-    fn room_for(jobs: &[Job<'_>], unset: T) -> Self {
+    fn room_for(jobs: &[RunJob<'_>], unset: T) -> Self {
         let mut begins = Vec::with_capacity(jobs.len() + 1);
         begins.push(0);
         let mut end = 0;

@@ -65,7 +65,7 @@ const UNSEEN: [f64; 6] = [f64::INFINITY, f64::NAN, f64::NAN, -1.0, 0.0, 0.0];
 
 /// Clearance of the robots of one lane group from walls, and contacts.
 #[derive(Clone, Debug)]
-pub(crate) struct Walls<R> {
+pub(crate) struct WallContacts<R> {
     maps: Maps,
     radius: f64,
     /// Least distance of the surfaces in m, negative inside of a wall.
@@ -80,7 +80,7 @@ pub(crate) struct Walls<R> {
     spare: R,
 }
 
-impl<R: Real> Walls<R> {
+impl<R: Real> WallContacts<R> {
     /// Around robots of a radius in m; `None` where there are no maps.
     pub fn new(maps: Maps, radius: f64) -> Option<Self> {
         let [least, contact_time, contact_speed, spare, x, y] = UNSEEN.map(R::splat);

@@ -45,7 +45,7 @@ impl Property {
 }
 
 /// A robot under a law, and the bounds of who pursues it.
-pub struct Hunt<'a> {
+pub struct Falsification<'a> {
     /// Where; the pursuer takes the place of its last obstacle.
     pub scenario: &'a Scenario,
     /// Law that drives the robot.
@@ -58,7 +58,7 @@ pub struct Hunt<'a> {
     pub free: f64,
 }
 
-impl Hunt<'_> {
+impl Falsification<'_> {
     fn ends(&self) -> [[f64; 2]; 2] {
         [self.scenario.start(), self.scenario.goal()]
     }
@@ -156,7 +156,7 @@ impl Hunt<'_> {
 
 /// The search for the least margin.
 struct Worst<'a> {
-    hunt: &'a Hunt<'a>,
+    hunt: &'a Falsification<'a>,
     property: Property,
     seed: u64,
     interrupted: Interrupted<'a>,

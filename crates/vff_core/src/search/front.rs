@@ -8,7 +8,7 @@ use crate::error::{Failure, Given, Result};
 use crate::search::archive::Archive;
 use crate::search::blocks::Session;
 use crate::search::evaluated::Evaluated;
-use crate::search::grid::{Grid, GridOptions};
+use crate::search::grid::{GridOptions, RegularGrid};
 use crate::search::observe::Observer;
 use crate::search::problem::{Bounds, Problem};
 use crate::search::search_state::{Fingerprint, SearchState};
@@ -94,7 +94,7 @@ fn rounds(
     options: &FrontOptions,
 ) -> Result<Front> {
     let dimension = problem.dimension();
-    let mut grid = Grid::new(bounds, &options.shape, problem.slowest_first());
+    let mut grid = RegularGrid::new(bounds, &options.shape, problem.slowest_first());
     let mut increments = grid.increments();
     let mut visited = VisitedPoints::of(&mut grid);
     let mut front = Front::default();
@@ -161,7 +161,7 @@ struct VisitedPoints {
 
 impl VisitedPoints {
     /// All points of a grid, of which equal ones are taken out first.
-    fn of(grid: &mut Grid) -> Self {
+    fn of(grid: &mut RegularGrid) -> Self {
         for axis in &mut grid.axes {
             // They rise: equal ones stand side by side.
             axis.dedup_by_key(|value| value.to_bits());

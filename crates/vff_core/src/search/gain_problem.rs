@@ -7,7 +7,7 @@ use crate::error::{Failure, Result};
 use crate::laws::Stop;
 use crate::run::lanes::group::Keep;
 use crate::run::metrics::{Nominal, score};
-use crate::run::{AnyLaw, Group, Job, Key, Plan, Ways, Width, key_of, min_clearance};
+use crate::run::{AnyLaw, Group, Key, RunJob, RunPlan, Ways, Width, key_of, min_clearance};
 use crate::search::gain_objective::{
     Judged, Metric, MetricConstraint, Objective, Over, arrival_margin,
 };
@@ -115,7 +115,7 @@ impl GainProblem {
         stop: Stop<'_>,
         keep: Keep<'_>,
     ) -> Result<()> {
-        let plan = Plan {
+        let plan = RunPlan {
             run: self.options.run,
             width: self.options.width.unwrap_or(Width::Sixteen),
             instructions: self.options.instructions,
@@ -125,7 +125,7 @@ impl GainProblem {
         let sets = points.chunks_exact(self.dimension());
         let group = Group {
             jobs: &sets
-                .map(|gains| Job { scenario, gains })
+                .map(|gains| RunJob { scenario, gains })
                 .collect::<Vec<_>>(),
             plan: &plan,
             led: false,

@@ -94,13 +94,13 @@ impl GridOptions {
 const MOST_POINTS: usize = 100_000_000;
 
 /// A regular grid of a box. Points are numbered with the first axis slowest.
-pub(crate) struct Grid {
+pub(crate) struct RegularGrid {
     pub axes: Vec<Vec<f64>>,
     /// Axes from slowest to fastest in which the points are visited.
     visit: Vec<usize>,
 }
 
-impl Grid {
+impl RegularGrid {
     pub fn new(bounds: &Bounds, shape: &[usize], visit: Vec<usize>) -> Self {
         let sides = bounds.lower().iter().zip(bounds.upper()).zip(shape);
         let axes = sides.map(|((low, high), count)| spaced(*low, *high, *count));
@@ -199,10 +199,10 @@ pub(crate) fn grids(
     };
     let mut range = bounds.clone();
     for round in 0..=options.refinements {
-        let grid = Grid::new(&range, &options.shape, problem.slowest_first());
+        let grid = RegularGrid::new(&range, &options.shape, problem.slowest_first());
         let stage = Stage::Grid { round };
         let points = |positions| grid.points(positions);
-        let ranking = Ranking::new(options.survivors.max(options.keep));
+        let ranking = GridRanking::new(options.survivors.max(options.keep));
         let take = |first: usize, _: &[f64], part: &Evaluated| ranking.take(&grid, first, part);
         result.complete = session.evaluate(stage, problem, grid.len(), &points, &take)?;
         let ranked = ranking.finish();
@@ -221,7 +221,7 @@ pub(crate) fn grids(
 
 /// The best points of a round and how many there were, gathered while they are evaluated: nothing
 /// is left to do after a stop.
-struct Ranking {
+struct GridRanking {
     keep: usize,
     ranked: Mutex<Ranked>,
 }
@@ -234,14 +234,14 @@ struct Ranked {
     failures: u64,
 }
 
-impl Ranking {
+impl GridRanking {
     fn new(keep: usize) -> Self {
         let ranked = Mutex::default();
         Self { keep, ranked }
     }
 
     /// Takes the values of a block.
-    fn take(&self, grid: &Grid, first: usize, part: &Evaluated) {
+    fn take(&self, grid: &RegularGrid, first: usize, part: &Evaluated) {
         let score = |index| (part.score(index), grid.number(first + index));
         let mut own: Vec<(Score, usize)> = (0..part.len()).map(score).collect();
         let failures = own.iter().filter(|(score, _)| score.failed).count() as u64;
@@ -286,7 +286,7 @@ fn best_in_front(scores: &mut [(Score, usize)], count: usize) {
 
 /// Takes the best points of a round into the best of all; of equal ones the earlier stays ahead,
 /// and a point that is met again is not taken twice.
-fn merge(top: &mut Vec<Candidate>, grid: &Grid, best: &[(Score, usize)], keep: usize) {
+fn merge(top: &mut Vec<Candidate>, grid: &RegularGrid, best: &[(Score, usize)], keep: usize) {
     for (score, number) in best.iter().take(keep) {
         let point = grid.point(*number);
         if top.iter().any(|known| known.point == point) {
@@ -304,7 +304,7 @@ fn merge(top: &mut Vec<Candidate>, grid: &Grid, best: &[(Score, usize)], keep: u
     top.truncate(keep);
 }
 
-fn summary(grid: &Grid, ranked: &Ranked, survivors: usize) -> Round {
+fn summary(grid: &RegularGrid, ranked: &Ranked, survivors: usize) -> Round {
     let survivors = &ranked.best[..survivors.min(ranked.best.len())];
     let (first, last) = (survivors[0], survivors[survivors.len() - 1]);
     let mut low = grid.point(first.1);

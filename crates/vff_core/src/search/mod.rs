@@ -27,7 +27,7 @@ mod stage;
 
 pub use blocks::evaluate_all;
 pub use evaluated::Evaluated;
-pub use falsify::{Hunt, Property};
+pub use falsify::{Falsification, Property};
 pub use front::{Front, FrontOptions, FrontRound, front_search};
 pub use gain_objective::{
     Limit, Metric, MetricConstraint, Objective, Over, Robustness, arrival_margin,

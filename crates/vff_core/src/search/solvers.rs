@@ -225,12 +225,12 @@ pub(crate) fn mads(oracle: &Oracle<'_>, start: &[f64], sizes: [f64; 2]) -> bool 
 
 /// The problem for populations, which only compare: feasible points by their value, below 1, and
 /// infeasible ones by their violation, above.
-struct Ranked<'a, 'b> {
+struct RankedProblem<'a, 'b> {
     oracle: &'a Oracle<'b>,
     sides: [Vec<f64>; 2],
 }
 
-impl<'a, 'b> Ranked<'a, 'b> {
+impl<'a, 'b> RankedProblem<'a, 'b> {
     fn new(oracle: &'a Oracle<'b>) -> Self {
         let dimension = oracle.bounds.dimension();
         Self {
@@ -255,7 +255,7 @@ fn rank(score: &Score) -> f64 {
     }
 }
 
-impl CostFunction for Ranked<'_, '_> {
+impl CostFunction for RankedProblem<'_, '_> {
     type Param = Vec<f64>;
     type Output = f64;
     type Error = Halt;
@@ -265,7 +265,7 @@ impl CostFunction for Ranked<'_, '_> {
     }
 }
 
-impl Constraints for Ranked<'_, '_> {
+impl Constraints for RankedProblem<'_, '_> {
     type Set = ConstraintSet<BoxBounds<Vec<f64>>>;
 
     fn constraints(&self) -> <Self::Set as ConstraintDescription>::Borrowed<'_> {
@@ -278,7 +278,7 @@ impl Constraints for Ranked<'_, '_> {
 pub(crate) fn differential_evolution(oracle: &Oracle<'_>, seed: u64) {
     let population = PopulationProgress::<Vec<f64>, f64>::empty();
     // It has no end of its own: the oracle's halt comes back as an error.
-    Executor::new(Ranked::new(oracle), De::new(seed), population)
+    Executor::new(RankedProblem::new(oracle), De::new(seed), population)
         .run()
         .ok();
 }
@@ -288,7 +288,7 @@ pub(crate) fn cma_es(oracle: &Oracle<'_>, start: Vec<f64>, seed: u64, spread: f6
     let solver = BoundedCmaEs::<Vec<f64>, DenseMatrix<f64>, f64>::new(seed, spread)
         .with_absolute_distribution_size_tolerance(collapse);
     let population = PopulationProgress::from_point(start);
-    Executor::new(Ranked::new(oracle), solver, population)
+    Executor::new(RankedProblem::new(oracle), solver, population)
         .run()
         .ok();
 }

@@ -15,7 +15,7 @@ use crate::world::scenario::Scenario;
 type Make = fn(&dyn Arguments) -> Result<SensorOptions>;
 
 /// A sensor by the place where it is.
-enum Place<'a> {
+enum MountedSensor<'a> {
     AboveRobot(&'a Vision),
     AboveObstacles(&'a Vision),
     OnRobot(&'a dyn RobotSensor),
@@ -44,12 +44,12 @@ macro_rules! sensor_options {
 
         impl SensorOptions {
             /// Where it is.
-            fn place(&self) -> Place<'_> {
+            fn place(&self) -> MountedSensor<'_> {
                 match self {
-                    Self::RobotCamera(vision) => Place::AboveRobot(vision),
-                    Self::ObstacleCamera(vision) => Place::AboveObstacles(vision),
-                    Self::Lidar(lidar) => Place::OnRobot(lidar),
-                    $(Self::$sensor(sensor) => Place::OnRobot(sensor)),+
+                    Self::RobotCamera(vision) => MountedSensor::AboveRobot(vision),
+                    Self::ObstacleCamera(vision) => MountedSensor::AboveObstacles(vision),
+                    Self::Lidar(lidar) => MountedSensor::OnRobot(lidar),
+                    $(Self::$sensor(sensor) => MountedSensor::OnRobot(sensor)),+
                 }
             }
         }
@@ -93,9 +93,13 @@ impl SensorOptions {
         index: u64,
     ) -> Result<Box<dyn Sensor>> {
         match self.place() {
-            Place::AboveRobot(vision) => Ok(Box::new(RobotCamera::new(scenario, vision, mark)?)),
-            Place::AboveObstacles(vision) => Ok(Box::new(ObstacleCamera::new(scenario, vision)?)),
-            Place::OnRobot(sensor) => sensor.at_work(scenario, index),
+            MountedSensor::AboveRobot(vision) => {
+                Ok(Box::new(RobotCamera::new(scenario, vision, mark)?))
+            }
+            MountedSensor::AboveObstacles(vision) => {
+                Ok(Box::new(ObstacleCamera::new(scenario, vision)?))
+            }
+            MountedSensor::OnRobot(sensor) => sensor.at_work(scenario, index),
         }
     }
 
@@ -106,14 +110,14 @@ impl SensorOptions {
     /// The regions cannot be computed.
     pub fn sight(&self, scenario: &Scenario) -> Result<Option<(Regions, f64)>> {
         match self.place() {
-            Place::AboveRobot(_) | Place::AboveObstacles(_) => Ok(None),
-            Place::OnRobot(sensor) => Ok(Some((sensor.regions(scenario)?, sensor.reach()))),
+            MountedSensor::AboveRobot(_) | MountedSensor::AboveObstacles(_) => Ok(None),
+            MountedSensor::OnRobot(sensor) => Ok(Some((sensor.regions(scenario)?, sensor.reach()))),
         }
     }
 
     /// Set for a camera, which measures in place of the scenario.
     #[must_use]
     pub fn is_camera(&self) -> bool {
-        !matches!(self.place(), Place::OnRobot(_))
+        !matches!(self.place(), MountedSensor::OnRobot(_))
     }
 }

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use vff_core::laws::field_d_star::{FieldDStar, FieldDStarPlanner, IncrementalSearch};
 use vff_core::laws::planning::Planner;
 use vff_core::laws::planning::footprint::Footprint;
-use vff_core::laws::planning::grid::{Frame, OccupancyGrid};
+use vff_core::laws::planning::grid::{GridFrame, OccupancyGrid};
 use vff_core::laws::planning::path::{PathStatus, length, point_ahead};
 use vff_core::world::geometry::Body;
 use vff_core::world::obstacle::Shape;
@@ -23,7 +23,7 @@ const ROUNDING: f64 = 1e-9;
 fn cells_are_blocked_where_an_obstacle_reaches_in() {
     let mut draws = Draws::new(4);
     for _ in 0..20 {
-        let frame = Frame::new([1.5, -0.7], 1.0, 0.13).unwrap();
+        let frame = GridFrame::new([1.5, -0.7], 1.0, 0.13).unwrap();
         let shape = if draws.below(2) == 0 {
             Shape::Disc {
                 radius: draws.between(0.05, 0.5),

@@ -4,7 +4,9 @@
 use nalgebra::Vector2;
 use proptest::prelude::*;
 use vff_core::laws::planning::footprint::Footprint;
-use vff_core::laws::shield::{Guard, Limits, Person, Plan, Shield, Tracking, View, Walls};
+use vff_core::laws::shield::{
+    Guard, Limits, Person, Plan, Shield, StaticObstacles, Tracking, View,
+};
 use vff_core::world::geometry::{Approach, Body, RobotState};
 use vff_core::world::map::StaticMap;
 use vff_core::world::motion::BodyState;
@@ -139,7 +141,7 @@ proptest! {
             max_speed: speed,
             ..Person::disc([0.0; 2], 1.0)
         }];
-        let view = View { robot, people: &people, walls: Walls::NONE };
+        let view = View { robot, people: &people, walls: StaticObstacles::NONE };
         prop_assume!(guard.verified(&view, command));
         let plan = Plan::new(&robot, command, &guard.limits, Tracking::EXACT);
         for step in 0..=60 {

@@ -15,7 +15,7 @@ use vff_core::robots::{DifferentialDriveRobot, HolonomicRobot};
 use vff_core::run::AnyLaw;
 use vff_core::run::as_built::AsBuilt;
 use vff_core::run::pursuit::{Encounter, Pursuer};
-use vff_core::search::{Hunt, Property};
+use vff_core::search::{Falsification, Property};
 use vff_core::sensing::measurement::{Distribution, Measurement, Noisy};
 use vff_core::world::motion::Motion;
 use vff_core::world::obstacle::{Limits, Obstacle};
@@ -114,7 +114,7 @@ impl Draw {
             step: self.step,
             ..AsBuilt::default()
         };
-        let hunt = Hunt {
+        let hunt = Falsification {
             scenario: &self.scenario,
             law,
             built: &built,
@@ -206,7 +206,7 @@ fn the_search_for_the_worst_person_finds_a_fault_without_a_shield_only() {
     let draw = Draw::of(5, false);
     let built = AsBuilt::default();
     let worst = |law: &AnyLaw| {
-        let hunt = Hunt {
+        let hunt = Falsification {
             scenario: &draw.scenario,
             law,
             built: &built,

@@ -4,8 +4,8 @@ use numeric::parallel::Work;
 use numeric::random::Stream;
 use vff_core::error::Failure;
 use vff_core::run::skirt::{
-    Action, DiscScene, DiscSceneOptions, Policy, Ring, Rule, Skirt, SkirtOptions, TestPlan,
-    TestRow, Travel, robot, test_batch,
+    DiscScene, DiscSceneOptions, EscapeAction, Policy, Ring, Rule, Skirt, SkirtOptions,
+    SkirtTravel, TestPlan, TestRow, robot, test_batch,
 };
 use vff_core::sensing::sonar::ring::PUBLISHED_WHEEL_GAP;
 use vff_core::world::shape::PlacedShape;
@@ -22,7 +22,7 @@ const OPTIONS: SkirtOptions = SkirtOptions {
     firing_period: 0.02,
 };
 
-const MOTION: Travel = Travel {
+const MOTION: SkirtTravel = SkirtTravel {
     speed: 0.3,
     acceleration: 0.6,
     spin_rate: 0.5,
@@ -166,7 +166,7 @@ fn a_disc_straight_ahead_is_escaped_the_way_the_robot_came() {
     let watch = |now: &robot::Moment<'_>| actions.push(now.action);
     let start = (south, noise);
     let found = robot::run(&skirt, &MOTION, &scene, start, watch, &|| false).unwrap();
-    let north = Action::Move(vff_core::run::skirt::Direction::North);
+    let north = EscapeAction::Move(vff_core::run::skirt::Direction::North);
     assert!(actions.contains(&north));
     assert!(found.contact_time.is_none());
     // Triggered 0.336 m away; a scan takes 0.18 s; braking takes 0.3^2 / (2 0.6) = 0.075 m.
@@ -206,5 +206,5 @@ fn a_robot_walled_in_spins_and_stands() {
     let watch = |now: &robot::Moment<'_>| last = Some((now.action, now.yaw_rate));
     let start = (0.0, Stream::new(0, 1));
     robot::run(&skirt, &MOTION, &scene, start, watch, &|| false).unwrap();
-    assert_eq!(last, Some((Action::Spin, 0.5)));
+    assert_eq!(last, Some((EscapeAction::Spin, 0.5)));
 }

@@ -4,7 +4,7 @@ use crate::listening::{ARRAY, GO_ON, RATE, work};
 use vff_core::error::Failure;
 use vff_core::sensing::sound::batch::locate_many;
 use vff_core::sensing::sound::fix::{Covariance, FixStatus, locate, printed_range};
-use vff_core::sensing::sound::microphones::{MicrophoneArray, Pair};
+use vff_core::sensing::sound::microphones::{MicrophoneArray, MicrophonePair};
 use vff_core::sensing::sound::trials::{Repetition, jittered_delays};
 
 /// Most error of a fix from exact delays, in m and in rad, up to 4 m and 60 deg: rounding only.
@@ -82,17 +82,17 @@ fn printed_formula_gives_no_range_of_any_microphone() {
 
 #[test]
 fn parallel_rays_are_biased_as_the_specification_says() {
-    let degrees = |range: f64, bearing: f64, pair: Pair| {
+    let degrees = |range: f64, bearing: f64, pair: MicrophonePair| {
         let delays = ARRAY.delays(range, bearing.to_radians());
         ARRAY
             .parallel_ray_bearing(pair, pair.delay(delays))
             .to_degrees()
     };
     for (found, expected) in [
-        (degrees(1.0, 0.0, Pair::First), 11.1),
-        (degrees(1.0, 30.0, Pair::First), 38.5),
-        (degrees(1.0, 30.0, Pair::Second), 18.7),
-        (degrees(1.0, 30.0, Pair::Outer), 28.1),
+        (degrees(1.0, 0.0, MicrophonePair::First), 11.1),
+        (degrees(1.0, 30.0, MicrophonePair::First), 38.5),
+        (degrees(1.0, 30.0, MicrophonePair::Second), 18.7),
+        (degrees(1.0, 30.0, MicrophonePair::Outer), 28.1),
     ] {
         assert!(
             (found - expected).abs() < PRINTED_DIGIT,
@@ -100,10 +100,10 @@ fn parallel_rays_are_biased_as_the_specification_says() {
         );
     }
     // Far away the rays are parallel.
-    assert!((degrees(4000.0, 30.0, Pair::First) - 30.0).abs() < 0.01);
+    assert!((degrees(4000.0, 30.0, MicrophonePair::First) - 30.0).abs() < 0.01);
     assert!(
         ARRAY
-            .parallel_ray_bearing(Pair::First, 0.41 / 340.0)
+            .parallel_ray_bearing(MicrophonePair::First, 0.41 / 340.0)
             .is_nan()
     );
 }

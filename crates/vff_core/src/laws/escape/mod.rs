@@ -3,5 +3,5 @@
 pub mod states;
 pub mod trigger;
 
-pub use states::{Action, Decider, Direction, Policy};
+pub use states::{Decider, Direction, EscapeAction, Policy};
 pub use trigger::{Rule, normal_distances, trigger_distances};

@@ -72,7 +72,7 @@ impl Direction {
 
 /// Next action of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Action {
+pub enum EscapeAction {
     /// Go on as before.
     Keep,
     /// Stand and turn.
@@ -95,17 +95,17 @@ pub enum Policy {
 
 /// Rows of Table 1: sensors that see an obstacle, and the action. Row 6 prints the obstacles
 /// 5, 6, 7; the direction north is opposite to 6, 7, 8.
-pub const TABLE_1: [(&[usize], Action); 10] = [
-    (&[1, 2, 3, 4, 5, 6, 7, 8, 9], Action::Spin),
-    (&[2, 3], Action::Move(Direction::South)),
-    (&[1, 9], Action::Move(Direction::East)),
-    (&[1, 2, 9], Action::Move(Direction::SouthEast)),
-    (&[4, 5], Action::Move(Direction::West)),
-    (&[4, 5, 6], Action::Move(Direction::NorthWest)),
-    (&[6, 7, 8], Action::Move(Direction::North)),
-    (&[8, 9], Action::Move(Direction::NorthEast)),
-    (&[3, 4, 5], Action::Move(Direction::SouthWest)),
-    (&[], Action::Keep),
+pub const TABLE_1: [(&[usize], EscapeAction); 10] = [
+    (&[1, 2, 3, 4, 5, 6, 7, 8, 9], EscapeAction::Spin),
+    (&[2, 3], EscapeAction::Move(Direction::South)),
+    (&[1, 9], EscapeAction::Move(Direction::East)),
+    (&[1, 2, 9], EscapeAction::Move(Direction::SouthEast)),
+    (&[4, 5], EscapeAction::Move(Direction::West)),
+    (&[4, 5, 6], EscapeAction::Move(Direction::NorthWest)),
+    (&[6, 7, 8], EscapeAction::Move(Direction::North)),
+    (&[8, 9], EscapeAction::Move(Direction::NorthEast)),
+    (&[3, 4, 5], EscapeAction::Move(Direction::SouthWest)),
+    (&[], EscapeAction::Keep),
 ];
 
 /// Table 3 by sensors 1 to 9: d1, L3 (2 and 3), d4, d5, d6, y, d7, d8.
@@ -123,7 +123,7 @@ const TABLE_3: [Direction; PUBLISHED_SENSORS] = [
 
 /// Action of Table 1 for a pattern with bit k - 1 set where sensor k sees an obstacle.
 #[must_use]
-pub fn table_1(pattern: u64) -> Option<Action> {
+pub fn table_1(pattern: u64) -> Option<EscapeAction> {
     let of = |sensors: &[usize]| {
         sensors
             .iter()
@@ -142,15 +142,15 @@ pub struct Decider {
     bearings: Vec<f64>,
     escapes: Vec<Direction>,
     /// Actions of all patterns of the published ring.
-    table: Vec<Option<Action>>,
+    table: Vec<Option<EscapeAction>>,
     policy: Policy,
 }
 
 impl Reflex for &Decider {
-    type Answer = Action;
+    type Answer = EscapeAction;
 
     #[inline]
-    fn answer(&mut self, percept: &Percept<'_>) -> Action {
+    fn answer(&mut self, percept: &Percept<'_>) -> EscapeAction {
         self.action(percept.readings)
     }
 }
@@ -192,26 +192,26 @@ impl Decider {
     /// Action for readings in m.
     #[inline]
     #[must_use]
-    pub fn action(&self, readings: &[f64]) -> Action {
+    pub fn action(&self, readings: &[f64]) -> EscapeAction {
         let pattern = self.pattern(readings);
         if pattern == 0 {
-            return Action::Keep;
+            return EscapeAction::Keep;
         }
         if pattern.count_ones() as usize == self.thresholds.len() {
-            return Action::Spin;
+            return EscapeAction::Spin;
         }
         let listed = usize::try_from(pattern)
             .ok()
             .and_then(|index| self.table.get(index).copied().flatten());
         listed.unwrap_or_else(|| match self.policy {
             Policy::Nearest => self.escape_nearest(readings),
-            Policy::BestDirection => Action::Move(self.best_direction(readings)),
-            Policy::TableOnly => Action::Keep,
+            Policy::BestDirection => EscapeAction::Move(self.best_direction(readings)),
+            Policy::TableOnly => EscapeAction::Keep,
         })
     }
 
     /// Away from the nearest triggered sensor.
-    fn escape_nearest(&self, readings: &[f64]) -> Action {
+    fn escape_nearest(&self, readings: &[f64]) -> EscapeAction {
         let triggered = readings
             .iter()
             .zip(&self.thresholds)
@@ -219,7 +219,9 @@ impl Decider {
             .filter(|((reading, threshold), _)| reading <= threshold);
         triggered
             .min_by(|((one, _), _), ((other, _), _)| one.total_cmp(other))
-            .map_or(Action::Keep, |(_, escape)| Action::Move(*escape))
+            .map_or(EscapeAction::Keep, |(_, escape)| {
+                EscapeAction::Move(*escape)
+            })
     }
 
     /// Direction phi with the least sum over the triggered sensors k at bearings `s_k` of
@@ -261,7 +263,7 @@ pub fn opposite(bearing: f64) -> Direction {
 
 #[cfg(test)]
 mod tests {
-    use super::{Action, Decider, Direction, Policy, TABLE_1, opposite, table_1};
+    use super::{Decider, Direction, EscapeAction, Policy, TABLE_1, opposite, table_1};
     use crate::sensing::sonar::ring::{PUBLISHED_WHEEL_GAP, Ring};
 
     fn decider(policy: Policy) -> Decider {
@@ -295,12 +297,12 @@ mod tests {
     #[test]
     fn between_the_rows_the_policy_decides() {
         let one = readings(&[(5, 0.3)]);
-        let west = Action::Move(Direction::West);
+        let west = EscapeAction::Move(Direction::West);
         assert_eq!(decider(Policy::Nearest).action(&one), west);
         assert_eq!(decider(Policy::BestDirection).action(&one), west);
-        assert_eq!(decider(Policy::TableOnly).action(&one), Action::Keep);
+        assert_eq!(decider(Policy::TableOnly).action(&one), EscapeAction::Keep);
         let two = readings(&[(5, 0.3), (7, 0.1)]);
-        let north = Action::Move(Direction::North);
+        let north = EscapeAction::Move(Direction::North);
         assert_eq!(decider(Policy::Nearest).action(&two), north);
     }
 
@@ -308,7 +310,7 @@ mod tests {
     fn best_direction_lies_between_two_obstacles() {
         // Obstacles in the west and in the south-east: the free side is the north-east.
         let found = decider(Policy::BestDirection).action(&readings(&[(9, 0.1), (6, 0.1)]));
-        assert_eq!(found, Action::Move(Direction::NorthEast));
+        assert_eq!(found, EscapeAction::Move(Direction::NorthEast));
     }
 
     #[test]

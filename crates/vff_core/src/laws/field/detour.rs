@@ -2,7 +2,7 @@
 
 use crate::lanes::{Planar, Real, Vector2};
 use crate::laws::field::gains::GainLanes;
-use crate::laws::field::side::Detour;
+use crate::laws::field::side::DetourSide;
 use crate::world::geometry::Approach;
 
 /// `psi` and its damping part (5.4.5), both along the left of `u`, so signed by the side.
@@ -17,7 +17,7 @@ pub struct Turning<R> {
 impl<R: Real> Turning<R> {
     /// Turning at an approach on a decided side.
     #[inline(always)]
-    pub fn new(approach: &Approach<R>, detour: &Detour<R>) -> Self {
+    pub fn new(approach: &Approach<R>, detour: &DetourSide<R>) -> Self {
         let square = approach.depth * approach.depth;
         Self {
             signed_potential: square * detour.turn * detour.side,

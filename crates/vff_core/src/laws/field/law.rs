@@ -7,7 +7,7 @@ use crate::laws::field::detour::Turning;
 use crate::laws::field::gains::{GainLanes, Gains};
 use crate::laws::field::lyapunov;
 use crate::laws::field::repulsive::Repulsion;
-use crate::laws::field::side::{self, Detour, SideRules};
+use crate::laws::field::side::{self, DetourSide, SideRules};
 use crate::laws::field::stabilizing::{Dissipation, Dissipative, Stabilizing};
 use crate::laws::field::terms::{FieldTerms, ObstacleTerms};
 use crate::laws::{Command, LaneFamily, LaneLaw, Law, LawFamily, Situation};
@@ -119,13 +119,13 @@ impl LaneFamily for VirtualForceField {
 }
 
 /// Which lanes an obstacle concerns.
-struct Near<R: Real> {
+struct NearLanes<R: Real> {
     offset: Offset<R>,
     active: R::Mask,
     critical: R::Mask,
 }
 
-impl<R: Real> Near<R> {
+impl<R: Real> NearLanes<R> {
     #[inline(always)]
     fn new(body: &Body<R>, robot: &RobotState<R>) -> Self {
         let offset = body.offset(robot.position);
@@ -143,11 +143,11 @@ impl<R: Real> Near<R> {
 
 /// Forces and geometry of one obstacle in one evaluation.
 #[derive(Clone, Copy, Debug)]
-struct Slot<R: Real> {
+struct ObstacleForces<R: Real> {
     index: usize,
     approach: Approach<R>,
     side: R,
-    detour: Detour<R>,
+    detour: DetourSide<R>,
     turning: Turning<R>,
     repulsion: Repulsion<R>,
     repulsive: Vector2<R>,
@@ -166,7 +166,7 @@ pub struct ForceFieldLaw<R: Real, const RECORD: bool> {
     control_period: f64,
     /// Side of each obstacle at the sample before, 0 outside its active region.
     latched: Vec<R>,
-    slots: Vec<Slot<R>>,
+    slots: Vec<ObstacleForces<R>>,
     dissipation: Dissipation<R>,
 }
 
@@ -204,7 +204,7 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
         let state = self.dissipative(robot);
         let mut dissipation = Dissipation::zero();
         for body in situation.bodies {
-            let near = Near::new(body, robot);
+            let near = NearLanes::new(body, robot);
             if !near.active.any() {
                 continue;
             }
@@ -266,7 +266,7 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
         self.slots.clear();
         for (index, body) in situation.bodies.iter().enumerate() {
             let robot = &situation.robot;
-            let near = Near::new(body, robot);
+            let near = NearLanes::new(body, robot);
             if !near.active.any() {
                 continue;
             }
@@ -276,7 +276,7 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
             let detour = side::latch(&self.rules, &approach, side, self.latched[index]);
             let repulsion = Repulsion::new(&approach);
             let turning = Turning::new(&approach, &detour);
-            self.slots.push(Slot {
+            self.slots.push(ObstacleForces {
                 index,
                 approach,
                 side: detour.side,
@@ -294,7 +294,7 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
     #[inline(always)]
     fn break_ties(&mut self) {
         let half = R::splat(0.5);
-        let open = |slot: &Slot<R>| slot.approach.active & slot.side.abs().lt(half);
+        let open = |slot: &ObstacleForces<R>| slot.approach.active & slot.side.abs().lt(half);
         if !self.slots.iter().any(|slot| open(slot).any()) {
             return;
         }

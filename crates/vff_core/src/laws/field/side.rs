@@ -21,7 +21,7 @@ pub struct SideRules {
 
 /// Side and turn of a detour.
 #[derive(Clone, Copy, Debug)]
-pub struct Detour<R: Real> {
+pub struct DetourSide<R: Real> {
     /// `s`: +1 counter-clockwise, -1 clockwise, 0 not decided yet.
     pub side: R,
     /// Angle still to be turned, in rad: `|Phi|`, or `2 pi - |Phi|` on a latched long way round.
@@ -89,8 +89,13 @@ fn behind<R: Real>(
 ///
 /// `latched` is the side at the sample before, 0 if the robot was outside the active region.
 #[inline(always)]
-pub fn latch<R: Real>(rules: &SideRules, approach: &Approach<R>, side: R, latched: R) -> Detour<R> {
-    let mut detour = Detour {
+pub fn latch<R: Real>(
+    rules: &SideRules,
+    approach: &Approach<R>,
+    side: R,
+    latched: R,
+) -> DetourSide<R> {
+    let mut detour = DetourSide {
         side,
         turn: approach.angle,
         descent: side * approach.shortest_side,

@@ -5,7 +5,7 @@ use crate::lanes::{Planar, Real, Truth, Vector2};
 use crate::laws::field::detour::Turning;
 use crate::laws::field::gains::GainLanes;
 use crate::laws::field::repulsive::Repulsion;
-use crate::laws::field::side::Detour;
+use crate::laws::field::side::DetourSide;
 use crate::world::geometry::{Approach, Body, at_rest};
 
 /// Below this `|v_L|` the direction of the force is lost and it is zero, in N/s.
@@ -135,7 +135,7 @@ impl<R: Real> Dissipation<R> {
         gains: &GainLanes<R>,
         robot: &Dissipative<R>,
         body: &Body<R>,
-        seen: (&Approach<R>, &Repulsion<R>, &Turning<R>, &Detour<R>),
+        seen: (&Approach<R>, &Repulsion<R>, &Turning<R>, &DetourSide<R>),
     ) {
         let (approach, repulsion, turning, detour) = seen;
         let (k1, k3, k5) = (gains.attractive, gains.repulsive, gains.detour);

@@ -14,7 +14,7 @@ use crate::error::{Result, not_negative, positive};
 use crate::laws::Situation;
 use crate::laws::planning::Planner;
 use crate::laws::planning::footprint::Footprint;
-use crate::laws::planning::grid::{Frame, OccupancyGrid};
+use crate::laws::planning::grid::{GridFrame, OccupancyGrid};
 use crate::laws::planning::path::{PathStatus, point_ahead, velocity_towards};
 use crate::world::scenario::Scenario;
 
@@ -111,7 +111,7 @@ impl FieldDStarPlanner {
         let parameters = parameters.checked()?;
         let origin = scenario.goal;
         let start = relative(scenario.start, origin);
-        let frame = Frame::new(start, parameters.room, parameters.resolution)?;
+        let frame = GridFrame::new(start, parameters.room, parameters.resolution)?;
         let sides = [frame.columns, frame.rows];
         let first = frame.cell(frame.in_cells(start));
         let growth = scenario.robot.radius + parameters.margin;

@@ -2,7 +2,7 @@
 
 use super::cost::corner_cost;
 use super::queue::{Key, Queue};
-use super::surroundings::{Neighbor, Triangle, bound, neighbors, triangles};
+use super::surroundings::{GridNeighbor, Triangle, bound, neighbors, triangles};
 use crate::error::{Failure, Given, Result};
 use crate::laws::Stop;
 
@@ -14,7 +14,7 @@ const RINGS: usize = 2;
 
 /// Value of a node.
 #[derive(Clone, Copy, Debug)]
-struct Node {
+struct NodeValue {
     /// Cost to the goal when last expanded.
     cost: f64,
     /// Cost to the goal from the costs of its neighbors.
@@ -34,9 +34,9 @@ pub struct IncrementalSearch {
     rows: usize,
     stride: usize,
     triangles: [Triangle; 8],
-    neighbors: [Neighbor; 8],
+    neighbors: [GridNeighbor; 8],
     cell_costs: Vec<f64>,
-    nodes: Vec<Node>,
+    nodes: Vec<NodeValue>,
     queue: Queue,
     goal: usize,
     /// Cell of the robot.
@@ -61,7 +61,7 @@ impl IncrementalSearch {
         let stride = columns + 1 + 2 * RINGS;
         let count = stride * (rows + 1 + 2 * RINGS);
         let triangles = triangles(stride);
-        let unknown = Node {
+        let unknown = NodeValue {
             cost: f64::INFINITY,
             lookahead: f64::INFINITY,
             triangle: 0,
@@ -259,7 +259,7 @@ impl IncrementalSearch {
     }
 
     fn key(&self, node: usize) -> Key {
-        let Node {
+        let NodeValue {
             cost, lookahead, ..
         } = self.nodes[node];
         let least = cost.min(lookahead);
@@ -324,7 +324,7 @@ impl IncrementalSearch {
     fn lower(&mut self, node: usize) {
         self.nodes[node].cost = self.nodes[node].lookahead;
         self.queue.remove(node);
-        for Neighbor { step, triangles } in self.neighbors {
+        for GridNeighbor { step, triangles } in self.neighbors {
             let other = node.wrapping_add_signed(step);
             let mut cheaper = false;
             for triangle in triangles {
@@ -344,7 +344,7 @@ impl IncrementalSearch {
     /// A node has become more expensive: those that relied on it look again.
     fn raise(&mut self, node: usize) {
         self.nodes[node].cost = f64::INFINITY;
-        for Neighbor { step, triangles } in self.neighbors {
+        for GridNeighbor { step, triangles } in self.neighbors {
             let other = node.wrapping_add_signed(step);
             if triangles.contains(&self.nodes[other].triangle)
                 && self.nodes[other].lookahead < f64::INFINITY

@@ -14,7 +14,7 @@ pub(super) struct Triangle {
 
 /// A neighbor and the two triangles of that neighbor that hold the node itself.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Neighbor {
+pub(super) struct GridNeighbor {
     pub(super) step: isize,
     pub(super) triangles: [usize; 2],
 }
@@ -55,7 +55,7 @@ pub(super) fn triangles(stride: usize) -> [Triangle; 8] {
 }
 
 /// Neighbors of a node, counter-clockwise.
-pub(super) fn neighbors(triangles: &[Triangle; 8]) -> [Neighbor; 8] {
+pub(super) fn neighbors(triangles: &[Triangle; 8]) -> [GridNeighbor; 8] {
     let up = triangles[2].axis;
     [1, up + 1, up, up - 1, -1, -up - 1, -up, 1 - up].map(|step| {
         let mut holders = [0; 2];
@@ -66,7 +66,7 @@ pub(super) fn neighbors(triangles: &[Triangle; 8]) -> [Neighbor; 8] {
         for (holder, number) in holders.iter_mut().zip(holding) {
             *holder = number;
         }
-        Neighbor {
+        GridNeighbor {
             step,
             triangles: holders,
         }

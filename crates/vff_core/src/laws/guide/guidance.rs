@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use crate::laws::guide::plan::Planning;
-use crate::laws::guide::{Guide, LocalGoal, Plan, Standing, View};
+use crate::laws::guide::{Guide, LocalGoal, Plan, PlanView, Standing};
 use crate::world::shape::PlacedShape;
 
 /// Most nodes that a plan made again settles in one look: an update of a robot takes no longer, and a
@@ -108,7 +108,7 @@ impl Guidance {
     /// Cost at a position and the local goal there, outside of the box of the nodes on the way back into it;
     /// `None` without a plan there.
     #[must_use]
-    pub fn local_goal(&self, position: Vector2<f64>) -> Option<(View, LocalGoal)> {
+    pub fn local_goal(&self, position: Vector2<f64>) -> Option<(PlanView, LocalGoal)> {
         let plan = self.plan();
         let view = plan.view_or_way_back(position)?;
         Some((view, plan.local_goal(position, &view)))

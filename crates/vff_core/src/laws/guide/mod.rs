@@ -23,7 +23,7 @@ use crate::world::map::StaticMap;
 pub use detour::Detour;
 pub use guidance::Guidance;
 pub use nodes::MOST_NODES;
-pub use plan::{LocalGoal, Plan, View};
+pub use plan::{LocalGoal, Plan, PlanView};
 pub use standing::Standing;
 pub use takeover::{Takeover, TakeoverOptions, TakeoverRule};
 

@@ -9,7 +9,7 @@ use crate::error::{Failure, Given, Result};
 use crate::laws::Stop;
 use crate::laws::guide::Guide;
 use crate::laws::guide::nodes::Nodes;
-use crate::laws::guide::search::{CostToGo, Room, Search};
+use crate::laws::guide::search::{CostToGo, GuideSearch, MapClearance};
 use crate::world::map::StaticMap;
 
 /// Nodes between two looks at whether to stop.
@@ -39,7 +39,7 @@ pub struct Plan {
 
 /// How a plan looks from a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
+pub struct PlanView {
     /// Cost at the place, in m.
     pub cost: f64,
     /// The node that the way starts with.
@@ -92,7 +92,7 @@ pub(super) struct Planning {
     map: StaticMap,
     least: f64,
     goal: Vector2<f64>,
-    search: Search,
+    search: GuideSearch,
 }
 
 impl Planning {
@@ -105,7 +105,7 @@ impl Planning {
         goal: Vector2<f64>,
     ) -> Result<Self> {
         let least = robot_radius + guide.margin;
-        let room = Room {
+        let room = MapClearance {
             map: map.clone(),
             robot_radius,
             least,
@@ -118,7 +118,7 @@ impl Planning {
             map: map.clone(),
             least,
             goal,
-            search: Search::new(room, nodes, first),
+            search: GuideSearch::new(room, nodes, first),
         })
     }
 
@@ -202,14 +202,14 @@ impl Plan {
 
     /// How the plan looks from a position; `None` if no node with a plan is seen nearby.
     #[must_use]
-    pub fn view(&self, position: Vector2<f64>) -> Option<View> {
+    pub fn view(&self, position: Vector2<f64>) -> Option<PlanView> {
         self.view_near(position, position)
     }
 
     /// The same for a robot that was pushed out of the box of the nodes, beside people for example: the way
     /// back leads to nodes at the nearest place of the box.
     #[must_use]
-    pub fn view_or_way_back(&self, position: Vector2<f64>) -> Option<View> {
+    pub fn view_or_way_back(&self, position: Vector2<f64>) -> Option<PlanView> {
         self.view(position).or_else(|| {
             let nearest = self.nodes.nearest(position);
             let outside = nearest != position;
@@ -218,7 +218,7 @@ impl Plan {
     }
 
     /// How the plan looks from a position by the nodes around a place.
-    fn view_near(&self, position: Vector2<f64>, place: Vector2<f64>) -> Option<View> {
+    fn view_near(&self, position: Vector2<f64>, place: Vector2<f64>) -> Option<PlanView> {
         let least = self.seen_clearance(position);
         let mut near = [(f64::INFINITY, 0_usize); MOST_NEAR];
         for reach in REACHES {
@@ -237,7 +237,7 @@ impl Plan {
                 self.map.segment_keeps(position, place, least)
             });
             if let Some((cost, start)) = seen.next().copied() {
-                return Some(View { cost, start, least });
+                return Some(PlanView { cost, start, least });
             }
         }
         None
@@ -258,7 +258,7 @@ impl Plan {
 
     /// The farthest seen node of the path, or the goal at its end, within the look-ahead.
     #[must_use]
-    pub fn local_goal(&self, position: Vector2<f64>, view: &View) -> LocalGoal {
+    pub fn local_goal(&self, position: Vector2<f64>, view: &PlanView) -> LocalGoal {
         let ahead = self.ahead(position, view);
         let seen = |candidate: &LocalGoal| {
             self.map
@@ -279,7 +279,7 @@ impl Plan {
     }
 
     /// The path from a position within the look-ahead.
-    fn ahead(&self, position: Vector2<f64>, view: &View) -> Vec<LocalGoal> {
+    fn ahead(&self, position: Vector2<f64>, view: &PlanView) -> Vec<LocalGoal> {
         let mut ahead = Vec::new();
         let (mut last, mut length) = (position, 0.0);
         for step in self.steps(view) {
@@ -294,7 +294,7 @@ impl Plan {
     }
 
     /// The nodes of the path, then the goal.
-    fn steps(&self, view: &View) -> impl Iterator<Item = LocalGoal> {
+    fn steps(&self, view: &PlanView) -> impl Iterator<Item = LocalGoal> {
         let mut next = Some(view.start);
         let nodes = std::iter::from_fn(move || {
             let node = next?;
@@ -323,7 +323,7 @@ fn seen_clearance(map: &StaticMap, least: f64, position: Vector2<f64>) -> f64 {
 }
 
 /// The nearest free node that sees the goal, and its distance from it.
-fn goal_node(nodes: &Nodes, room: &Room, goal: Vector2<f64>) -> Result<(usize, f64)> {
+fn goal_node(nodes: &Nodes, room: &MapClearance, goal: Vector2<f64>) -> Result<(usize, f64)> {
     let (map, least) = (&room.map, room.least);
     let seen = seen_clearance(map, least, goal);
     let near = nodes.square(goal, GOAL_REACH).filter_map(|node| {

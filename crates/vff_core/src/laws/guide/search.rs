@@ -14,7 +14,7 @@ const NEAR: f64 = 0.3;
 const DEARER: f64 = 2.0;
 /// Clearance of a robot and its margin from a map.
 #[derive(Clone, Debug)]
-pub(super) struct Room {
+pub(super) struct MapClearance {
     pub map: StaticMap,
     pub robot_radius: f64,
     /// Least clearance `rho + m_p` of nodes and links, in m.
@@ -23,7 +23,7 @@ pub(super) struct Room {
     pub within_known: bool,
 }
 
-impl Room {
+impl MapClearance {
     /// Clearance of a place up to a distance in m, zero where no way leads.
     pub fn clearance(&self, place: Vector2<f64>, far: f64) -> f64 {
         if self.within_known && !self.map.knows(place) {
@@ -43,8 +43,8 @@ pub(super) struct CostToGo {
 
 /// A search from the goal's node, which resumes where it stopped.
 #[derive(Clone, Debug)]
-pub(super) struct Search {
-    room: Room,
+pub(super) struct GuideSearch {
+    room: MapClearance,
     nodes: Nodes,
     /// Clearances up to `far`, NaN where not yet known.
     clearance: Vec<f64>,
@@ -60,9 +60,9 @@ fn narrow(node: usize) -> u32 {
     node as u32
 }
 
-impl Search {
+impl GuideSearch {
     /// From the goal's node, whose own cost is its distance in m.
-    pub fn new(room: Room, nodes: Nodes, (goal, cost_of_goal): (usize, f64)) -> Self {
+    pub fn new(room: MapClearance, nodes: Nodes, (goal, cost_of_goal): (usize, f64)) -> Self {
         let beyond = room.least - room.robot_radius + 3.0 * nodes.spacing;
         let mut found = CostToGo {
             cost: vec![f64::INFINITY; nodes.count()],

@@ -9,7 +9,7 @@ pub(super) const WINDOW: f64 = 2.0;
 
 /// Recent positions of a person.
 #[derive(Clone, Copy, Debug)]
-struct Track {
+struct PersonHistory {
     /// Place from which the person has moved less than [`MOVED`], in m.
     anchor: Vector2<f64>,
     /// Since when, in s.
@@ -20,7 +20,7 @@ struct Track {
 /// Who moved less than 0.1 m in 2 s.
 #[derive(Clone, Debug, Default)]
 pub struct Standing {
-    tracks: Vec<Option<Track>>,
+    tracks: Vec<Option<PersonHistory>>,
 }
 
 impl Standing {
@@ -57,7 +57,7 @@ impl Standing {
     }
 }
 
-fn follow(slot: &mut Option<Track>, time: f64, place: Option<Vector2<f64>>) -> bool {
+fn follow(slot: &mut Option<PersonHistory>, time: f64, place: Option<Vector2<f64>>) -> bool {
     let stood = slot.is_some_and(|track| track.stands);
     let Some(place) = place else {
         *slot = None;
@@ -65,11 +65,11 @@ fn follow(slot: &mut Option<Track>, time: f64, place: Option<Vector2<f64>>) -> b
     };
     let stays = slot.filter(|track| (place - track.anchor).norm() < MOVED);
     *slot = Some(match stays {
-        Some(track) => Track {
+        Some(track) => PersonHistory {
             stands: time - track.since >= WINDOW - 1e-9,
             ..track
         },
-        None => Track {
+        None => PersonHistory {
             anchor: place,
             since: time,
             stands: false,

@@ -23,7 +23,7 @@ const TOUCHING: f64 = 1e-9;
 
 /// Source of the repulsion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Sight {
+pub(crate) enum RepulsionSource {
     /// Readings of banks of three sonars.
     Echoes,
     /// Bodies that a camera sees.
@@ -49,7 +49,7 @@ pub(crate) struct FollowingLaw {
     /// Repulsion of a collision vector.
     pub repulsion: Prepared,
     /// Source of the repulsion.
-    pub sight: Sight,
+    pub sight: RepulsionSource,
     /// Sensors in the axes of their bank.
     pub layout: BankLayout,
     /// Banks on the robot.
@@ -85,7 +85,7 @@ impl<L: Deref<Target = FollowingLaw>> Following<L> {
 
     /// Source of its repulsion.
     #[inline]
-    pub fn sight(&self) -> Sight {
+    pub fn sight(&self) -> RepulsionSource {
         self.law.sight
     }
 
@@ -140,9 +140,9 @@ impl<L: Deref<Target = FollowingLaw>> Reflex for Following<L> {
             self.target = pose.position + pose.outward(heard.direction) * advance;
         }
         let repulsion = match self.law.sight {
-            Sight::Bodies => self.of_bodies(percept),
-            Sight::Echoes => self.of_echoes(percept),
-            Sight::Nothing => Vector2::zeros(),
+            RepulsionSource::Bodies => self.of_bodies(percept),
+            RepulsionSource::Echoes => self.of_echoes(percept),
+            RepulsionSource::Nothing => Vector2::zeros(),
         };
         let offset = self.target - pose.position;
         Forces {

@@ -9,7 +9,7 @@ pub const MOST_CELLS: usize = 4_000_000;
 /// Where the cells are. Positions are relative to the goal, which lies on a corner of cells, so
 /// that moving the whole scene changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
+pub struct GridFrame {
     /// Side of a cell in m.
     pub resolution: f64,
     /// Number of cells along x.
@@ -20,7 +20,7 @@ pub struct Frame {
     pub goal: [usize; 2],
 }
 
-impl Frame {
+impl GridFrame {
     /// Cells over the box around a start and the goal, with room on every side, in m.
     ///
     /// # Errors
@@ -97,7 +97,7 @@ pub(crate) fn whole(number: f64, bound: usize) -> usize {
 /// and on their borders stays outside every footprint.
 #[derive(Clone, Debug)]
 pub struct OccupancyGrid {
-    frame: Frame,
+    frame: GridFrame,
     /// How many footprints reach into a cell.
     cover: Vec<u32>,
     blocked: Vec<bool>,
@@ -109,7 +109,7 @@ pub struct OccupancyGrid {
 impl OccupancyGrid {
     /// A grid without obstacles.
     #[must_use]
-    pub fn new(frame: Frame) -> Self {
+    pub fn new(frame: GridFrame) -> Self {
         let cells = frame.columns * frame.rows;
         Self {
             frame,
@@ -123,7 +123,7 @@ impl OccupancyGrid {
 
     /// Where the cells are.
     #[must_use]
-    pub fn frame(&self) -> &Frame {
+    pub fn frame(&self) -> &GridFrame {
         &self.frame
     }
 
@@ -205,7 +205,7 @@ impl OccupancyGrid {
 }
 
 /// Calls with every cell that a footprint reaches into; touching its border is not enough.
-fn for_covered(frame: &Frame, footprint: &Footprint, mut each: impl FnMut([usize; 2])) {
+fn for_covered(frame: &GridFrame, footprint: &Footprint, mut each: impl FnMut([usize; 2])) {
     let height = footprint.height();
     let low = frame.in_cells([0.0, height[0]])[1];
     let high = frame.in_cells([0.0, height[1]])[1];

@@ -56,7 +56,7 @@ struct Present {
 
 /// Where the robot is to go now.
 #[derive(Clone, Copy, Debug)]
-struct Heading {
+struct Destination {
     /// The goal or a local one; `None` where the plan leads nowhere.
     local: Option<LocalGoal>,
     taken_over: bool,
@@ -187,7 +187,7 @@ impl Law<f64> for SafeLaw {
 impl SafeLaw {
     /// Whether no part has a say in what the law commands: the robot itself keeps to its limits, and does what it does
     /// under the law alone.
-    fn lets_through(&self, heading: &Heading) -> bool {
+    fn lets_through(&self, heading: &Destination) -> bool {
         let parts = self.guard.is_some() || self.yielder.is_some();
         let law_heads = heading.local.is_some() && !heading.taken_over;
         !parts && law_heads && self.preferred >= self.limits.max_speed
@@ -208,7 +208,7 @@ impl SafeLaw {
     }
 
     /// The (local) goal, and whether the robot heads for it by itself.
-    fn head(&mut self, situation: &Situation<'_, f64>) -> Heading {
+    fn head(&mut self, situation: &Situation<'_, f64>) -> Destination {
         let (time, position) = (situation.time, situation.robot.position);
         let mut again = false;
         if let Some(guidance) = &mut self.guidance {
@@ -219,7 +219,7 @@ impl SafeLaw {
             return self.head_without_map(time, position);
         };
         let found = guidance.local_goal(position);
-        let mut heading = Heading {
+        let mut heading = Destination {
             local: found.map(|(_, local)| local),
             taken_over: false,
         };
@@ -239,7 +239,7 @@ impl SafeLaw {
     }
 
     /// The goal itself; where the robot is stuck behind others who stand, the way around them.
-    fn head_without_map(&mut self, time: f64, position: Vector2<f64>) -> Heading {
+    fn head_without_map(&mut self, time: f64, position: Vector2<f64>) -> Destination {
         let around = self
             .detour
             .as_mut()
@@ -247,7 +247,7 @@ impl SafeLaw {
             .and_then(|(detour, guidance)| detour.observe(time, position, guidance));
         let cost = (self.goal - position).norm();
         let takeover = self.takeover.as_mut();
-        Heading {
+        Destination {
             local: around.or(Some(LocalGoal::goal(self.goal))),
             taken_over: takeover.is_some_and(|takeover| takeover.observe(time, Some(cost))),
         }

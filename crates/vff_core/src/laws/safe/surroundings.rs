@@ -4,7 +4,7 @@ use crate::lanes::Vector2;
 use crate::laws::Situation;
 use crate::laws::safe::boundary::boundary_obstacle;
 use crate::laws::safe::settings::SafeNavigation;
-use crate::laws::shield::{Guard, KnownVelocity, Person, Walls};
+use crate::laws::shield::{Guard, KnownVelocity, Person, StaticObstacles};
 use crate::laws::yielding::{Passerby, Yielder};
 use crate::world::geometry::Body;
 use crate::world::map::{MOST_POINTS, StaticMap};
@@ -18,7 +18,7 @@ const REACH: f64 = 5.0;
 
 /// How an obstacle is dealt with.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
+enum ObstacleKind {
     /// Somebody, or something that moves.
     Person,
     /// A rectangle that stands.
@@ -29,8 +29,8 @@ enum Kind {
 
 /// Properties of an obstacle that are known before the run.
 #[derive(Clone, Copy, Debug)]
-struct Known {
-    kind: Kind,
+struct KnownObstacle {
+    kind: ObstacleKind,
     /// Regions for the law.
     regions: Regions,
     /// Largest speed that the shield reckons with, in m/s.
@@ -43,7 +43,7 @@ struct Known {
 
 /// Everything around the robot.
 pub(super) struct Surroundings {
-    known: Vec<Known>,
+    known: Vec<KnownObstacle>,
     map: Option<StaticMap>,
     /// Share by which boundary points hide others, and how far they are looked for, in m.
     hiding: (f64, f64),
@@ -67,7 +67,9 @@ impl Surroundings {
         let known = inner.obstacles[..people].iter();
         let boundary = boundary_obstacle(inner.robot.radius).regions;
         Self {
-            known: known.map(|placed| Known::of(family, placed)).collect(),
+            known: known
+                .map(|placed| KnownObstacle::of(family, placed))
+                .collect(),
             map,
             hiding: if family.law.chooses_velocities() {
                 (1.0, REACH)
@@ -84,8 +86,8 @@ impl Surroundings {
     }
 
     /// Static obstacles.
-    pub fn walls(&self) -> Walls<'_> {
-        Walls {
+    pub fn walls(&self) -> StaticObstacles<'_> {
+        StaticObstacles {
             shapes: &self.shapes,
             map: self.map.as_ref(),
         }
@@ -97,7 +99,7 @@ impl Surroundings {
         bodies: &'a [Body],
     ) -> impl Iterator<Item = Option<PlacedShape>> + Clone + 'a {
         bodies.iter().zip(&self.known).map(|(body, known)| {
-            let counts = body.state.present && known.kind != Kind::Mapped;
+            let counts = body.state.present && known.kind != ObstacleKind::Mapped;
             counts.then(|| PlacedShape {
                 center: body.state.position.into(),
                 shape: body.shape,
@@ -121,7 +123,7 @@ impl Surroundings {
         self.shapes.clear();
         let ages = situation.ages.iter().copied().chain(std::iter::repeat(0.0));
         for ((body, known), age) in situation.bodies.iter().zip(&self.known).zip(ages) {
-            let present = body.state.present && known.kind != Kind::Mapped;
+            let present = body.state.present && known.kind != ObstacleKind::Mapped;
             self.bodies.push(Body {
                 regions: known.regions,
                 state: BodyState {
@@ -137,7 +139,7 @@ impl Surroundings {
                 center: body.state.position.into(),
                 shape: body.shape,
             };
-            if known.kind == Kind::Wall {
+            if known.kind == ObstacleKind::Wall {
                 self.shapes.push(placed);
                 continue;
             }
@@ -181,7 +183,7 @@ impl Surroundings {
     }
 }
 
-impl Known {
+impl KnownObstacle {
     fn of(family: &SafeNavigation, placed: &PlacedObstacle) -> Self {
         let near = family
             .critical_distance
@@ -208,11 +210,11 @@ impl Known {
         };
         let mapped = |map: &StaticMap| map.holds(&place);
         let kind = if placed.stationary && family.map.as_ref().is_some_and(mapped) {
-            Kind::Mapped
+            ObstacleKind::Mapped
         } else if placed.stationary && rectangle {
-            Kind::Wall
+            ObstacleKind::Wall
         } else {
-            Kind::Person
+            ObstacleKind::Person
         };
         Self {
             kind,

@@ -24,11 +24,11 @@ pub use course::Course;
 pub use half_disc::half_disc_distance;
 pub use person::{KnownVelocity, Person};
 pub use plan::{Plan, braking, braking_periods};
-pub use reading::Reading;
+pub use reading::PlanTimes;
 pub use tracking::Tracking;
 pub use twist::{TwistGuard, TwistLimits, TwistState, TwistView};
 pub use verifier::Verifier;
-pub use walls::Walls;
+pub use walls::StaticObstacles;
 
 use crate::error::{Result, not_negative, positive};
 use crate::lanes::Vector2;
@@ -291,7 +291,7 @@ pub struct View<'a> {
     /// People.
     pub people: &'a [Person],
     /// Static obstacles.
-    pub walls: Walls<'a>,
+    pub walls: StaticObstacles<'a>,
 }
 
 /// The shield of one robot.
@@ -401,7 +401,7 @@ impl Guard {
 
     /// From where the search takes angles: from the direction of slowing down, toward the side on which
     /// people are, or walls where there is nobody. Where both sides are alike the left one comes first.
-    fn frame(&self, view: &View<'_>, wanted: Vector2<f64>) -> search::Frame {
+    fn frame(&self, view: &View<'_>, wanted: Vector2<f64>) -> search::SearchFrame {
         let before = view.robot.velocity;
         let away = before - wanted;
         let slower = if wanted.norm() > RESTING * away.norm() {
@@ -429,7 +429,7 @@ impl Guard {
             let place = view.robot.position;
             (left, all) = (room(place - beside) - room(place + beside), beside.norm());
         }
-        search::Frame::new(axis, left >= -ALIKE * all)
+        search::SearchFrame::new(axis, left >= -ALIKE * all)
     }
 
     /// The verified velocity nearest to one that is reachable but not verified.

@@ -12,7 +12,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Between which times of its plan a robot can be, in s.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reading {
+pub struct PlanTimes {
     /// The earliest of them.
     pub earliest: f64,
     /// The latest of them; infinite where the robot can be at rest at the end of the plan.
@@ -23,12 +23,17 @@ impl Shield {
     /// At which times of a plan, not before one in s, a robot can be as it was measured; `None` where the measurement
     /// refutes them all.
     #[must_use]
-    pub fn reading(&self, course: &Course, from: f64, robot: &RobotState<f64>) -> Option<Reading> {
+    pub fn reading(
+        &self,
+        course: &Course,
+        from: f64,
+        robot: &RobotState<f64>,
+    ) -> Option<PlanTimes> {
         let fits = |time: f64| self.refuted(course, time, robot).is_none();
         let (ramp, end) = (course.period(), course.end());
         let from = from.max(0.0);
         if from >= end {
-            let rest = Reading {
+            let rest = PlanTimes {
                 earliest: from,
                 latest: f64::INFINITY,
             };
@@ -52,7 +57,7 @@ impl Shield {
         if fits(end) {
             latest = f64::INFINITY;
         }
-        (earliest < f64::INFINITY).then_some(Reading { earliest, latest })
+        (earliest < f64::INFINITY).then_some(PlanTimes { earliest, latest })
     }
 
     /// Any time of a part of a plan that a measurement does not refute, in s: where place and velocity fit best, or

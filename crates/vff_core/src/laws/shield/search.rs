@@ -20,14 +20,14 @@ type Found = (f64, Vector2<f64>);
 /// From where and toward which side angles are taken. Both are those of the scene: one that is turned
 /// or mirrored is searched alike.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
+pub(super) struct SearchFrame {
     /// Direction of angle 0, of length 1.
     axis: Vector2<f64>,
     /// 1 if angles grow counterclockwise, else -1.
     side: f64,
 }
 
-impl Frame {
+impl SearchFrame {
     /// From a direction of length 1 toward its left or its right side.
     pub fn new(axis: Vector2<f64>, left: bool) -> Self {
         Self {
@@ -54,7 +54,7 @@ impl Frame {
 /// The admissible velocity nearest to `wanted`, as far as rings of directions find it, or `first`
 /// where nothing nearer is found. Everything admissible lies within `farthest` m/s of it.
 pub(super) fn nearest(
-    frame: Frame,
+    frame: SearchFrame,
     wanted: Vector2<f64>,
     farthest: f64,
     first: Option<Vector2<f64>>,
@@ -93,7 +93,7 @@ pub(super) fn nearest(
 /// The velocity after steps of falling size that bring it nearer: it slides along the edge of what is
 /// admissible into corners that are narrower than the directions of a ring.
 fn slid(
-    frame: Frame,
+    frame: SearchFrame,
     wanted: Vector2<f64>,
     found: Vector2<f64>,
     admissible: &mut impl FnMut(Vector2<f64>) -> bool,
@@ -117,7 +117,7 @@ fn slid(
 
 /// An admissible velocity on a ring whose directions are turned by a part of their step.
 fn on_ring(
-    frame: Frame,
+    frame: SearchFrame,
     wanted: Vector2<f64>,
     radius: f64,
     turn: f64,
@@ -136,7 +136,7 @@ fn on_ring(
 
 /// An admissible velocity at a radius in nearly the direction of one that is.
 fn beside(
-    frame: Frame,
+    frame: SearchFrame,
     wanted: Vector2<f64>,
     found: Vector2<f64>,
     radius: f64,

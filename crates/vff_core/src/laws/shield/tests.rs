@@ -94,7 +94,7 @@ fn plans_of_the_specification() {
         let view = View {
             robot: row.robot(),
             people: &people,
-            walls: Walls::NONE,
+            walls: StaticObstacles::NONE,
         };
         let reached = guard.clipped(&view.robot, row.wanted.into());
         assert!(near(reached, clipped[index], 1e-6));
@@ -152,7 +152,7 @@ fn the_search_is_nearly_as_near_as_a_fine_grid() {
         let view = View {
             robot,
             people: &people,
-            walls: Walls::NONE,
+            walls: StaticObstacles::NONE,
         };
         let limits = guard.limits;
         let angle = stream.uniform(0.0, std::f64::consts::TAU);
@@ -210,7 +210,7 @@ fn a_world_that_is_turned_or_mirrored_is_decided_alike() {
             let view = View {
                 robot,
                 people,
-                walls: Walls::NONE,
+                walls: StaticObstacles::NONE,
             };
             guard.decide(&view, wanted)
         };
@@ -340,7 +340,7 @@ fn what_a_robot_does_within_its_tracking_stays_off_everybody_a_verified_plan_avo
         let view = View {
             robot,
             people: &people,
-            walls: Walls::NONE,
+            walls: StaticObstacles::NONE,
         };
         let angle = stream.uniform(0.0, std::f64::consts::TAU);
         let wanted = Vector2::new(angle.cos(), angle.sin()) * limits.max_speed;

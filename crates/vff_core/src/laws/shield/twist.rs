@@ -7,7 +7,7 @@ pub use plan::{TwistLimits, TwistState};
 use crate::error::Result;
 use crate::lanes::Vector2;
 use crate::laws::shield::person::Person;
-use crate::laws::shield::walls::{ROUNDING, Walls};
+use crate::laws::shield::walls::{ROUNDING, StaticObstacles};
 use crate::laws::shield::{Limits, Shield, Status};
 use crate::robots::differential::{DifferentialLimits, Twist};
 use numeric::order::sort_pairs;
@@ -40,7 +40,7 @@ pub struct TwistView<'a> {
     /// People.
     pub people: &'a [Person],
     /// Static obstacles.
-    pub walls: Walls<'a>,
+    pub walls: StaticObstacles<'a>,
 }
 
 impl TwistGuard {
@@ -113,7 +113,7 @@ impl TwistGuard {
         view.people.iter().all(avoids) && self.off_walls(&view.walls, &plan)
     }
 
-    fn off_walls(&self, walls: &Walls<'_>, plan: &TwistPlan) -> bool {
+    fn off_walls(&self, walls: &StaticObstacles<'_>, plan: &TwistPlan) -> bool {
         if walls.is_empty() || plan.speed < STILL {
             return true;
         }
@@ -218,7 +218,7 @@ mod tests {
         TwistView {
             robot: state,
             people,
-            walls: Walls::NONE,
+            walls: StaticObstacles::NONE,
         }
     }
 
@@ -301,7 +301,7 @@ mod tests {
                 let other = crate::laws::shield::View {
                     robot,
                     people: &people,
-                    walls: Walls::NONE,
+                    walls: StaticObstacles::NONE,
                 };
                 // Bounds between nodes may refuse more, never less.
                 if twists.verified(&view, twist) {

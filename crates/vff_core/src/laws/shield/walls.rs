@@ -9,14 +9,14 @@ pub(super) const ROUNDING: f64 = 1e-9;
 
 /// Everything that does not move.
 #[derive(Clone, Copy, Debug)]
-pub struct Walls<'a> {
+pub struct StaticObstacles<'a> {
     /// Shapes that stand.
     pub shapes: &'a [PlacedShape],
     /// The map.
     pub map: Option<&'a StaticMap>,
 }
 
-impl Walls<'_> {
+impl StaticObstacles<'_> {
     /// Nothing stands anywhere.
     pub const NONE: Self = Self {
         shapes: &[],
@@ -59,7 +59,7 @@ mod tests {
         let table = PlacedShape::turned([0.4, -0.2], [1.2, 0.3], 0.7);
         let pillar = PlacedShape::disc([-1.0, 0.5], 0.3);
         let shapes = [table, pillar];
-        let walls = Walls {
+        let walls = StaticObstacles {
             shapes: &shapes,
             map: None,
         };

@@ -1,6 +1,6 @@
 //! The best velocity so far, and what a line of velocities may still promise.
 
-use super::lines::{Cap, Covers, Line, ON_THE_LIMIT, Reachable};
+use super::lines::{Covers, Line, ON_THE_LIMIT, Reachable, VelocityDisc};
 use super::{Selection, Situation, Vector, VelocityObstaclePlanner};
 
 /// Numbers of the candidates of a line by itself; its crossings follow.
@@ -134,9 +134,9 @@ impl<'a> Best<'a> {
     }
 
     /// The smallest disc that is known to hold everything reachable that may be worth enough.
-    fn cap(&self) -> Cap {
+    fn cap(&self) -> VelocityDisc {
         let wide = self.reachable.circles().map(|(center, radius)| {
-            let wide = Cap { center, radius };
+            let wide = VelocityDisc { center, radius };
             if self.planner.settings.selection != Selection::ToGoal {
                 return wide;
             }

@@ -66,12 +66,12 @@ impl Reachable {
 
 /// A disc of velocities.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cap {
+pub(super) struct VelocityDisc {
     pub center: Vector,
     pub radius: f64,
 }
 
-impl Cap {
+impl VelocityDisc {
     /// A disc around the part of it whose component along a direction is at least a value.
     pub fn beyond(self, least: f64, along: Vector) -> Self {
         let away = least - self.center.dot(&along);

@@ -62,13 +62,13 @@ pub(super) struct Crowd<'a> {
 ///
 /// One root for all who touch at the same distance: roots and differences are rounded alike for all of
 /// them and do not change their order.
-pub(super) struct Nearest<R> {
+pub(super) struct NearestConflict<R> {
     clearance: R,
     square: R,
     touch: Option<f64>,
 }
 
-impl<R: Real> Nearest<R> {
+impl<R: Real> NearestConflict<R> {
     /// Of nobody.
     #[inline(always)]
     pub(super) fn new() -> Self {

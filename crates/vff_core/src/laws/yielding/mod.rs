@@ -8,9 +8,9 @@ mod conflict;
 
 use crate::error::{Result, not_negative, positive};
 use crate::lanes::{Lanes, Mask, Number, Planar, Real, Truth, Vector2};
-use crate::laws::shield::{Limits, Walls};
+use crate::laws::shield::{Limits, StaticObstacles};
 use crate::world::geometry::RobotState;
-use conflict::{Conflict, Crowd, Nearest, Stretch};
+use conflict::{Conflict, Crowd, NearestConflict, Stretch};
 
 pub use conflict::Passerby;
 
@@ -110,7 +110,7 @@ pub struct Outlook<'a> {
     /// Whether somebody who cannot be met has been left out.
     pub left_out: bool,
     /// Static obstacles.
-    pub walls: Walls<'a>,
+    pub walls: StaticObstacles<'a>,
 }
 
 /// Giving way, for one robot.
@@ -251,7 +251,7 @@ impl Yielder {
         let rest = R::splat(horizon) - ramp;
         let mean = (before + velocity) * half;
         let mut first_time = R::splat(horizon);
-        let mut nearest = Nearest::new();
+        let mut nearest = NearestConflict::new();
         if crowd.left_out {
             // As of somebody who is not met: a sum that may be rounded.
             first_time = first_time.min(ramp + rest);

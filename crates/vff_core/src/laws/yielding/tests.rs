@@ -21,7 +21,7 @@ fn outlook(people: &[Passerby]) -> Outlook<'_> {
         to_goal: Vector2::x(),
         people,
         left_out: false,
-        walls: Walls::NONE,
+        walls: StaticObstacles::NONE,
     }
 }
 

@@ -167,7 +167,7 @@ impl Instant<'_> {
 }
 
 /// Reference, tracker and robot of a run.
-struct Course<'a> {
+struct TrackedCourse<'a> {
     tracking: &'a Tracking,
     limits: &'a DifferentialLimits,
     options: &'a TrackOptions,
@@ -176,7 +176,7 @@ struct Course<'a> {
     interrupted: Interrupted<'a>,
 }
 
-impl<'a> Course<'a> {
+impl<'a> TrackedCourse<'a> {
     fn new(
         (tracking, limits): (&'a Tracking, &'a DifferentialLimits),
         options: &'a TrackOptions,
@@ -301,7 +301,7 @@ pub fn track(
     options: &TrackOptions,
     interrupted: Interrupted<'_>,
 ) -> Result<TrackRun> {
-    let course = Course::new((tracking, limits), options, interrupted)?;
+    let course = TrackedCourse::new((tracking, limits), options, interrupted)?;
     start.pose.checked()?;
     start.twist.checked()?;
     course.record(path, start)
@@ -320,7 +320,7 @@ pub fn track_batch(
     interrupted: Interrupted<'_>,
     progress: &(dyn Fn(usize) + Sync),
 ) -> Result<Vec<TrackRow>> {
-    let course = Course::new((tracking, limits), options, interrupted)?;
+    let course = TrackedCourse::new((tracking, limits), options, interrupted)?;
     if paths.len() != 1 && paths.len() != starts.len() {
         let given = Given::Count(paths.len() as u64);
         let rule = "be one, or one for each start";

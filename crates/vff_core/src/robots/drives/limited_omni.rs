@@ -8,7 +8,7 @@ use crate::world::frame::Frame;
 
 /// Order to the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Course {
+pub(crate) enum OmniCommand {
     /// Keep the course over ground.
     Keep,
     /// Stand and turn.
@@ -63,21 +63,21 @@ impl LimitedOmni {
 }
 
 impl Drive for LimitedOmni {
-    type Order = Course;
+    type Order = OmniCommand;
     type Reading = Moved;
 
     #[inline]
-    fn hold(&mut self, course: &Course) {
-        self.turns = *course == Course::Turn;
+    fn hold(&mut self, course: &OmniCommand) {
+        self.turns = *course == OmniCommand::Turn;
         if self.turns {
             self.heading += self.limits.turn_rate * self.step;
         }
-        if let Course::Toward(direction) = course {
+        if let OmniCommand::Toward(direction) = course {
             self.direction = *direction;
         }
         let angle = self.heading + self.direction;
         // Mostly told again where it travels already.
-        if *course != Course::Keep && angle.to_bits() != self.course.to_bits() {
+        if *course != OmniCommand::Keep && angle.to_bits() != self.course.to_bits() {
             let (sin, cos) = angle.sin_cos();
             (self.target, self.course) = (Vector2::new(cos, sin), angle);
         }

@@ -8,7 +8,7 @@ mod two_wheels;
 mod velocity;
 mod virtual_velocity;
 
-pub(crate) use limited_omni::{Course, LimitedOmni, OmniLimits};
+pub(crate) use limited_omni::{LimitedOmni, OmniCommand, OmniLimits};
 pub(crate) use omni::OmniRobot;
 pub(crate) use point_mass::{IdealHolonomic, PointMass};
 pub(crate) use two_wheels::TwoWheels;

@@ -1,6 +1,6 @@
 //! One wheel under its controller.
 
-use super::controller::{Estimator, Known};
+use super::controller::{MeasuredWheel, WheelEstimator};
 use super::drive::{WheelDrive, read_with};
 use super::dynamics::{HeldStep, WheelState};
 use super::reference::WheelWish;
@@ -32,7 +32,7 @@ pub struct WheelLoop {
     drive: WheelDrive,
     step: HeldStep,
     state: WheelState,
-    estimator: Estimator,
+    estimator: WheelEstimator,
     /// Angle of a count of the encoder in rad, if it has one.
     resolution: Option<f64>,
 }
@@ -47,7 +47,7 @@ impl WheelLoop {
     /// A wheel in a state that its controller knows but for the encoder's resolution.
     #[must_use]
     pub fn starting_at(drive: &WheelDrive, state: WheelState) -> Self {
-        let known = Known {
+        let known = MeasuredWheel {
             angle: drive.read(state.angle),
             speed: state.speed,
         };
@@ -55,7 +55,7 @@ impl WheelLoop {
             drive: *drive,
             step: HeldStep::new(&drive.dynamics, drive.period),
             state,
-            estimator: Estimator::new(&drive.controller, drive.period, known),
+            estimator: WheelEstimator::new(&drive.controller, drive.period, known),
             resolution: drive.encoder.map(|encoder| encoder.resolution()),
         }
     }

@@ -58,7 +58,12 @@ impl WheelController {
 
     /// Command in V for what is known of the wheel; `amplifier_gain` in A/V turns the currents of
     /// the feed-forward into commands.
-    pub(super) fn command(&self, wish: &WheelWish, known: &Known, amplifier_gain: f64) -> f64 {
+    pub(super) fn command(
+        &self,
+        wish: &WheelWish,
+        known: &MeasuredWheel,
+        amplifier_gain: f64,
+    ) -> f64 {
         self.proportional * (wish.angle - known.angle)
             + self.derivative * (wish.speed - known.speed)
             + self.model.ideal_current(wish) / amplifier_gain
@@ -67,22 +72,22 @@ impl WheelController {
 
 /// Angle and speed of a wheel as its controller knows them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Known {
+pub(super) struct MeasuredWheel {
     pub(super) angle: f64,
     pub(super) speed: f64,
 }
 
 /// Source of angle and speed.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Estimator {
+pub(super) enum WheelEstimator {
     Differences { last: f64, period: f64 },
-    Observer(Observer),
-    ObservedSpeed(Observer),
+    Observer(WheelObserver),
+    ObservedSpeed(WheelObserver),
 }
 
-impl Estimator {
-    pub(super) fn new(controller: &WheelController, period: f64, start: Known) -> Self {
-        let observer = |poles| Observer::new(&controller.model, poles, period, start);
+impl WheelEstimator {
+    pub(super) fn new(controller: &WheelController, period: f64, start: MeasuredWheel) -> Self {
+        let observer = |poles| WheelObserver::new(&controller.model, poles, period, start);
         match controller.feedback {
             Feedback::Differences => Self::Differences {
                 last: start.angle - start.speed * period,
@@ -94,14 +99,14 @@ impl Estimator {
     }
 
     /// Angle and speed now.
-    pub(super) fn known(&self, read: f64) -> Known {
+    pub(super) fn known(&self, read: f64) -> MeasuredWheel {
         match self {
-            Self::Differences { last, period } => Known {
+            Self::Differences { last, period } => MeasuredWheel {
                 angle: read,
                 speed: (read - last) / period,
             },
             Self::Observer(observer) => observer.known,
-            Self::ObservedSpeed(observer) => Known {
+            Self::ObservedSpeed(observer) => MeasuredWheel {
                 angle: read,
                 speed: observer.known.speed,
             },
@@ -123,15 +128,15 @@ impl Estimator {
 /// its exact form for a current that is held over a period: the error passes with the poles
 /// `exp(p T)`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Observer {
-    known: Known,
+pub(super) struct WheelObserver {
+    known: MeasuredWheel,
     response: Response,
     gain: f64,
     correction: [f64; 2],
 }
 
-impl Observer {
-    fn new(model: &WheelDynamics, poles: [f64; 2], period: f64, start: Known) -> Self {
+impl WheelObserver {
+    fn new(model: &WheelDynamics, poles: [f64; 2], period: f64, start: MeasuredWheel) -> Self {
         let response = Response::new(model.decay(), period);
         let [first, second] = poles.map(|pole| (pole * period).exp());
         // z^2 - (1 - l_1 + kept) z + (1 - l_1) kept + l_2 rise = (z - z_1)(z - z_2).
@@ -146,10 +151,10 @@ impl Observer {
     }
 
     fn pass(&mut self, read: f64, current: f64) {
-        let Known { angle, speed } = self.known;
+        let MeasuredWheel { angle, speed } = self.known;
         let error = read - angle;
         let acceleration = self.gain * current;
-        self.known = Known {
+        self.known = MeasuredWheel {
             angle: angle
                 + self.response.rise * speed
                 + self.response.lift * acceleration
@@ -171,7 +176,7 @@ mod tests {
         let drive = holonomic_wheels()[0];
         let model = drive.controller.model;
         let (poles, period) = ([-10.0, -25.0], 0.01);
-        let mut observer = Observer::new(&model, poles, period, Known::default());
+        let mut observer = WheelObserver::new(&model, poles, period, MeasuredWheel::default());
         let (mut angle, mut speed) = (0.3, -2.0);
         let response = Response::new(model.decay(), period);
         let mut errors = Vec::new();

@@ -6,7 +6,7 @@
 //! much as the robot can be farther on in its plan; at rest by a control period if the update comes as regularly as
 //! others (one was lost while the clock was set back), otherwise by any time.
 
-use crate::laws::shield::{Course, Reading, Shield, Status};
+use crate::laws::shield::{Course, PlanTimes, Shield, Status};
 use crate::run::controller::Controller;
 use crate::run::controller::told::Order;
 use crate::world::geometry::RobotState;
@@ -69,7 +69,7 @@ pub(super) struct Held {
 pub(super) enum Reckoned {
     /// It counts, and so much more time than the clock tells may have gone by since the last one that did, in s; the
     /// times of its plan at which the robot can be, if it is at any.
-    Counts(f64, Option<Reading>),
+    Counts(f64, Option<PlanTimes>),
     /// It counts for nothing.
     Held(Held),
     /// The clock was set back for good, and the plan has ended since, whatever it tells: the update counts, and so much
@@ -136,7 +136,12 @@ impl Controller {
 
     /// Where nothing is verified for a robot that may be at another time of its plan: the plan runs on from there. It was
     /// verified, and brakes as hard as the robot can; of a robot that is behind it if that comes to rest no later.
-    pub(super) fn run_on_if_off(&self, order: Order, now: f64, reading: Option<Reading>) -> Order {
+    pub(super) fn run_on_if_off(
+        &self,
+        order: Order,
+        now: f64,
+        reading: Option<PlanTimes>,
+    ) -> Order {
         let last = self.last.as_ref().and_then(Last::verified);
         let braking = order.status == Some(Status::Braking) && order.off_plan.is_some();
         let Some(((_, course), reading)) = last.zip(reading).filter(|_| braking) else {

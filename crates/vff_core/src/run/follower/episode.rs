@@ -6,7 +6,7 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use crate::error::{Failure, Result};
-use crate::laws::impedance::following::{Following, FollowingLaw, Sight};
+use crate::laws::impedance::following::{Following, FollowingLaw, RepulsionSource};
 use crate::laws::reflex::{Percept, Reflex};
 use crate::robots::drives::{Drive, VirtualVelocity};
 use crate::run::Interrupted;
@@ -14,7 +14,7 @@ use crate::run::episode::{Episode, Parts};
 use crate::run::follower::sample::{Sample, SampleObserver};
 use crate::run::follower::scene::FollowerScene;
 use crate::run::follower::settings::Settings;
-use crate::run::follower::surroundings::{Surroundings, Touch};
+use crate::run::follower::surroundings::{FollowerObstacles, ObstacleTouch};
 use crate::run::options::Clock;
 use crate::sensing::ObstacleCamera;
 use crate::sensing::fixes::Ear;
@@ -36,7 +36,7 @@ const CAMERA: u64 = 16;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FollowerOutcome {
     /// The touch that ended it.
-    pub contact: Option<Touch>,
+    pub contact: Option<ObstacleTouch>,
     /// When it ended, in s.
     pub end_time: f64,
     /// Distance from the source at the end, in m.
@@ -67,9 +67,9 @@ impl Follower {
     /// A number is out of range.
     pub fn new(settings: &Settings) -> Result<Self> {
         let sight = if settings.obstacle_vision.is_some() {
-            Sight::Bodies
+            RepulsionSource::Bodies
         } else {
-            Sight::Echoes
+            RepulsionSource::Echoes
         };
         Self::seeing(settings.clone().checked()?, sight)
     }
@@ -84,10 +84,10 @@ impl Follower {
             obstacle_vision: None,
             ..settings
         };
-        Self::seeing(attracted, Sight::Nothing)
+        Self::seeing(attracted, RepulsionSource::Nothing)
     }
 
-    fn seeing(settings: Settings, sight: Sight) -> Result<Self> {
+    fn seeing(settings: Settings, sight: RepulsionSource) -> Result<Self> {
         let array = settings.sensors.array()?;
         let farthest = |mount: &Frame| mount.position.x.hypot(mount.position.y);
         let offset = array.mounts().iter().map(farthest).fold(0.0, f64::max);
@@ -183,7 +183,7 @@ impl Follower {
         let drive = VirtualVelocity::new(settings.drive, settings.velocity, step);
         let parts = FollowerParts {
             place: Place {
-                around: Surroundings::of(&scene, settings.drive.body_radius, self.horizon),
+                around: FollowerObstacles::of(&scene, settings.drive.body_radius, self.horizon),
                 scene,
                 bodies: bodies.clone(),
                 source: Vector2::zeros(),
@@ -233,7 +233,7 @@ fn body_of(obstacle: &Obstacle) -> Body {
 /// Where the robot is, and what is around it.
 struct Place<S> {
     scene: S,
-    around: Surroundings,
+    around: FollowerObstacles,
     /// Obstacles for a camera.
     bodies: Vec<Body>,
     /// Source of the sound in m.
@@ -417,7 +417,7 @@ where
                 let truth = place.truth(clock.time(step));
                 camera.observe(&truth, &place.pose, &mut senses.seen);
             }
-            None if self.law.sight() == Sight::Nothing => {}
+            None if self.law.sight() == RepulsionSource::Nothing => {}
             None => senses.sonar.fire(&place.pose, &place.around.near),
         }
     }

@@ -15,7 +15,7 @@ pub use layouts::{Layouts, Setting};
 pub use record::{FollowerRecord, FollowerSteps};
 pub use scene::{FollowerScene, Leader};
 pub use settings::{Sensors, Settings};
-pub use surroundings::Touch;
+pub use surroundings::ObstacleTouch;
 
 pub use crate::robots::differential::VelocityRule;
 pub use crate::sensing::{FixNoise, Fixes};

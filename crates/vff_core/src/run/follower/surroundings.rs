@@ -9,7 +9,7 @@ use crate::world::shape::{PlacedShape, SLACK, Shape};
 
 /// A touch of an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Touch {
+pub struct ObstacleTouch {
     /// Index of the obstacle.
     pub obstacle: usize,
     /// Direction of the nearest point from the front of the robot, counterclockwise, in rad.
@@ -17,7 +17,7 @@ pub struct Touch {
 }
 
 /// Estimated motion of an obstacle.
-struct Track {
+struct ObstacleTrack {
     /// Piece of the motion that was the last one.
     cursor: usize,
     /// When it stands for good, in s.
@@ -29,11 +29,11 @@ struct Track {
 }
 
 /// Obstacles at one time.
-pub(super) struct Surroundings {
+pub(super) struct FollowerObstacles {
     /// The obstacles.
     pub shapes: Vec<PlacedShape>,
     /// How each of them moves.
-    tracks: Vec<Track>,
+    tracks: Vec<ObstacleTrack>,
     leader_cursor: usize,
     /// Obstacles that a sensor may see.
     pub near: Vec<PlacedShape>,
@@ -51,7 +51,7 @@ pub(super) struct Surroundings {
     horizon: f64,
 }
 
-impl Surroundings {
+impl FollowerObstacles {
     /// The obstacles of a scene at its start, around a body of a radius in m with sensors up to a horizon in m.
     pub fn of(scene: &FollowerScene, body: f64, horizon: f64) -> Self {
         Self {
@@ -68,7 +68,7 @@ impl Surroundings {
                 .iter()
                 .map(|each| {
                     let stands_from = each.motion.stands_from();
-                    Track {
+                    ObstacleTrack {
                         cursor: 0,
                         stands_from,
                         stands: stands_from <= 0.0,
@@ -163,11 +163,11 @@ impl Surroundings {
     }
 
     /// The touch of the nearest obstacle.
-    pub fn contact(&self, pose: &Frame) -> Touch {
+    pub fn contact(&self, pose: &Frame) -> ObstacleTouch {
         let nearest = self.shapes.get(self.nearest);
         let to = nearest.map_or(Vector2::zeros(), |shape| shape.nearest(pose.position));
         let to = pose.inward(self.passed.unwrap_or(to));
-        Touch {
+        ObstacleTouch {
             obstacle: self.nearest,
             bearing: to.y.atan2(to.x),
         }

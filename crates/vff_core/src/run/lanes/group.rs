@@ -9,7 +9,7 @@ use crate::run::Interrupted;
 use crate::run::lanes::kernel::{LawInLanes, run_lanes};
 use crate::run::lanes::scenes::agree;
 use crate::run::outcome::RunTotals;
-use crate::run::plan::Plan;
+use crate::run::plan::RunPlan;
 use crate::run::record::{DescentCounter, Recorder};
 use crate::run::walls::Maps;
 use crate::world::scenario::Scenario;
@@ -22,7 +22,7 @@ pub(crate) type Keep<'a> = &'a mut dyn FnMut(usize, &RunTotals, &dyn Fn(usize) -
 
 /// A run to be made.
 #[derive(Clone, Copy)]
-pub(crate) struct Job<'a> {
+pub(crate) struct RunJob<'a> {
     pub scenario: &'a Scenario,
     /// Gains in the order of their names.
     pub gains: &'a [f64],
@@ -30,8 +30,8 @@ pub(crate) struct Job<'a> {
 
 /// Runs of one task.
 pub(crate) struct Group<'a> {
-    pub jobs: &'a [Job<'a>],
-    pub plan: &'a Plan,
+    pub jobs: &'a [RunJob<'a>],
+    pub plan: &'a RunPlan,
     /// Whether the runs are alike until an obstacle acts.
     pub led: bool,
     pub interrupted: Interrupted<'a>,
@@ -44,9 +44,9 @@ pub(crate) trait LaneKernel: Send + Sync {
     /// Whether runs side by side may have different gains.
     fn mixes_gains(&self) -> bool;
     /// Whether two runs may be side by side.
-    fn fit(&self, one: &Job<'_>, other: &Job<'_>) -> bool;
+    fn fit(&self, one: &RunJob<'_>, other: &RunJob<'_>) -> bool;
     /// Whether lanes pay for the obstacles of a run.
-    fn pay(&self, job: &Job<'_>) -> bool;
+    fn pay(&self, job: &RunJob<'_>) -> bool;
     /// Makes runs that fit side by side.
     fn run(&self, group: &Group<'_>, maps: &Maps, vectors: Vectors, keep: Keep<'_>) -> Result<()>;
 }
@@ -60,11 +60,11 @@ impl<F: LaneFamily> LaneKernel for F {
         F::MIXES_GAINS
     }
 
-    fn fit(&self, one: &Job<'_>, other: &Job<'_>) -> bool {
+    fn fit(&self, one: &RunJob<'_>, other: &RunJob<'_>) -> bool {
         (F::MIXES_GAINS || one.gains == other.gains) && agree(one.scenario, other.scenario)
     }
 
-    fn pay(&self, job: &Job<'_>) -> bool {
+    fn pay(&self, job: &RunJob<'_>) -> bool {
         job.scenario.obstacle_count() <= F::MOST_OBSTACLES
     }
 

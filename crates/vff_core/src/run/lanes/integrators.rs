@@ -1,12 +1,12 @@
 //! Motion steps of robots side by side.
 
 use crate::lanes::{Real, Vector2};
-use crate::run::runs::Runs;
+use crate::run::runs::LaneState;
 use crate::run::scene::World;
 use crate::world::geometry::RobotState;
 
 #[inline(always)]
-pub(crate) fn semi_implicit_euler<W: World, R: Real>(runs: &mut Runs<W, R>) {
+pub(crate) fn semi_implicit_euler<W: World, R: Real>(runs: &mut LaneState<W, R>) {
     let robot = &runs.scenario.common().robot;
     let (position, velocity) = (runs.position, runs.velocity);
     let mut state = RobotState { position, velocity };
@@ -15,7 +15,7 @@ pub(crate) fn semi_implicit_euler<W: World, R: Real>(runs: &mut Runs<W, R>) {
 }
 
 /// Runge-Kutta of order 4 with a held acceleration; the second and third stage coincide.
-pub(crate) fn rk4_held<W: World, R: Real>(runs: &mut Runs<W, R>) {
+pub(crate) fn rk4_held<W: World, R: Real>(runs: &mut LaneState<W, R>) {
     let robot = &runs.scenario.common().robot;
     let step = runs.clock.step;
     let change = robot.change(runs.velocity, runs.acceleration * R::splat(step), step);
@@ -32,7 +32,7 @@ pub(crate) fn rk4_held<W: World, R: Real>(runs: &mut Runs<W, R>) {
 
 /// Runge-Kutta of order 4 with the force evaluated in every stage: in N, after a share of the step.
 pub(crate) fn rk4<W: World, R: Real>(
-    runs: &mut Runs<W, R>,
+    runs: &mut LaneState<W, R>,
     mut force: impl FnMut(f64, RobotState<R>) -> Vector2<R>,
 ) {
     let robot = &runs.scenario.common().robot;

@@ -10,9 +10,9 @@ use crate::run::lanes::integrators::{rk4, rk4_held, semi_implicit_euler};
 use crate::run::lanes::scenes::{FeltObstacles, LaneObstacles, LaneScenes};
 use crate::run::lanes::sensors::LaneSensors;
 use crate::run::options::Integrator;
-use crate::run::plan::Plan;
+use crate::run::plan::RunPlan;
 use crate::run::record::Recorder;
-use crate::run::runs::{Dormant, Runs};
+use crate::run::runs::{Dormant, LaneState};
 use crate::run::walls::Maps;
 use crate::world::geometry::RobotState;
 use crate::world::scenario::Scenario;
@@ -37,11 +37,11 @@ pub(crate) struct LawInLanes<'a, R, L: ?Sized> {
 
 /// Runs that take turns in the lanes.
 struct Relay<'a, R: Real> {
-    plan: &'a Plan,
+    plan: &'a RunPlan,
     obstacles: LaneObstacles<R>,
     felt: Option<FeltObstacles<R>>,
     sensors: Option<LaneSensors<R>>,
-    runs: Runs<LaneScenes<'a>, R>,
+    runs: LaneState<LaneScenes<'a>, R>,
     /// Motion steps since the start of the run of each lane.
     steps: R,
     /// Index of the run of each lane; `None` for a lane that is out of work.
@@ -51,7 +51,7 @@ struct Relay<'a, R: Real> {
     /// Whether no obstacle has acted yet in runs that are alike until one does.
     led: bool,
     /// Where these were when one did, from where later runs start.
-    leader: Option<Box<(Runs<LaneScenes<'a>, R>, R)>>,
+    leader: Option<Box<(LaneState<LaneScenes<'a>, R>, R)>>,
     /// Obstacles that a run by itself leaves alone.
     dormant: Option<Dormant<'a, R>>,
 }
@@ -71,7 +71,7 @@ pub(crate) fn run_lanes<R: Real, L: Law<R> + ?Sized, C: Recorder<R>>(
         told_of_all: is_told_of_all,
     }: LawInLanes<'_, R, L>,
     recorder: &mut C,
-    mut keep: impl FnMut(usize, &Runs<LaneScenes<'_>, R>, usize, &mut C),
+    mut keep: impl FnMut(usize, &LaneState<LaneScenes<'_>, R>, usize, &mut C),
 ) -> Result<()> {
     let Some(first) = group.jobs.first() else {
         return Ok(());
@@ -143,7 +143,7 @@ impl<'a, R: Real> Relay<'a, R> {
         let obstacles = LaneObstacles::all_in(first, count);
         let sensors = LaneSensors::new(first, &obstacles.bodies);
         let scenes = LaneScenes::all_in(first);
-        let mut runs = Runs::at_start(scenes, clock, count, maps.clone());
+        let mut runs = LaneState::at_start(scenes, clock, count, maps.clone());
         runs.running = R::Mask::none();
         let compact = R::WIDTH > 1 && count > FEW_OBSTACLES && sensors.is_none();
         Ok(Self {

@@ -8,7 +8,7 @@ use crate::world::geometry::{Body, RobotState};
 use crate::world::scenario::Scenario;
 
 /// The sensors of one lane.
-struct Sensor {
+struct LaneSensor {
     scene: SampledScene,
     /// Measured position at the sample before, if it was measured with an error.
     last: Option<Vector2<f64>>,
@@ -18,7 +18,7 @@ struct Sensor {
 
 /// The sensors of every lane.
 pub(crate) struct LaneSensors<R: Real> {
-    lanes: Vec<Sensor>,
+    lanes: Vec<LaneSensor>,
     /// Obstacles as measured.
     pub seen: Vec<Body<R>>,
 }
@@ -26,7 +26,7 @@ pub(crate) struct LaneSensors<R: Real> {
 impl<R: Real> LaneSensors<R> {
     /// Sensors of a scenario in every lane; `None` where everything is known exactly.
     pub fn new(scenario: &Scenario, bodies: &[Body<R>]) -> Option<Self> {
-        let lane = |_| Sensor::new(scenario);
+        let lane = |_| LaneSensor::new(scenario);
         Some(Self {
             lanes: (0..R::WIDTH).map(lane).collect::<Option<_>>()?,
             seen: bodies.to_vec(),
@@ -35,7 +35,7 @@ impl<R: Real> LaneSensors<R> {
 
     /// A run begins in a lane.
     pub fn enter(&mut self, lane: usize, scenario: &Scenario) {
-        if let Some(sensor) = Sensor::new(scenario) {
+        if let Some(sensor) = LaneSensor::new(scenario) {
             self.lanes[lane] = sensor;
         }
     }
@@ -79,7 +79,7 @@ impl<R: Real> LaneSensors<R> {
     }
 }
 
-impl Sensor {
+impl LaneSensor {
     fn new(scenario: &Scenario) -> Option<Self> {
         Some(Self {
             scene: SampledScene::new(scenario)?,

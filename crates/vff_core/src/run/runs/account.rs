@@ -1,13 +1,13 @@
 //! Account of a motion step: arrival, contacts, least distances, energy, path.
 
 use super::touch::Since;
-use super::{BOUND_MARGIN, Runs};
+use super::{BOUND_MARGIN, LaneState};
 use crate::lanes::{Mask, Planar, Real, Truth, Vector2};
 use crate::run::options::Clock;
 use crate::run::scene::{World, body_at};
 use crate::world::geometry::Body;
 
-impl<W: World, R: Real> Runs<W, R> {
+impl<W: World, R: Real> LaneState<W, R> {
     /// Counts a sample of the force.
     #[inline(always)]
     pub fn count_sample(&mut self) {

@@ -5,7 +5,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use super::{BOUND_MARGIN, Runs};
+use super::{BOUND_MARGIN, LaneState};
 use crate::lanes::{Planar, Real, Truth, Vector2};
 use crate::run::lanes::scenes::{LaneObstacles, LaneScenes};
 use crate::run::options::Clock;
@@ -93,7 +93,7 @@ impl<'a, R: Real> Dormant<'a, R> {
     /// those that are far away leave the scene.
     pub fn begin(
         scenario: &'a Scenario,
-        runs: &mut Runs<LaneScenes<'a>, R>,
+        runs: &mut LaneState<LaneScenes<'a>, R>,
         scene: &mut LaneObstacles<R>,
         felt_within: impl Fn(&PlacedObstacle) -> f64,
     ) -> Self {
@@ -145,7 +145,7 @@ impl<'a, R: Real> Dormant<'a, R> {
     pub fn sample(
         &mut self,
         scene: &mut LaneObstacles<R>,
-        runs: &mut Runs<LaneScenes<'a>, R>,
+        runs: &mut LaneState<LaneScenes<'a>, R>,
         step: usize,
     ) {
         while let Some(Reverse((alarm, index))) = self.alarms.peek().copied() {
@@ -180,7 +180,7 @@ impl<'a, R: Real> Dormant<'a, R> {
         &mut self,
         index: usize,
         scene: &mut LaneObstacles<R>,
-        runs: &mut Runs<LaneScenes<'a>, R>,
+        runs: &mut LaneState<LaneScenes<'a>, R>,
         step: usize,
     ) {
         let time = self.clock.time(step);
@@ -215,7 +215,7 @@ impl<'a, R: Real> Dormant<'a, R> {
 
     /// The robot has made a motion step; one that has arrived has been looked at where it did.
     #[inline]
-    pub fn pass(&mut self, runs: &mut Runs<LaneScenes<'a>, R>) {
+    pub fn pass(&mut self, runs: &mut LaneState<LaneScenes<'a>, R>) {
         if !runs.running.any() {
             return;
         }
@@ -229,7 +229,7 @@ impl<'a, R: Real> Dormant<'a, R> {
 
     /// Counts all steps so far.
     #[inline(never)]
-    pub fn count_all(&mut self, runs: &mut Runs<LaneScenes<'a>, R>) {
+    pub fn count_all(&mut self, runs: &mut LaneState<LaneScenes<'a>, R>) {
         let last = self.path.last();
         for index in 0..self.since.len() {
             if self.since[index] <= last {
@@ -241,7 +241,7 @@ impl<'a, R: Real> Dormant<'a, R> {
 
     /// Counts the steps so far in which an obstacle was dormant: the least of the distances that a look at each of
     /// them would have found.
-    fn count(&mut self, index: usize, runs: &mut Runs<LaneScenes<'a>, R>) {
+    fn count(&mut self, index: usize, runs: &mut LaneState<LaneScenes<'a>, R>) {
         let (first, last) = (self.since[index] - 1, self.path.last());
         if first >= last {
             return;

@@ -1,6 +1,6 @@
 //! How runs end that do not arrive: at rest, caught, at a contact, or with numbers that are none.
 
-use super::{BOUND_MARGIN, Runs};
+use super::{BOUND_MARGIN, LaneState};
 use crate::error::{Failure, Result};
 use crate::lanes::{Mask, Real, Truth, Vector2};
 use crate::run::scene::World;
@@ -9,7 +9,7 @@ use crate::world::geometry::Body;
 /// A robot slower than this is at rest, in m/s.
 const REST_SPEED: f64 = 1e-3;
 
-impl<W: World, R: Real> Runs<W, R> {
+impl<W: World, R: Real> LaneState<W, R> {
     /// Ends the runs of lanes that have been at rest for too long.
     #[inline(always)]
     pub fn rest(&mut self, time: R) {

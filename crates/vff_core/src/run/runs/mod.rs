@@ -13,11 +13,11 @@ use crate::laws::Command;
 use crate::robots::WheelModel;
 use crate::run::options::Clock;
 use crate::run::scene::World;
-use crate::run::walls::{Maps, Walls};
+use crate::run::walls::{Maps, WallContacts};
 use crate::sensing::sampled::Past;
 use crate::world::geometry::Body;
 use crate::world::scenario::{PlacedObstacle, Scenario};
-use touch::{Touch, alert_squared};
+use touch::{ContactState, alert_squared};
 
 /// Room for rounding where a distance bound spares work, in m.
 const BOUND_MARGIN: f64 = 1e-6;
@@ -27,7 +27,7 @@ const BOUND_MARGIN: f64 = 1e-6;
 /// `W` is where they run: one scenario for all, a reference in the kernel and a shared owner in an
 /// episode that is stepped from outside, or a scenario for each lane.
 #[derive(Clone)]
-pub(crate) struct Runs<W: World, R: Real> {
+pub(crate) struct LaneState<W: World, R: Real> {
     pub scenario: W,
     pub clock: Clock,
     pub position: Vector2<R>,
@@ -73,12 +73,12 @@ pub(crate) struct Runs<W: World, R: Real> {
     force_evaluations: R,
     min_distance_squared: Vec<R>,
     /// Contacts with each obstacle, the lanes fastest.
-    touches: Vec<Touch>,
+    touches: Vec<ContactState>,
     /// Clearance and contacts of walls, where there are any.
-    walls: Option<Box<Walls<R>>>,
+    walls: Option<Box<WallContacts<R>>>,
 }
 
-impl<W: World, R: Real> Runs<W, R> {
+impl<W: World, R: Real> LaneState<W, R> {
     /// With the obstacles at the start.
     pub fn new(
         scenario: W,
@@ -131,8 +131,8 @@ impl<W: World, R: Real> Runs<W, R> {
             touched: false,
             force_evaluations: R::zero(),
             min_distance_squared: vec![R::zero(); count],
-            touches: vec![Touch::default(); count * R::WIDTH],
-            walls: Walls::new(maps, scenario.robot.radius).map(Box::new),
+            touches: vec![ContactState::default(); count * R::WIDTH],
+            walls: WallContacts::new(maps, scenario.robot.radius).map(Box::new),
             scenario: world,
         };
         let world = runs.scenario.clone();
@@ -159,7 +159,7 @@ impl<W: World, R: Real> Runs<W, R> {
         self.end_time.set(lane, f64::NAN);
         self.arrival_time.set(lane, f64::NAN);
         for index in 0..self.reach.len() {
-            self.touches[index * R::WIDTH + lane] = Touch::default();
+            self.touches[index * R::WIDTH + lane] = ContactState::default();
             self.min_distance_squared[index].set(lane, f64::INFINITY);
         }
         if let Some(past) = &mut self.past {

@@ -1,12 +1,12 @@
 //! Results of a run that has ended.
 
-use super::Runs;
+use super::LaneState;
 use crate::lanes::{Real, Truth};
 use crate::run::outcome::{CONTACT_SPEED, Contact, ContactCounts, Outcome, RunSummary, RunTotals};
 use crate::run::record::Recorder;
 use crate::run::scene::World;
 
-impl<W: World, R: Real> Runs<W, R> {
+impl<W: World, R: Real> LaneState<W, R> {
     /// Least distance `d` to an obstacle in m; infinite if it was never present.
     pub fn min_distance(&self, obstacle: usize, lane: usize) -> f64 {
         self.min_distance_squared[obstacle].lane(lane).sqrt()

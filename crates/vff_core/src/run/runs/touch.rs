@@ -1,6 +1,6 @@
 //! Contacts with obstacles, also between two motion steps, and who came toward whom.
 
-use super::Runs;
+use super::LaneState;
 use crate::lanes::{Number, Planar, Real, Truth, Vector2};
 use crate::run::outcome::{CONTACT_SPEED, Contact};
 use crate::run::scene::{World, body_at};
@@ -16,7 +16,7 @@ const APPEARING: f64 = 0.2;
 
 /// Contacts of a robot with an obstacle.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Touch {
+pub(super) struct ContactState {
     /// First contact.
     pub first: Option<Contact>,
     /// Whether the obstacle appeared in the scene where the robot was, and touched it then.
@@ -41,7 +41,7 @@ pub(super) fn alert_squared(reach: f64, speed_bound: f64, own: f64, step: f64) -
     alert * alert
 }
 
-impl<W: World, R: Real> Runs<W, R> {
+impl<W: World, R: Real> LaneState<W, R> {
     /// Contacts of lanes whose robots are near an obstacle at an instant, or have touched it in the motion step that
     /// ends then: robot and obstacle move straight at constant speed in it.
     #[cold]

@@ -3,7 +3,7 @@
 use crate::error::{Failure, Given, Result};
 use crate::laws::escape::Direction;
 use crate::run::Interrupted;
-use crate::run::skirt::robot::{Course, Skirt, Travel, run, steps_of};
+use crate::run::skirt::robot::{Skirt, SkirtResult, SkirtTravel, run, steps_of};
 use crate::run::skirt::scene::{DiscScene, DiscSceneOptions};
 
 use numeric::parallel::{Work, each_run};
@@ -25,7 +25,7 @@ pub struct TestPlan {
     /// How discs are laid out.
     pub scene: DiscSceneOptions,
     /// How the robot moves.
-    pub motion: Travel,
+    pub motion: SkirtTravel,
     /// Seed of discs and noise.
     pub seed: u64,
 }
@@ -34,7 +34,7 @@ pub struct TestPlan {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TestRow {
     /// Result.
-    pub course: Course,
+    pub course: SkirtResult,
     /// Whether the sensors could see the disc that was the nearest.
     pub nearest_seen: bool,
 }

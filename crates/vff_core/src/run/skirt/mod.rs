@@ -8,8 +8,8 @@ pub mod scene;
 
 pub use batch::{TestPlan, TestRow, test_batch};
 pub use record::{SkirtRecord, SkirtSteps};
-pub use robot::{Course, Skirt, SkirtOptions, Travel};
+pub use robot::{Skirt, SkirtOptions, SkirtResult, SkirtTravel};
 pub use scene::{DiscScene, DiscSceneOptions};
 
-pub use crate::laws::escape::{Action, Direction, Policy, Rule, normal_distances};
+pub use crate::laws::escape::{Direction, EscapeAction, Policy, Rule, normal_distances};
 pub use crate::sensing::sonar::Ring;

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use crate::error::Result;
-use crate::laws::escape::{Action, Decider};
+use crate::laws::escape::{Decider, EscapeAction};
 use crate::laws::reflex::Percept;
 use crate::run::Interrupted;
 use crate::run::episode::Episode;
 use crate::run::skirt::batch::TestPlan;
-use crate::run::skirt::robot::{Course, Moment, MomentObserver, Skirt, SkirtParts, episode};
+use crate::run::skirt::robot::{Moment, MomentObserver, Skirt, SkirtParts, SkirtResult, episode};
 use crate::run::skirt::scene::DiscScene;
 
 /// States after each firing: one row each.
@@ -29,7 +29,7 @@ pub struct SkirtRecord {
     /// Sensors of a firing side by side, in m.
     pub readings: Vec<f64>,
     /// Decisions.
-    pub action: Vec<Action>,
+    pub action: Vec<EscapeAction>,
 }
 
 impl MomentObserver for SkirtRecord {
@@ -69,7 +69,11 @@ impl SkirtSteps {
     ///
     /// # Errors
     /// The state became non-finite, or the caller asked to stop.
-    pub fn period(&mut self, action: Option<Action>, interrupted: Interrupted<'_>) -> Result<()> {
+    pub fn period(
+        &mut self,
+        action: Option<EscapeAction>,
+        interrupted: Interrupted<'_>,
+    ) -> Result<()> {
         self.episode.period(action, interrupted)
     }
 
@@ -107,7 +111,7 @@ impl SkirtSteps {
 
     /// Result of the test so far.
     #[must_use]
-    pub fn recorded(&self) -> (Course, &SkirtRecord) {
+    pub fn recorded(&self) -> (SkirtResult, &SkirtRecord) {
         (self.episode.parts.found, &self.episode.parts.watch)
     }
 }

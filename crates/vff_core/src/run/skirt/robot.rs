@@ -6,9 +6,9 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use crate::error::{Failure, Result, positive};
-use crate::laws::escape::{Action, Decider, Policy, Rule, trigger_distances};
+use crate::laws::escape::{Decider, EscapeAction, Policy, Rule, trigger_distances};
 use crate::laws::reflex::{Percept, Reflex};
-use crate::robots::drives::{Course as Order, Drive, LimitedOmni, Moved, OmniLimits};
+use crate::robots::drives::{Drive, LimitedOmni, Moved, OmniCommand as Order, OmniLimits};
 use crate::run::Interrupted;
 use crate::run::episode::{Episode, Parts};
 use crate::run::options::Clock;
@@ -116,7 +116,7 @@ impl Skirt {
 
 /// How the robot moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Travel {
+pub struct SkirtTravel {
     /// Speed, in m/s.
     pub speed: f64,
     /// Largest acceleration, in m/s^2.
@@ -127,7 +127,7 @@ pub struct Travel {
     pub duration: f64,
 }
 
-impl Travel {
+impl SkirtTravel {
     /// Returns the motion if its values are valid.
     ///
     /// # Errors
@@ -143,7 +143,7 @@ impl Travel {
 
 /// Result of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Course {
+pub struct SkirtResult {
     /// Least distance between the surfaces of robot and discs, in m; not positive after contact.
     pub min_clearance: f64,
     /// Disc that was the nearest then.
@@ -166,7 +166,7 @@ pub struct Moment<'a> {
     /// Latest readings, in m.
     pub readings: &'a [f64],
     /// Decision.
-    pub action: Action,
+    pub action: EscapeAction,
 }
 
 /// Receives moments.
@@ -189,12 +189,12 @@ impl<F: FnMut(&Moment<'_>)> MomentObserver for F {
 /// The state became non-finite, or the caller asked to stop.
 pub fn run(
     skirt: &Skirt,
-    motion: &Travel,
+    motion: &SkirtTravel,
     scene: &DiscScene,
     start: (f64, Stream),
     watch: impl FnMut(&Moment<'_>),
     interrupted: Interrupted<'_>,
-) -> Result<Course> {
+) -> Result<SkirtResult> {
     let episode = episode(skirt, &*skirt.decider, motion, scene, start, watch)?;
     Ok(episode.run(interrupted)?.parts.found)
 }
@@ -203,7 +203,7 @@ pub fn run(
 pub(crate) fn episode<D, S, W>(
     skirt: &Skirt,
     law: D,
-    motion: &Travel,
+    motion: &SkirtTravel,
     scene: S,
     (course, noise): (f64, Stream),
     watch: W,
@@ -234,7 +234,7 @@ where
         scene,
         sonar: Sonar::new(&skirt.array, noise, skirt.options.most_range),
         law,
-        action: Action::Keep,
+        action: EscapeAction::Keep,
         drive: LimitedOmni::new(limits, course, period),
         robot: Moved {
             frame: Frame::at([0.0, 0.0], 0.0),
@@ -244,7 +244,7 @@ where
         },
         chassis_radius: skirt.ring.chassis_radius(),
         clearance: 0.0,
-        found: Course {
+        found: SkirtResult {
             min_clearance: f64::INFINITY,
             nearest: 0,
             contact_time: None,
@@ -274,14 +274,14 @@ pub(crate) struct SkirtParts<D, S, W> {
     sonar: Sonar,
     law: D,
     /// Last decision.
-    action: Action,
+    action: EscapeAction,
     drive: LimitedOmni,
     robot: Moved,
     chassis_radius: f64,
     /// Clearance now, in m.
     clearance: f64,
     /// Result so far.
-    pub(crate) found: Course,
+    pub(crate) found: SkirtResult,
     ended: bool,
     pub(crate) watch: W,
 }
@@ -350,11 +350,11 @@ impl<D, S: Deref<Target = DiscScene>, W> SkirtParts<D, S, W> {
 }
 
 /// Order to the drive.
-fn order_of(action: Action) -> Order {
+fn order_of(action: EscapeAction) -> Order {
     match action {
-        Action::Keep => Order::Keep,
-        Action::Spin => Order::Turn,
-        Action::Move(direction) => Order::Toward(direction.angle()),
+        EscapeAction::Keep => Order::Keep,
+        EscapeAction::Spin => Order::Turn,
+        EscapeAction::Move(direction) => Order::Toward(direction.angle()),
     }
 }
 
@@ -365,7 +365,7 @@ where
     W: MomentObserver,
 {
     /// Action in place of the law's decision.
-    type Request = Option<Action>;
+    type Request = Option<EscapeAction>;
     const ATTENTION: usize = 1024;
 
     #[inline]
@@ -374,7 +374,12 @@ where
     }
 
     #[inline]
-    fn decide(&mut self, _time: f64, request: Option<Action>, _: Interrupted<'_>) -> Result<bool> {
+    fn decide(
+        &mut self,
+        _time: f64,
+        request: Option<EscapeAction>,
+        _: Interrupted<'_>,
+    ) -> Result<bool> {
         self.action = request.unwrap_or_else(|| (&*self.law).answer(&self.percept()));
         self.drive.hold(&order_of(self.action));
         Ok(true)

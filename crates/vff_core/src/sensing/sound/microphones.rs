@@ -17,7 +17,7 @@ pub struct MicrophoneArray {
 
 /// Two of the three microphones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pair {
+pub enum MicrophonePair {
     /// M1 and M2.
     First,
     /// M2 and M3.
@@ -26,7 +26,7 @@ pub enum Pair {
     Outer,
 }
 
-impl Pair {
+impl MicrophonePair {
     /// Distance of the two in spacings.
     #[must_use]
     pub fn spacings(self) -> f64 {
@@ -95,7 +95,7 @@ impl MicrophoneArray {
     /// Bearing of a source that is far away from the delay of one pair (s), corrected (10):
     /// `-asin(c dt / d)` with the distance `d` of the two; NaN if the delay is longer than `d / c`.
     #[must_use]
-    pub fn parallel_ray_bearing(&self, pair: Pair, delay: f64) -> f64 {
+    pub fn parallel_ray_bearing(&self, pair: MicrophonePair, delay: f64) -> f64 {
         -(self.speed_of_sound * delay / (pair.spacings() * self.spacing)).asin()
     }
 

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use crate::error::{Failure, Given, Result};
 use crate::world::map::StaticMap;
 use crate::world::map::capsule::Capsule;
-use crate::world::map::index::Bounds;
+use crate::world::map::index::BoundingBox;
 
 /// Most boundary points that are told of.
 pub const MOST_POINTS: usize = 8;
@@ -55,7 +55,7 @@ impl Beyond {
         planes.any(|(normal, offset)| normal.dot(&point) >= *offset)
     }
 
-    fn hide_all(&self, bounds: &Bounds) -> bool {
+    fn hide_all(&self, bounds: &BoundingBox) -> bool {
         let mut planes = self.planes().iter();
         planes.any(|(normal, offset)| bounds.least_along(*normal) >= *offset)
     }
@@ -63,14 +63,14 @@ impl Beyond {
 
 /// Remaining part of a capsule.
 #[derive(Clone, Copy, Debug, Default)]
-struct Piece {
+struct CapsulePiece {
     /// Index of the capsule.
     index: usize,
     /// Shares of the segment between which it is left.
     left: [f64; 2],
 }
 
-impl Piece {
+impl CapsulePiece {
     fn whole(index: usize) -> Self {
         Self {
             index,
@@ -132,7 +132,7 @@ impl StaticMap {
             reach * reach,
             |bounds| (!beyond.hide_all(bounds)).then(|| bounds.distance_squared(place)),
             |index, capsule, limit| {
-                let mut piece = Piece::whole(index);
+                let mut piece = CapsulePiece::whole(index);
                 let mut planes = beyond.planes().iter();
                 if !planes.all(|plane| piece.cut(capsule, *plane)) {
                     return limit;
@@ -154,7 +154,7 @@ impl StaticMap {
         &self,
         place: Vector2<f64>,
         reach: f64,
-        pieces: &mut [Piece; MOST_PIECES],
+        pieces: &mut [CapsulePiece; MOST_PIECES],
     ) -> Option<(usize, Option<Found>)> {
         let (mut count, mut found) = (0, None);
         let mut fits = true;
@@ -162,7 +162,7 @@ impl StaticMap {
             reach * reach,
             |bounds| Some(bounds.distance_squared(place)),
             |index, capsule, limit| {
-                let piece = Piece::whole(index);
+                let piece = CapsulePiece::whole(index);
                 let point = piece.nearest(capsule, place);
                 let square = (point - place).norm_squared();
                 if square > limit {
@@ -185,7 +185,7 @@ impl StaticMap {
     /// many are left, and the nearest boundary point of them.
     fn cut_all(
         &self,
-        pieces: &mut [Piece],
+        pieces: &mut [CapsulePiece],
         place: Vector2<f64>,
         reach: f64,
         plane: (Vector2<f64>, f64),
@@ -223,7 +223,7 @@ impl StaticMap {
         out: &mut Vec<[f64; 2]>,
     ) {
         out.clear();
-        let mut pieces = [Piece::default(); MOST_PIECES];
+        let mut pieces = [CapsulePiece::default(); MOST_PIECES];
         let mut beyond = Beyond::default();
         let Some((mut left, mut found)) = self.pieces_near(position, reach, &mut pieces) else {
             return self.boundary_points_among_many(position, reach, kappa, out);

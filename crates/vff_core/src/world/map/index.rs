@@ -16,12 +16,12 @@ const SPARE: f64 = 1e-12;
 
 /// A box along the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Bounds {
+pub(super) struct BoundingBox {
     pub lower: Vector2<f64>,
     pub upper: Vector2<f64>,
 }
 
-impl Bounds {
+impl BoundingBox {
     /// A box that holds nothing.
     fn nothing() -> Self {
         Self {
@@ -128,7 +128,7 @@ impl Bounds {
 /// A box of the tree. The first child of an inner one follows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Node {
-    bounds: Bounds,
+    bounds: BoundingBox,
     /// First capsule of a leaf, or second child of an inner box.
     next: usize,
     /// Capsules of a leaf, none for an inner box.
@@ -153,8 +153,8 @@ impl Index {
     }
 
     /// The box around everything, `None` without capsules.
-    pub fn bounds(&self) -> Option<Bounds> {
-        let corners = self.capsules.iter().map(Bounds::of);
+    pub fn bounds(&self) -> Option<BoundingBox> {
+        let corners = self.capsules.iter().map(BoundingBox::of);
         corners.reduce(|all, one| all.joined(&one))
     }
 
@@ -167,7 +167,7 @@ impl Index {
     pub fn visit(
         &self,
         mut limit: f64,
-        rank: impl Fn(&Bounds) -> Option<f64>,
+        rank: impl Fn(&BoundingBox) -> Option<f64>,
         mut visit: impl FnMut(usize, &Capsule, f64) -> f64,
     ) {
         let mut waiting = [(0_usize, 0.0_f64); DEEPEST];
@@ -216,8 +216,8 @@ impl Index {
 
 /// Builds the box over capsules, the first of which has an index in the whole list.
 fn grow(nodes: &mut Vec<Node>, capsules: &mut [Capsule], first: usize) {
-    let all = capsules.iter().map(Bounds::of);
-    let bounds = all.fold(Bounds::nothing(), |all, one| all.joined(&one));
+    let all = capsules.iter().map(BoundingBox::of);
+    let bounds = all.fold(BoundingBox::nothing(), |all, one| all.joined(&one));
     let at = nodes.len();
     let leaf = capsules.len() <= LEAF;
     nodes.push(Node {

@@ -32,11 +32,11 @@ pub const MOST_SEGMENTS: usize = 1 << 23;
 /// A map of what stands still.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StaticMap {
-    parts: Arc<Parts>,
+    parts: Arc<MapParts>,
 }
 
 #[derive(Debug, PartialEq)]
-struct Parts {
+struct MapParts {
     index: Index,
     /// Whether some segments are edges of filled outlines.
     outlines: bool,
@@ -158,7 +158,7 @@ impl MapShapes {
     #[must_use]
     pub fn map(self) -> StaticMap {
         StaticMap {
-            parts: Arc::new(Parts {
+            parts: Arc::new(MapParts {
                 outlines: self.capsules.iter().any(|capsule| capsule.filled),
                 index: Index::new(self.capsules),
                 grids: self.grids,

@@ -5,7 +5,7 @@ use numeric::order::sort_indices;
 
 use crate::error::{Failure, Given, Result, finite_pair};
 use crate::world::map::capsule::Capsule;
-use crate::world::map::index::{Bounds, Index};
+use crate::world::map::index::{BoundingBox, Index};
 
 /// Edges of a filled polygon, counter-clockwise.
 pub(super) fn outline(points: &[[f64; 2]]) -> Result<Vec<Capsule>> {
@@ -76,7 +76,7 @@ fn check_corners(points: &[[f64; 2]]) -> Result<()> {
 fn check_simple(edges: &[Capsule]) -> Result<()> {
     let index = Index::new(edges.to_vec());
     for (place, edge) in edges.iter().enumerate() {
-        let around = Bounds::of_segment(edge.from, edge.to);
+        let around = BoundingBox::of_segment(edge.from, edge.to);
         let mut crossed = None;
         index.visit(
             0.0,

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use crate::world::map::StaticMap;
 use crate::world::map::boundary::Beyond;
-use crate::world::map::index::Bounds;
+use crate::world::map::index::BoundingBox;
 use crate::world::shape::{PlacedShape, Shape};
 
 /// Least overhang in m that lies outside of the map: typed numbers are rounded.
@@ -74,7 +74,7 @@ impl StaticMap {
     /// that cross a ray to the right go up around it once more than down.
     fn turns_around(&self, point: Vector2<f64>) -> i64 {
         let mut turns = 0;
-        let beside = |bounds: &Bounds| {
+        let beside = |bounds: &BoundingBox| {
             let level = bounds.lower.y <= point.y && point.y <= bounds.upper.y;
             (level && point.x <= bounds.upper.x).then_some(0.0)
         };
@@ -124,7 +124,7 @@ impl StaticMap {
         most: f64,
         enough: f64,
     ) -> f64 {
-        let around = Bounds::of_segment(from, to);
+        let around = BoundingBox::of_segment(from, to);
         let along = to - from;
         let length = along.norm();
         let normal = Vector2::new(-along.y, along.x) / length;

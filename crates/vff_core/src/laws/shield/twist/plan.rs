@@ -4,7 +4,7 @@ use crate::lanes::Vector2;
 use crate::laws::shield::Tracking;
 use crate::laws::shield::half_disc::Look;
 use crate::laws::shield::person::Person;
-use crate::laws::shield::walls::Walls;
+use crate::laws::shield::walls::StaticObstacles;
 use crate::robots::differential::{DifferentialLimits, Twist};
 
 /// Slower than this is at rest and looks nowhere, in m/s.
@@ -29,7 +29,7 @@ pub struct TwistState {
 
 /// A point of a plan.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Node {
+pub(super) struct PlanPoint {
     time: f64,
     pub(super) position: Vector2<f64>,
     heading: f64,
@@ -46,8 +46,8 @@ enum Ahead {
 /// command.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TwistPlan {
-    pub(super) ramp: [Node; PARTS + 1],
-    braking: [Node; PARTS + 1],
+    pub(super) ramp: [PlanPoint; PARTS + 1],
+    braking: [PlanPoint; PARTS + 1],
     /// Largest speed of the center in m/s.
     pub(super) speed: f64,
     /// Largest difference between the velocities of plan and robot, in m/s.
@@ -62,7 +62,7 @@ pub(super) fn unit(angle: f64) -> Vector2<f64> {
 }
 
 /// Nodes of a part in which the twist changes evenly.
-fn nodes(first: Node, duration: f64, from: Twist, to: Twist) -> [Node; PARTS + 1] {
+fn nodes(first: PlanPoint, duration: f64, from: Twist, to: Twist) -> [PlanPoint; PARTS + 1] {
     let mut nodes = [first; PARTS + 1];
     let part = duration / PARTS as f64;
     for index in 0..PARTS {
@@ -71,13 +71,13 @@ fn nodes(first: Node, duration: f64, from: Twist, to: Twist) -> [Node; PARTS + 1
             speed: from.speed + (to.speed - from.speed) * share,
             turn_rate: from.turn_rate + (to.turn_rate - from.turn_rate) * share,
         };
-        let Node {
+        let PlanPoint {
             time,
             position,
             heading,
         } = nodes[index];
         let half = 0.5 * mean.turn_rate * part;
-        nodes[index + 1] = Node {
+        nodes[index + 1] = PlanPoint {
             time: time + part,
             position: position + unit(heading + half) * (mean.speed * part),
             heading: heading + 2.0 * half,
@@ -87,7 +87,7 @@ fn nodes(first: Node, duration: f64, from: Twist, to: Twist) -> [Node; PARTS + 1
 }
 
 /// Outermost headings of a part in which the twist changes evenly: its ends, and where it turns back.
-fn swept(nodes: &[Node; PARTS + 1], from: Twist, to: Twist) -> [f64; 2] {
+fn swept(nodes: &[PlanPoint; PARTS + 1], from: Twist, to: Twist) -> [f64; 2] {
     let (first, last) = (nodes[0], nodes[PARTS]);
     let ends = [first.heading, last.heading];
     if from.turn_rate * to.turn_rate >= 0.0 {
@@ -140,7 +140,7 @@ impl TwistPlan {
         limits: &TwistLimits,
         tracking: Tracking,
     ) -> Self {
-        let first = Node {
+        let first = PlanPoint {
             time: 0.0,
             position: state.position,
             heading: state.heading,
@@ -174,7 +174,7 @@ impl TwistPlan {
         }
     }
 
-    fn parts(&self) -> [(&[Node; PARTS + 1], &[Ahead; PARTS]); 2] {
+    fn parts(&self) -> [(&[PlanPoint; PARTS + 1], &[Ahead; PARTS]); 2] {
         [
             (&self.ramp, &self.ahead[0]),
             (&self.braking, &self.ahead[1]),
@@ -190,7 +190,7 @@ impl TwistPlan {
         let end = self.braking[PARTS].time;
         let rate = self.speed + self.deviation + person.rate(end);
         for (nodes, looks) in self.parts() {
-            let at = |ahead: &Ahead, node: &Node| {
+            let at = |ahead: &Ahead, node: &PlanPoint| {
                 ahead.clearance(person, node.position, radius, node.time)
             };
             let (mut look, mut before) = (&looks[0], at(&looks[0], &nodes[0]));
@@ -212,7 +212,7 @@ impl TwistPlan {
     }
 
     /// Whether the whole way keeps a distance from walls, with the sagitta of each part to spare.
-    pub(super) fn keeps(&self, walls: &Walls<'_>, least: f64) -> bool {
+    pub(super) fn keeps(&self, walls: &StaticObstacles<'_>, least: f64) -> bool {
         let mut pairs = self
             .parts()
             .into_iter()
