@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,10 +12,6 @@ from hrsafety._arguments import Array
 from hrsafety.io.yaml import YamlDocument, read_yaml
 from hrsafety.zones.monitor_files import node_of
 from hrsafety.zones.polygons import trimmed
-
-if TYPE_CHECKING:
-    from hrsafety.zones.checking import ZoneCheck
-    from hrsafety.zones.field_design import ZoneSet
 
 __all__ = ["mended", "zone_text"]
 
@@ -28,7 +24,7 @@ def shown_corners(corners: Array) -> str:
     return "[" + ", ".join(f"[{x:.4f}, {y:.4f}]" for x, y in corners) + "]"
 
 
-def zone_text(found: ZoneSet) -> str:
+def zone_text(found: Any) -> str:
     """Return the parameters of a collision monitor with these zones.
 
     Parameters
@@ -93,7 +89,7 @@ def zone_text(found: ZoneSet) -> str:
     return "\n".join(lines) + "\n"
 
 
-def mended(path: str | PathLike[str], found: ZoneCheck) -> YamlDocument:
+def mended(path: str | PathLike[str], found: Any) -> YamlDocument:
     """Return a file of a collision monitor with its stopping shapes made large enough, all else as it was.
 
     Each shape becomes the hull of itself and the one that its commands need; ``source_timeout`` becomes at most the

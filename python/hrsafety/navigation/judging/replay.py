@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
 from hrsafety._replay.record import Event, NotJudged, PlayedRobot, Replay
 from hrsafety.navigation.judging.unjudged import REASONS
-
-if TYPE_CHECKING:
-    from hrsafety.navigation.judging.judgement import Judgement
 
 __all__ = ["replay_of"]
 
@@ -18,7 +15,7 @@ _QUIET = ("smoothing_edge", "outside_map")
 """Reasons that concern no contact."""
 
 
-def replay_of(judgement: Judgement) -> Replay:
+def replay_of(judgement: Any) -> Replay:
     """Return what a player shows of a judged log: contacts, worst moments, broken rules, and what is not judged."""
     gaps = np.concatenate([judgement.clearance, judgement.wall_clearance[:, None]], axis=1)
     least = np.nanmin(np.where(np.isnan(gaps), np.inf, gaps), axis=1, initial=np.inf)
@@ -50,7 +47,7 @@ def replay_of(judgement: Judgement) -> Replay:
     )
 
 
-def _events(judgement: Judgement) -> list[Event]:
+def _events(judgement: Any) -> list[Event]:
     found = []
     for touch in (*judgement.contacts, *judgement.possible_contacts):
         who = "wall" if touch.person is None else f"person {touch.person}"

@@ -5,11 +5,10 @@ use pulp::Simd;
 use crate::error::Result;
 use crate::lanes::{Lanes, Vectors};
 use crate::laws::{LaneFamily, LaneLaw};
-use crate::run::Interrupted;
+pub(crate) use crate::run::lanes::kernel::{Group, RunJob};
 use crate::run::lanes::kernel::{LawInLanes, run_lanes};
 use crate::run::lanes::scenes::agree;
 use crate::run::outcome::RunTotals;
-use crate::run::plan::RunPlan;
 use crate::run::record::{DescentCounter, Recorder};
 use crate::run::walls::Maps;
 use crate::world::scenario::Scenario;
@@ -19,23 +18,6 @@ type Eight = Lanes<8>;
 
 /// Receives each run: its index, its totals, and its least distance to an obstacle.
 pub(crate) type Keep<'a> = &'a mut dyn FnMut(usize, &RunTotals, &dyn Fn(usize) -> f64);
-
-/// A run to be made.
-#[derive(Clone, Copy)]
-pub(crate) struct RunJob<'a> {
-    pub scenario: &'a Scenario,
-    /// Gains in the order of their names.
-    pub gains: &'a [f64],
-}
-
-/// Runs of one task.
-pub(crate) struct Group<'a> {
-    pub jobs: &'a [RunJob<'a>],
-    pub plan: &'a RunPlan,
-    /// Whether the runs are alike until an obstacle acts.
-    pub led: bool,
-    pub interrupted: Interrupted<'a>,
-}
 
 /// The lanes that are compiled for a family of laws.
 pub(crate) trait LaneKernel: Send + Sync {

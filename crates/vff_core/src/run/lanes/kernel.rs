@@ -5,7 +5,7 @@
 use crate::error::{Failure, Result};
 use crate::lanes::{Mask, Real, Truth, Vector2};
 use crate::laws::{Law, Situation, Stop};
-use crate::run::lanes::group::Group;
+use crate::run::Interrupted;
 use crate::run::lanes::integrators::{rk4, rk4_held, semi_implicit_euler};
 use crate::run::lanes::scenes::{FeltObstacles, LaneObstacles, LaneScenes};
 use crate::run::lanes::sensors::LaneSensors;
@@ -17,6 +17,23 @@ use crate::run::walls::Maps;
 use crate::world::geometry::RobotState;
 use crate::world::scenario::Scenario;
 use crate::world::shape::Shape;
+
+/// A run to be made.
+#[derive(Clone, Copy)]
+pub(crate) struct RunJob<'a> {
+    pub scenario: &'a Scenario,
+    /// Gains in the order of their names.
+    pub gains: &'a [f64],
+}
+
+/// Runs of one task.
+pub(crate) struct Group<'a> {
+    pub jobs: &'a [RunJob<'a>],
+    pub plan: &'a RunPlan,
+    /// Whether the runs are alike until an obstacle acts.
+    pub led: bool,
+    pub interrupted: Interrupted<'a>,
+}
 
 /// Control periods, times obstacles, between two questions whether to stop; about a millisecond.
 const PERIODS_PER_QUESTION: usize = 2048;
