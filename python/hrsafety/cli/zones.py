@@ -225,7 +225,7 @@ def _check(options: argparse.Namespace) -> None:
     given = _given(options)
     conditions, _ = zones.Conditions.assumed(**given)
     with output.located(options.file):
-        monitor = zones.CollisionMonitor.from_file(options.file, footprint=conditions.footprint)
+        monitor = zones.load_monitor(options.file, footprint=conditions.footprint)
     with progress.live() as shown:
         found = zones.check(
             monitor,

@@ -39,6 +39,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
         MonitorPolygon as MonitorPolygon,
         VelocityRange as VelocityRange,
     )
+    from hrsafety.zones.monitor_files import load_monitor as load_monitor
     from hrsafety.zones.monitor_text import mended as mended
 else:
     __all__, __getattr__, __dir__ = names_of(__name__)

@@ -20,6 +20,7 @@ from hrsafety.zones.conditions import Conditions
 from hrsafety.zones.field_design import CommandRange, limits_of, needed_zone
 from hrsafety.zones.formulas import allowed_speed, blind_range
 from hrsafety.zones.monitor import CollisionMonitor, MonitorPolygon, first_gap
+from hrsafety.zones.monitor_files import load_monitor
 from hrsafety.zones.polygons import distance_outside
 from hrsafety.zones.search import adapted
 
@@ -185,7 +186,7 @@ def check(
     elif not isinstance(conditions, Conditions) or given:
         raise InvalidParameterError("conditions", "be Conditions, or its parameters by name", conditions)
     if not isinstance(monitor, CollisionMonitor):
-        monitor = CollisionMonitor.from_file(monitor, footprint=conditions.footprint)
+        monitor = load_monitor(monitor, footprint=conditions.footprint)
     drawn = count("attacks", attacks, most=MOST_ATTACKS)
     rounds = count("generations", generations, least=0, most=10_000)
     told = callback("progress", progress)

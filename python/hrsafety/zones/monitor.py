@@ -337,31 +337,6 @@ class CollisionMonitor:
         assign(self, "polygons", tuple(given))
         assign(self, "source_timeout", not_negative("source_timeout", self.source_timeout))
 
-    @classmethod
-    def from_file(cls, path: object, *, footprint: object = None) -> CollisionMonitor:
-        """Read the parameters of a ``collision_monitor`` node from YAML.
-
-        Parameters
-        ----------
-        path : path-like
-            The file; other nodes in it are passed over.
-        footprint : float or array_like (n, 2) or None
-            Body of the robot in m, the shape of zones that a ``footprint_topic`` brings.
-
-        Returns
-        -------
-        CollisionMonitor
-            Its zones, with doubts in `warnings`.
-
-        Raises
-        ------
-        InvalidParameterError
-            If a key is missing or wrong; the message names the key with its path and line.
-        """
-        from hrsafety.zones.monitor_files import load_monitor
-
-        return load_monitor(path, footprint=footprint)
-
     def restart(self) -> None:
         """Forget the commands so far: shapes of velocity polygons, and counts of points in a row."""
         self._memory.clear()

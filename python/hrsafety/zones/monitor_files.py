@@ -113,7 +113,25 @@ def _corners(keys: Section, key: str = "points") -> Array:
 
 
 def load_monitor(path: object, *, footprint: object = None) -> CollisionMonitor:
-    """Read a collision monitor from YAML, see `CollisionMonitor.from_file`."""
+    """Read the parameters of a ``collision_monitor`` node from YAML.
+
+    Parameters
+    ----------
+    path : path-like
+        The file; other nodes in it are passed over.
+    footprint : float or array_like (n, 2) or None
+        Body of the robot in m, the shape of zones that a ``footprint_topic`` brings.
+
+    Returns
+    -------
+    CollisionMonitor
+        Its zones, with doubts in `warnings`.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a key is missing or wrong; the message names the key with its path and line.
+    """
     document = read_yaml(path)  # type: ignore[arg-type]  # what is no path is refused there
     found = monitor_of(document, footprint=footprint)
     return replace(found, source=str(path))

@@ -57,7 +57,7 @@ def test_a_broken_file_fails_is_mended_and_replayed(tmp_path: Path, capsys: pyte
     assert "# as delivered" in mended.read_text()
     found = json.loads(values.read_text())
     assert found["verdict"] == "broken"
-    monitor = zones.CollisionMonitor.from_file(file)
+    monitor = zones.load_monitor(file)
     conditions = zones.Conditions(**{name: value for name, value in found["conditions"].items() if value is not None})
     again = zones.replay(monitor, conditions, list(found["worst"]["genes"].values()))
     assert again.contact_speed == found["worst"]["contact_speed_m_per_s"]

@@ -35,7 +35,7 @@ STOP = """    polygons: ["Stop"]
 def written(folder: Path, text: str) -> zones.CollisionMonitor:
     path = folder / "cm.yaml"
     path.write_text(text, encoding="utf-8")
-    return zones.CollisionMonitor.from_file(path)
+    return zones.load_monitor(path)
 
 
 def monitor(**given_: Any) -> zones.CollisionMonitor:
@@ -49,7 +49,7 @@ def monitor(**given_: Any) -> zones.CollisionMonitor:
 def test_the_sample_monitor_answers_every_command_as_nav2_does(shared: Path) -> None:
     folder = shared / "data" / "formats"
     expected = json.loads((folder / "expected.json").read_text(encoding="utf-8"))["collision_monitor"]
-    found = zones.CollisionMonitor.from_file(folder / expected["file"])
+    found = zones.load_monitor(folder / expected["file"])
     assert not found.warnings
     for case in expected["cases"]:
         answer = found.step(case["cmd_vel"], case["points"])
@@ -199,7 +199,7 @@ def test_what_a_file_leaves_open_is_doubted(tmp_path: Path) -> None:
     assert 'did you mean "min_points"?' in found.warnings[1].message
     assert [each.name for each in found.polygons] == ["Stop", "Feet"]
     path = tmp_path / "cm.yaml"
-    known = zones.CollisionMonitor.from_file(path, footprint=0.3)
+    known = zones.load_monitor(path, footprint=0.3)
     assert [each.code for each in known.warnings] == ["unknown_key", "disabled"]
     assert known.step([0.5, 0.0, 0.0], [[0.8, 0.0]] * 4).action == "approach"
 

@@ -125,7 +125,7 @@ def test_the_file_says_the_same_zones(tmp_path: Path) -> None:
     found = zones.design(OMNI, ranges=2)
     path = tmp_path / "cm.yaml"
     path.write_text(found.yaml(), encoding="utf-8")
-    again = zones.CollisionMonitor.from_file(path)
+    again = zones.load_monitor(path)
     assert not again.warnings
     assert again.source_timeout == pytest.approx(found.source_timeout, rel=1e-3)
     for mine, read in zip(found.monitor().polygons[0].ranges, again.polygons[0].ranges, strict=True):
