@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import navigation as nav
-from hrsafety._arguments import finite, instance, positive
+from hrsafety._arguments import finite, instance, points, positive, sequence
 from hrsafety._doubts import checked_doubts
 from hrsafety._records import dataclass
 from hrsafety._replay.played import Played
@@ -122,6 +122,13 @@ class Recording(Played):
         if self.velocity is not None:
             object.__setattr__(self, "velocity", checked_velocity(self.velocity, position.shape))
         object.__setattr__(self, "notes", tuple(checked_doubts("notes", self.notes)))
+        object.__setattr__(self, "time_origin", finite("time_origin", self.time_origin))
+        if self.frame_rate is not None:
+            object.__setattr__(self, "frame_rate", positive("frame_rate", self.frame_rate))
+        if not isinstance(self.details, Mapping):
+            raise InvalidParameterError("details", "be a mapping of words to what the file says", self.details)
+        walls = sequence("walls", "be a list of polylines", self.walls)
+        object.__setattr__(self, "walls", tuple(points(f"walls[{place}]", each) for place, each in enumerate(walls)))
         order = checked_order(time, person)
         ids, first = np.unique(person[order], return_index=True)
         arrays = {"time_s": time, "person": person, "position": position, "_order": order}

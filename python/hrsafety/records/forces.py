@@ -98,8 +98,9 @@ def load_device(path: str | PathLike[str]) -> ForceDevice:
 
     Examples
     --------
+    >>> from pathlib import Path
     >>> from hrsafety import records
-    >>> _ = open("device.toml", "w").write("spring = 75e3\nrange = 500.0\n")
+    >>> _ = Path("device.toml").write_text("spring = 75e3\nrange = 500.0\n")
     >>> records.load_device("device.toml").range
     500.0
     """

@@ -213,8 +213,9 @@ def load(path: str | PathLike[str], *, time: str | None = None) -> Record:
 
     Examples
     --------
+    >>> from pathlib import Path
     >>> from hrsafety import records
-    >>> _ = open("run.csv", "w").write("Time [ms];Force [N]\n0,0;0,5\n0,5;12,25\n1,0;140,0\n")
+    >>> _ = Path("run.csv").write_text("Time [ms];Force [N]\n0,0;0,5\n0,5;12,25\n1,0;140,0\n")
     >>> found = records.load("run.csv")
     >>> found.time.tolist(), found.columns["Force"].tolist()
     ([0.0, 0.0005, 0.001], [0.5, 12.25, 140.0])

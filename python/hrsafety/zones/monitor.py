@@ -15,6 +15,7 @@ from hrsafety._arguments import (
     Array,
     Parameters,
     assign,
+    checked_text,
     count,
     finite,
     instance,
@@ -162,17 +163,16 @@ class MonitorPolygon(Parameters):
         """Check type, action, shape and numbers."""
         word("type", self.type, TYPES)
         word("action", self.action, ACTIONS)
-        if self.type == "polygon" and self.corners is not None:
+        if self.corners is not None:
             self._set(corners=checked("corners", self.corners))
         if self.type == "circle":
             self._set(radius=positive("radius", self.radius))
-        if self.type == "velocity_polygon":
-            given = sequence("ranges", "be a list of VelocityRange", self.ranges)
-            if not given:
-                raise InvalidParameterError("ranges", "hold at least one VelocityRange", Shown("none"))
-            self._set(
-                ranges=tuple(instance(f"ranges[{index}]", each, VelocityRange) for index, each in enumerate(given))
-            )
+        else:
+            self._set(radius=not_negative("radius", self.radius))
+        given = sequence("ranges", "be a list of VelocityRange", self.ranges)
+        if self.type == "velocity_polygon" and not given:
+            raise InvalidParameterError("ranges", "hold at least one VelocityRange", Shown("none"))
+        self._set(ranges=tuple(instance(f"ranges[{index}]", each, VelocityRange) for index, each in enumerate(given)))
         count("min_points", self.min_points, least=0)
         for name in ("trigger_consecutive_points", "release_consecutive_points"):
             count(name, getattr(self, name))
@@ -335,6 +335,11 @@ class CollisionMonitor:
         for index, each in enumerate(given):
             instance(f"polygons[{index}]", each, MonitorPolygon)
         assign(self, "polygons", tuple(given))
+        names = sequence("sources", "be a list of names", self.sources)
+        rule = "be the name of a source"
+        assign(
+            self, "sources", tuple(checked_text(f"sources[{place}]", each, rule) for place, each in enumerate(names))
+        )
         assign(self, "source_timeout", not_negative("source_timeout", self.source_timeout))
 
     def restart(self) -> None:

@@ -91,19 +91,6 @@ def test_an_unknown_law_of_a_suite_is_answered_with_the_nearest(word: str, near:
         benchmark("s4", [word])
 
 
-def test_a_study_of_worlds_says_what_runs_worlds() -> None:
-    world = scenarios.circle_crossing(0, law=nav.VirtualForceField())
-    made = sweep.NavigationStudy(scenario=lambda _: world, axis_units={"a": "m"})
-    calls = (
-        lambda: sweep.NavigationStudy(scenarios=world),
-        lambda: sweep.NavigationStudy(scenarios=[world]),
-        lambda: made.compute({"a": [1.0]}),
-    )
-    for call in calls:
-        with pytest.raises(InvalidParameterError, match=r"got a World; worlds of people .* nav.simulate_many"):
-            call()
-
-
 def test_a_robot_model_in_place_of_a_toml_file_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "own.urdf"
     file.write_text('<?xml version="1.0"?>\n<robot name="own"></robot>\n', encoding="utf-8")

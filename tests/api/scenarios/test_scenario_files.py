@@ -262,7 +262,7 @@ BAD_FILES = {
     ),
     "bad recording": (
         HUMAN + 'path = "scene.toml"\n',
-        OBSTACLE + r"\.path: scene\.toml, line 1 must name the columns t_s, x_m, y_m",
+        OBSTACLE + r"\.path: scene\.toml, line 1 must have a column for a time or a frame and x and y",
     ),
     "disc without radius": (
         ROOM + '[[obstacles]]\ntype = "moving_disc"\ncenter = [1, 1]\nvelocity = [1, 0]\n',

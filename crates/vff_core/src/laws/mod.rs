@@ -239,6 +239,8 @@ pub trait LaneFamily: LawFamily {
     const MIXES_GAINS: bool = true;
     /// Most obstacles of a scene beside others: a run by itself leaves those that are far away alone.
     const MOST_OBSTACLES: usize = usize::MAX;
+    /// Whether lanes take every obstacle for a disc: scenes with others are run by themselves.
+    const DISCS_ONLY: bool = false;
     /// The law for robots side by side. `RECORD`: the Lyapunov function is wanted too.
     type Law<R: Real, const RECORD: bool>: LaneLaw<R> + 'static;
     /// The law with the gains of every lane in one scenario.

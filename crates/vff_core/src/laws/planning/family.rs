@@ -133,6 +133,7 @@ impl<F: PlannerFamily> LawFamily for Planned<F> {
 impl<F: PlannerFamily<Planner: ScenePlanner>> LaneFamily for Planned<F> {
     const MIXES_GAINS: bool = false;
     const MOST_OBSTACLES: usize = 32;
+    const DISCS_ONLY: bool = true;
 
     type Law<R: Real, const RECORD: bool> = LanePlanners<F::Planner>;
 

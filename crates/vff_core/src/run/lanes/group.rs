@@ -11,7 +11,8 @@ use crate::run::lanes::scenes::agree;
 use crate::run::outcome::RunTotals;
 use crate::run::record::{DescentCounter, Recorder};
 use crate::run::walls::Maps;
-use crate::world::scenario::Scenario;
+use crate::world::obstacle::Shape;
+use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// Robots side by side.
 type Eight = Lanes<8>;
@@ -47,7 +48,9 @@ impl<F: LaneFamily> LaneKernel for F {
     }
 
     fn pay(&self, job: &RunJob<'_>) -> bool {
+        let is_disc = |placed: &PlacedObstacle| matches!(placed.obstacle.shape, Shape::Disc { .. });
         job.scenario.obstacle_count() <= F::MOST_OBSTACLES
+            && (!F::DISCS_ONLY || job.scenario.obstacles.iter().all(is_disc))
     }
 
     fn run(&self, group: &Group<'_>, maps: &Maps, vectors: Vectors, keep: Keep<'_>) -> Result<()> {
