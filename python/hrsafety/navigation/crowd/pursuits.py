@@ -75,8 +75,8 @@ def _pursued(world: World, person: tuple[float, float, float], drawn: tuple[int,
     native = _hrsafety.CrowdPerson.pursuing(
         model._native, drawn, [robot.start, robot.goal], radius=radius, speed=speed, free=free
     )
-    start = tuple(native.start)
-    pursuer = Person(start=start, radius=radius, desired_speed=speed, model=model)
+    x, y = native.start
+    pursuer = Person(start=(x, y), radius=radius, desired_speed=speed, model=model)
     pursuer._set(_native=native)
     # Only the native person pursues.
     return replace(world, people=(*world.people, pursuer), seed=seed)

@@ -82,8 +82,8 @@ def measured_records(
             values, peak = each.force, each.peak
             spans = [(contact.start, contact.end) for contact in each.contacts]
         axes.plot(MILLI * each.time, values, label=label, **look)
-        marked = {"label": "peak"} if place == 0 else {}
-        axes.plot(MILLI * each.peak_time, peak, **(PEAK_LOOK | {"color": look["color"]}), **marked)
+        look_of_peak = PEAK_LOOK | {"color": look["color"], "label": "peak" if place == 0 else "_peak"}
+        axes.plot(MILLI * each.peak_time, peak, **look_of_peak)
         for start, end in spans:
             first, last = (
                 bound if bound is not None else edge for bound, edge in ((start, each.time[0]), (end, each.time[-1]))
