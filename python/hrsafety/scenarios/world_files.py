@@ -53,17 +53,17 @@ _TRAITS: dict[str, kind.Kind] = {
     "distracted_share": kind.number,
 }
 _PERSON: Keys = MappingProxyType(
-    {**_TRAITS, "start": kind.pair, "velocity": kind.pair, "enters": kind.number, "group": kind.integer}
+    _TRAITS | {"start": kind.pair, "velocity": kind.pair, "enters": kind.number, "group": kind.integer}
 )
 _SOURCE: Keys = MappingProxyType(
-    {**_TRAITS, "low": kind.pair, "high": kind.pair, "rate": kind.number, "arrivals": kind.word}
+    _TRAITS | {"low": kind.pair, "high": kind.pair, "rate": kind.number, "arrivals": kind.word}
 )
 _OWN: Keys = MappingProxyType(
     {"people": kind.tables, "sources": kind.tables, "walls": _listed, "map": kind.word, "step": kind.number}
 )
 
 
-@kind.top_level({**TOP, **_OWN})
+@kind.top_level(dict(TOP) | dict(_OWN))
 def load_world(path: str | PathLike[str]) -> nav.World:
     r"""Read a scenario file as a world in which people react to the robot.
 
