@@ -131,6 +131,22 @@ def load_monitor(path: object, *, footprint: object = None) -> CollisionMonitor:
     ------
     InvalidParameterError
         If a key is missing or wrong; the message names the key with its path and line.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from hrsafety import zones
+    >>> text = '''
+    ... collision_monitor:
+    ...   ros__parameters:
+    ...     polygons: ["Stop"]
+    ...     Stop: {type: circle, action_type: stop, radius: 0.5}
+    ...     observation_sources: ["scan"]
+    ...     scan: {type: scan, topic: scan}
+    ... '''
+    >>> _ = Path("cm.yaml").write_text(text)
+    >>> zones.load_monitor("cm.yaml").polygons[0].radius
+    0.5
     """
     document = read_yaml(path)  # type: ignore[arg-type]  # what is no path is refused there
     found = monitor_of(document, footprint=footprint)

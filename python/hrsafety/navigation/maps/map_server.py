@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["BETWEEN", "FREE", "OCCUPIED", "UNKNOWN", "ServedMap", "cell_classes", "doubts_of_place", "read_map_server"]
 
-CELLS_AT_ONCE = 1 << 23
+CELLS_AT_ONCE = 1 << 21
 FREE, UNKNOWN, OCCUPIED, BETWEEN = range(4)
 """What a cell is: `BETWEEN` has a value from 1 to 99 of 100."""
 LARGEST = 1e300
