@@ -10,7 +10,7 @@ from pathlib import Path
 DOCS = Path(__file__).resolve().parent
 sys.path.insert(0, str(DOCS.parent / "tests"))
 
-from api.browsers import tab  # noqa: E402
+from api.browsers import tab  # noqa: E402  # the folder of tests is known from the line above on
 from hrsafety import navigation as nav  # noqa: E402
 from hrsafety import plotting, scenarios  # noqa: E402
 from hrsafety.live import serve  # noqa: E402

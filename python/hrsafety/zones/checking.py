@@ -233,7 +233,7 @@ def check(
             *_beyond_sight(beyond, shapes),
             *_beyond_closed_form(monitor, shapes),
             *assumed,
-            *conditions.warnings,
+            *(each for each in conditions.warnings if not (assumed and each.code == "assumed")),
         ),
     )
 

@@ -196,11 +196,19 @@ class Conditions(Parameters):
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """Numbers that are hardly meant in their unit."""
+        """Numbers that are hardly meant in their unit, and brakes of turns that were not told (``assumed``)."""
         body = footprint_of(self.footprint)
         # A robot that does not turn has a turn rate of 0.
         values = {name: getattr(self, name) or None for name in _QUANTITIES}
-        return implausible({**values, "footprint": body.circumscribed}, {**_QUANTITIES, "footprint": "robot_radius"})
+        found = implausible({**values, "footprint": body.circumscribed}, {**_QUANTITIES, "footprint": "robot_radius"})
+        if self.turn_deceleration is not None or self.max_turn_rate == 0.0:
+            return found
+        message = (
+            "not told: turn_deceleration; turns are taken to brake with the velocity, by "
+            f"{self.turn_braking:.4g} rad/s^2: a robot that turns on while it stops sweeps more ground; a verdict "
+            "needs the one that was measured"
+        )
+        return (*found, ResultWarning("assumed", "turn_deceleration", message))
 
     def numbers(self) -> dict[str, object]:
         """Return every parameter by name, as given.

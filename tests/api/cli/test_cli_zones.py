@@ -12,7 +12,7 @@ from hrsafety.cli import main
 
 ROBOT = (
     *("--footprint", "0.22", "--max-speed", "0.4", "--max-turn-rate", "0.5", "--deceleration", "2.5"),
-    *("--reaction", "0.15", "--error", "0.02", "--beam-step-deg", "0.5"),
+    *("--reaction", "0.15", "--turn-deceleration", "11.4", "--error", "0.02", "--beam-step-deg", "0.5"),
 )
 CHECKED = ("--attacks", "60", "--generations", "0")
 DEFAULT = """collision_monitor:

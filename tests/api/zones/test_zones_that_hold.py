@@ -12,6 +12,7 @@ import pytest
 
 from hrsafety import zones
 from hrsafety.errors import InfeasibleError, InvalidParameterError
+from hrsafety.plausibility import unsafe_doubts
 from hrsafety.zones.field_design import needed_zone
 from hrsafety.zones.polygons import area, distance_outside, inside
 
@@ -25,6 +26,7 @@ SMALL = zones.Conditions(
     beam_step=math.radians(0.5),
     command_fall=2.5,
     turn_command_fall=3.2,
+    turn_deceleration=2.5 / 0.22,
 )
 CART = zones.Conditions(
     footprint=[(0.6, 0.3), (0.6, -0.3), (-0.2, -0.3), (-0.2, 0.3)],
@@ -37,6 +39,7 @@ CART = zones.Conditions(
     beam_step=math.radians(0.25),
     command_fall=1.0,
     turn_command_fall=1.5,
+    turn_deceleration=1.5,
     build_up=0.2,
     scanner=(0.4, 0.0),
 )
@@ -199,6 +202,16 @@ def test_what_is_not_told_is_doubted() -> None:
     assert "max_speed 0.5" in doubt.message
     assert not doubt.safe_side
     assert "footprint" not in doubt.subject
+
+
+def test_brakes_of_turns_that_are_not_told_are_doubted() -> None:
+    untold = replace(SMALL, turn_deceleration=None)
+    designed = zones.design(untold, ranges=1)
+    checked = zones.check(designed.monitor(), untold, attacks=20, generations=0)
+    for found in (untold, designed, checked):
+        (doubt,) = unsafe_doubts(found.warnings)
+        assert (doubt.code, doubt.subject) == ("assumed", "turn_deceleration")
+    assert replace(untold, max_turn_rate=0.0).warnings == ()
 
 
 def test_a_monitor_of_approach_alone_touches_who_walks() -> None:
