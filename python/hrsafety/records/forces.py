@@ -202,9 +202,9 @@ class ForceRecord:
         InvalidParameterError
             If a limit is not positive.
         """
-        pairs = [(self.transient, transient, "transient")]
+        pairs: list[tuple[float | None, float | None, str]] = [(self.transient, transient, "transient")]
         if flag("clamped", clamped):
-            pairs.append((self.quasi_static, quasi_static, "quasi_static"))  # type: ignore[arg-type]
+            pairs.append((self.quasi_static, quasi_static, "quasi_static"))
             if flag("strict", strict):
                 pairs.append((self.peak, quasi_static, "quasi_static"))
         return doubted(strictest(_word(load, limit, name) for load, limit, name in pairs), self.warnings)

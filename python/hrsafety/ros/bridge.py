@@ -221,7 +221,7 @@ class Bridge:
     def _hear(self, twist: tuple[float, float, float], stamp: float | None) -> None:
         """Take a velocity command."""
         own = None if stamp is None or stamp == 0.0 else stamp - self._offset
-        self._answered |= self._commands.hear(twist, own, self._time)
+        self._answered |= self._commands.received(twist, own, self._time)
 
     def _place(self, message: Any) -> None:
         """Put the robot to another place at the next instant, unless somebody or something is there."""

@@ -66,7 +66,7 @@ class Commands:
         if self.counts[code] == 1:
             self._tell(_WORDS[code])
 
-    def hear(self, given: tuple[float, float, float], stamp: float | None, now: float) -> bool:
+    def received(self, given: tuple[float, float, float], stamp: float | None, now: float) -> bool:
         """Take a command, and return whether it answers what was published at this instant.
 
         Parameters

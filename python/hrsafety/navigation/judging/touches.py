@@ -35,7 +35,7 @@ class Touch(NamedTuple):
     at_fault : bool
         Whether the robot moved toward the person during the contact.
     speed : float
-        Of the robot at the begin in m/s.
+        Of the robot at the start in m/s.
     clearance : float
         Least distance of the surfaces in m, negative where they overlap.
     error : float
