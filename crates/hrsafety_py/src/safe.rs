@@ -5,7 +5,8 @@ use vff_core::lanes::Vector2;
 use vff_core::laws::guide::TakeoverOptions;
 use vff_core::laws::safe::SafeNavigation;
 use vff_core::laws::shield::{
-    self, Friendly, Guard, KnownVelocity, Limits, Person, StaticObstacles, Tracking, View,
+    self, Friendly, Guard, KnownVelocity, Person, ShieldLimits, StaticObstacles, TrackingError,
+    View,
 };
 use vff_core::laws::yielding;
 use vff_core::world::geometry::RobotState;
@@ -52,7 +53,7 @@ value_class! {
         taken!(given: shield::Shield {
             person_speed, latency, position_error,
             velocity_bounds = bounds.0.zip(bounds.1).map(|(error, most)| [error, most]), margin,
-            position_tracking, velocity_tracking = Tracking { absolute, relative }, wall_margin,
+            position_tracking, velocity_tracking = TrackingError { absolute, relative }, wall_margin,
             friendly = friendly.map(|(reaction_time, deceleration)| Friendly {
                 reaction_time,
                 deceleration,
@@ -125,7 +126,7 @@ fn seen((position, velocity): MotionState, people: &[Person]) -> View<'_> {
 impl Shield {
     /// The shield of a robot.
     fn guard(&self, (radius, max_speed, max_acceleration, period): RobotLimits) -> PyResult<Guard> {
-        let limits = Limits {
+        let limits = ShieldLimits {
             radius,
             max_speed,
             max_acceleration,

@@ -10,7 +10,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use numeric::random::Stream;
 use vff_core::lanes::Vector2;
 use vff_core::laws::safe::SafeNavigation;
-use vff_core::laws::shield::{Guard, Limits, Person, Shield, StaticObstacles, Status, View};
+use vff_core::laws::shield::{Guard, Person, Shield, ShieldLimits, StaticObstacles, Status, View};
 use vff_core::laws::yielding::{Outlook, Passerby, Yielder, Yielding};
 use vff_core::robots::HolonomicRobot;
 use vff_core::run::{AnyLaw, BatchOptions, BatchTable, Options, run_batch};
@@ -102,7 +102,7 @@ fn episodes(criterion: &mut Criterion) {
     group.finish();
 }
 
-const LIMITS: Limits = Limits {
+const LIMITS: ShieldLimits = ShieldLimits {
     radius: 0.3,
     max_speed: 1.5,
     max_acceleration: 10.0,

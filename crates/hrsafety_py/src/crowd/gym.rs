@@ -6,8 +6,8 @@ use numpy::{
 };
 use pyo3::prelude::*;
 use vff_core::crowd::environments::{
-    Action, Area, Autoreset, Axes, BOUND, Environments, Layout, Outputs, RANGE, Rewards, Settings,
-    State,
+    Action, Area, Autoreset, Axes, BOUND, EnvironmentSettings, Environments, Layout, Outputs,
+    RANGE, Rewards, State,
 };
 use vff_core::crowd::metrics::ROBOT_METRICS;
 
@@ -68,7 +68,7 @@ impl Arrays<'_> {
     }
 }
 
-fn settings_of(world: &CrowdWorld, given: &Keywords<'_>) -> PyResult<Settings> {
+fn settings_of(world: &CrowdWorld, given: &Keywords<'_>) -> PyResult<EnvironmentSettings> {
     let actions = [
         ("velocity", Action::Velocity),
         ("acceleration", Action::Acceleration),
@@ -89,7 +89,7 @@ fn settings_of(world: &CrowdWorld, given: &Keywords<'_>) -> PyResult<Settings> {
     };
     let of_actions = "be \"velocity\", \"acceleration\" or \"unicycle\"";
     let of_modes = "be \"NextStep\", \"SameStep\" or \"Disabled\"";
-    Ok(taken!(given: Settings {
+    Ok(taken!(given: EnvironmentSettings {
         world = world.core().clone(), layout = layout,
         action = given.word("action", of_actions, &actions)?, max_acceleration,
         max_turn_rate, people, rays as lidar,

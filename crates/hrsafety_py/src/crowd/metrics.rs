@@ -6,8 +6,8 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::crowd::metrics::{
-    self, EXTREMES, Kind, KnownArrival, Metric, Paths, ROBOT_METRICS, Rules, WORLD_METRICS, Whole,
-    Without,
+    self, DeclaredMetric, EXTREMES, Kind, KnownArrival, MetricRules, Paths, ROBOT_METRICS,
+    WORLD_METRICS, Whole, Without,
 };
 use vff_core::crowd::neighbors::grid::Period;
 use vff_core::crowd::walls::Wall;
@@ -39,7 +39,8 @@ fn arrivals(rows: &Rows<'_>) -> PyResult<Vec<KnownArrival>> {
 /// Name, kind, unit and meaning of each metric of a robot, and of a world.
 #[pyfunction]
 pub fn crowd_metric_names() -> [Vec<[&'static str; 4]>; 2] {
-    let row = |metric: &Metric| [metric.name, metric.kind.word(), metric.unit, metric.meaning];
+    let row =
+        |metric: &DeclaredMetric| [metric.name, metric.kind.word(), metric.unit, metric.meaning];
     [
         ROBOT_METRICS.iter().map(row).collect(),
         WORLD_METRICS.iter().map(row).collect(),
@@ -47,9 +48,9 @@ pub fn crowd_metric_names() -> [Vec<[&'static str; 4]>; 2] {
 }
 
 /// What is measured by.
-fn rules(given: &Keywords<'_>) -> PyResult<Rules> {
+fn rules(given: &Keywords<'_>) -> PyResult<MetricRules> {
     let goal: [f64; 2] = given.take("goal")?;
-    Ok(taken!(given: Rules {
+    Ok(taken!(given: MetricRules {
         step, goal = goal.into(), robot_radius, arrival_tolerance, person_tolerance, max_speed,
         shortest_length, period = Period(given.take("period")?),
     }))
@@ -85,7 +86,7 @@ pub struct CrowdEpisode {
     without: Option<Vec<Vector2<f64>>>,
     goals: Vec<Vector2<f64>>,
     arrivals: Option<[Vec<KnownArrival>; 2]>,
-    rules: Rules,
+    rules: MetricRules,
 }
 
 #[pymethods]
@@ -129,9 +130,9 @@ impl CrowdEpisode {
 
 impl CrowdEpisode {
     /// As the core takes it; the values have been checked.
-    fn view(&self) -> metrics::Episode<'_> {
+    fn view(&self) -> metrics::ObservedEpisode<'_> {
         let count = self.radii.len();
-        metrics::Episode {
+        metrics::ObservedEpisode {
             robot: &self.robot,
             people: Paths::known(&self.people, count),
             radii: &self.radii,
@@ -153,7 +154,7 @@ impl CrowdEpisode {
 /// A column of each metric.
 pub fn metric_columns<'py>(
     py: Python<'py>,
-    list: &[Metric],
+    list: &[DeclaredMetric],
     value: impl Fn(usize) -> Vec<f64>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let fields = Fields::new(py);
@@ -220,8 +221,8 @@ pub fn crowd_world_metrics<'py>(
         Some(times) => Some(times.as_slice()?),
         None => None,
     };
-    let rules = taken!(given: Rules {
-        step, person_tolerance, period = Period(given.take("period")?), ..Rules::of_people(),
+    let rules = taken!(given: MetricRules {
+        step, person_tolerance, period = Period(given.take("period")?), ..MetricRules::of_people(),
     });
     let time_limit = given.take("time_limit")?;
     given.done()?;

@@ -12,8 +12,8 @@ use pyo3::types::PyDict;
 use vff_core::crowd::agent::{Agent, FIRST_ROBOT, direction_of};
 use vff_core::crowd::neighbors::circle;
 use vff_core::crowd::neighbors::grid::Period;
-use vff_core::crowd::pedestrian::{Decision, Groupings, Walker};
-use vff_core::crowd::snapshot::{Models, Setting, Snapshot};
+use vff_core::crowd::pedestrian::{Groupings, PersonDecision, Walker};
+use vff_core::crowd::snapshot::{CrowdSetting, Models, Snapshot};
 use vff_core::crowd::walls::Wall;
 use vff_core::crowd::world::{
     PersonSetup, RobotSetup, Route, RouteEnd, SourceSetup, Traits, Waypoint,
@@ -448,7 +448,7 @@ pub fn crowd_decisions<'py>(
         }));
     }
     let walls: Vec<Wall> = walls.iter().map(|wall| wall.0.clone()).collect();
-    let setting = Setting {
+    let setting = CrowdSetting {
         walls: &walls,
         company: &Groupings {
             agents: &agents,
@@ -468,7 +468,7 @@ pub fn crowd_decisions<'py>(
         Models::Shared(&model.0),
         &mut decisions,
     );
-    let shown = |(decision, person): (&Decision, &Option<Walker>)| match person {
+    let shown = |(decision, person): (&PersonDecision, &Option<Walker>)| match person {
         Some(_) => [decision.order.x, decision.order.y],
         None => [f64::NAN; 2],
     };

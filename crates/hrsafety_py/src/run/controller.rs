@@ -6,7 +6,7 @@ use pyo3::types::PyDict;
 use vff_core::lanes::Vector2;
 use vff_core::laws::Stop;
 use vff_core::laws::shield::Status;
-use vff_core::run::controller::{self, Observation, Order, Sighting};
+use vff_core::run::controller::{self, HeldOrder, Observation, Sighting};
 use vff_core::world::geometry::RobotState;
 
 use crate::arrays::fields;
@@ -84,12 +84,12 @@ impl Controller {
 }
 
 /// Times since the update in s with the rates between which a plan changes evenly.
-fn plan_of(order: &Order) -> Vec<(f64, [f64; 2])> {
+fn plan_of(order: &HeldOrder) -> Vec<(f64, [f64; 2])> {
     let rest = order.course.as_ref();
     rest.map_or_else(Vec::new, |(course, since)| course.rest(*since).collect())
 }
 
-fn fields_of<'py>(py: Python<'py>, order: &Order) -> PyResult<Bound<'py, PyDict>> {
+fn fields_of<'py>(py: Python<'py>, order: &HeldOrder) -> PyResult<Bound<'py, PyDict>> {
     let (before, heading) = order.course.map_or(([0.0; 2], 0.0), |(course, since)| {
         (course.velocity(since).into(), course.heading(since))
     });

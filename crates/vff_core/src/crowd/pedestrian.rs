@@ -35,14 +35,14 @@ pub struct Walker {
 
 /// What a person has decided.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Decision {
+pub struct PersonDecision {
     /// Acceleration in m/s^2 of a force model, velocity in m/s of a velocity model.
     pub order: Vector2<f64>,
     /// Direction in which the person walks now, of models that keep it.
     pub heading: Vector2<f64>,
 }
 
-impl Decision {
+impl PersonDecision {
     /// An order that leaves the heading of a person as it is.
     #[inline(always)]
     pub(super) fn of(own: &Walker, order: Vector2<f64>) -> Self {
@@ -141,7 +141,7 @@ impl Fellows for Groupings<'_> {
 
 /// Some bodies side by side as somebody sees them who does not want to walk into them.
 #[derive(Clone, Copy, Debug)]
-pub struct Body {
+pub struct SeenBody {
     /// From the bodies, in m.
     pub offset: Vector2<Each>,
     /// Distance of the surfaces in m, over the weight; infinite in lanes that are left over.
@@ -158,7 +158,7 @@ pub struct Room {
     /// The nearest of them.
     pub nearest: Nearest,
     /// Bodies ahead.
-    pub ahead: Vec<Body>,
+    pub ahead: Vec<SeenBody>,
     /// Half-planes of permitted velocities.
     pub planes: Vec<HalfPlane>,
     /// Linear programs.
@@ -195,7 +195,7 @@ pub(in crate::crowd) trait Pedestrian: Named {
         _walkers: &[Walker],
         _around: &Around<'_>,
         _room: &mut Room,
-        _decisions: &mut [Decision],
+        _decisions: &mut [PersonDecision],
     ) -> bool {
         false
     }

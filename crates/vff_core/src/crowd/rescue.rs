@@ -6,7 +6,7 @@
 
 use smallvec::SmallVec;
 
-use crate::crowd::walls::{Near, Wall, contour};
+use crate::crowd::walls::{NearestPoint, Wall, contour};
 use crate::lanes::{Planar, Vector2};
 use crate::world::shape::{PlacedShape, Shape, into_axes, out_of_axes};
 
@@ -32,7 +32,7 @@ pub struct Rescue {
 
 /// Motion of a center from one place to another, straight, and the distance in m that it keeps off walls.
 #[derive(Clone, Copy, Debug)]
-struct Step {
+struct SweptMove {
     from: Vector,
     to: Vector,
     kept: f64,
@@ -40,7 +40,7 @@ struct Step {
 
 /// What a wall does to a motion: the lower in order, the more urgent.
 #[derive(Clone, Copy, Debug)]
-struct Stop {
+struct WallStop {
     /// Share of the motion at which the wall is crossed, from 0 to 1; above 1 where it is only too near.
     order: f64,
     /// The place that the wall permits, in m.
@@ -60,18 +60,18 @@ pub fn set_back(
     radius: f64,
 ) -> Option<Rescue> {
     let kept = KEPT * radius;
-    let first = most_urgent(walls, &Step { from, to, kept })?;
-    Some(held(walls, &Step { from, to, kept }, first, velocity))
+    let first = most_urgent(walls, &SweptMove { from, to, kept })?;
+    Some(held(walls, &SweptMove { from, to, kept }, first, velocity))
 }
 
 /// The place that all walls permit, from what the first one does.
 #[cold]
-fn held(walls: &[Wall], step: &Step, first: Stop, velocity: Vector) -> Rescue {
+fn held(walls: &[Wall], step: &SweptMove, first: WallStop, velocity: Vector) -> Rescue {
     let mut normals: SmallVec<[Vector; MOST]> = SmallVec::new();
     let mut stop = first;
     while normals.len() < MOST {
         normals.push(stop.normal);
-        let tried = Step {
+        let tried = SweptMove {
             to: stop.place,
             ..*step
         };
@@ -104,9 +104,9 @@ fn slowed(velocity: Vector, normals: &[Vector]) -> Vector {
 
 /// The wall that is crossed first, else the one that is nearest of those that are too near.
 #[inline]
-fn most_urgent(walls: &[Wall], step: &Step) -> Option<Stop> {
-    let mut found: Option<Stop> = None;
-    let mut see = |stop: Option<Stop>| {
+fn most_urgent(walls: &[Wall], step: &SweptMove) -> Option<WallStop> {
+    let mut found: Option<WallStop> = None;
+    let mut see = |stop: Option<WallStop>| {
         if let Some(stop) = stop
             && found.is_none_or(|known| stop.order < known.order)
         {
@@ -141,7 +141,7 @@ fn most_urgent(walls: &[Wall], step: &Step) -> Option<Stop> {
     found
 }
 
-impl Step {
+impl SweptMove {
     /// Whether the motion may come too near to what lies in the box of two corners.
     #[inline(always)]
     fn may_meet(&self, one: Vector, other: Vector) -> bool {
@@ -153,8 +153,8 @@ impl Step {
     }
 
     /// What a wall does that is crossed at a share of the motion at a place with a normal.
-    fn crossing(&self, share: f64, place: Vector, normal: Vector) -> Stop {
-        Stop {
+    fn crossing(&self, share: f64, place: Vector, normal: Vector) -> WallStop {
+        WallStop {
             order: share,
             place: self.to + normal * (self.kept - normal.dot(&(self.to - place))),
             normal,
@@ -162,8 +162,8 @@ impl Step {
     }
 
     /// What a wall does whose nearest point is `near` of the end of the motion.
-    fn nearing(&self, near: Near) -> Option<Stop> {
-        (near.distance < self.kept * (1.0 - ROUNDING)).then(|| Stop {
+    fn nearing(&self, near: NearestPoint) -> Option<WallStop> {
+        (near.distance < self.kept * (1.0 - ROUNDING)).then(|| WallStop {
             // The nearest one first; all after those that are crossed.
             order: 2.0 + near.distance.max(-self.kept) / self.kept,
             place: self.to + near.normal * (self.kept - near.distance),
@@ -173,7 +173,7 @@ impl Step {
 }
 
 /// What a segment does to a motion.
-fn off_segment([start, end]: [Vector; 2], step: &Step) -> Option<Stop> {
+fn off_segment([start, end]: [Vector; 2], step: &SweptMove) -> Option<WallStop> {
     let along = end - start;
     let length = along.norm();
     let axis = if length > 0.0 {
@@ -220,11 +220,11 @@ fn off_segment([start, end]: [Vector; 2], step: &Step) -> Option<Stop> {
         let away = back.norm();
         if away > ON { back / away } else { left }
     };
-    step.nearing(Near { normal, distance })
+    step.nearing(NearestPoint { normal, distance })
 }
 
 /// What a disc or rectangle does to a motion.
-fn off_solid(shape: &PlacedShape, step: &Step) -> Option<Stop> {
+fn off_solid(shape: &PlacedShape, step: &SweptMove) -> Option<WallStop> {
     let (from, to) = (step.from - shape.center, step.to - shape.center);
     let entry = match shape.shape {
         Shape::Disc { radius } => onto_disc(radius, from, to),

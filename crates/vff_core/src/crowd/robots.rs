@@ -4,7 +4,7 @@ use crate::crowd::agent::{Agent, FIRST_ROBOT, direction_of};
 use crate::crowd::divergence::is_finite;
 use crate::crowd::neighbors::grid::Period;
 use crate::crowd::people::{PersonState, Purpose, stream_of};
-use crate::crowd::sight::{Known, Sight};
+use crate::crowd::sight::{KnownBody, Sight};
 use crate::crowd::world::{CrowdWorld, count_of};
 use crate::error::Result;
 use crate::lanes::Vector2;
@@ -12,9 +12,9 @@ use crate::laws::Law;
 use crate::laws::trace::Trace;
 use crate::laws::{Situation, Stop, force_toward};
 use crate::robots::drives::{MotorDrive, PointMass, Reading};
-use crate::run::as_built::sight::Sight as Sensors;
+use crate::run::as_built::sight::BuiltSensors;
 use crate::run::as_built::{AsBuilt, robot_under};
-use crate::run::navigation::Known as Measured;
+use crate::run::navigation::MeasuredState;
 use crate::run::{AnyLaw, Interrupted, Request};
 use crate::world::geometry::RobotState;
 use crate::world::scenario::{Rules, Scenario};
@@ -34,8 +34,8 @@ enum Chassis {
 }
 
 /// Sensors of a robot as built.
-struct Sensing {
-    sensors: Sensors,
+struct RobotSensors {
+    sensors: BuiltSensors,
     reading: Reading,
 }
 
@@ -44,7 +44,7 @@ struct Pilot {
     law: Box<dyn Law<f64>>,
     /// What the law sees, or what there is to be sensed.
     sight: Sight,
-    sensing: Option<Sensing>,
+    sensing: Option<RobotSensors>,
 }
 
 impl Pilot {
@@ -57,8 +57,8 @@ impl Pilot {
     ) -> Result<Self> {
         sight.size(scenario);
         let sensing = match built {
-            Some(built) => Some(Sensing {
-                sensors: Sensors::new(scenario, built, &sight.bodies)?,
+            Some(built) => Some(RobotSensors {
+                sensors: BuiltSensors::new(scenario, built, &sight.bodies)?,
                 reading: Reading::at(&built.start_in(scenario)),
             }),
             None => None,
@@ -231,7 +231,7 @@ impl CrowdRobot {
     ) {
         if let Some(pilot) = &mut self.pilot {
             pilot.sight.watch(people, robots);
-            if let Some(Sensing { sensors, reading }) = &mut pilot.sensing {
+            if let Some(RobotSensors { sensors, reading }) = &mut pilot.sensing {
                 pilot.sight.look(people, robots, world, self.interval);
                 sensors.show(time, reading, &pilot.sight.bodies);
             }
@@ -255,7 +255,7 @@ impl CrowdRobot {
             return Ok(true);
         }
         self.make_room(world, people, index)?;
-        let mut known = Measured::exactly(self.state);
+        let mut known = MeasuredState::exactly(self.state);
         let mut situation = Situation {
             time,
             bodies: &[],
@@ -284,17 +284,17 @@ impl CrowdRobot {
                 }),
             ) => {
                 sight.look(people, robots, world, self.interval);
-                if let Some(Sensing { sensors, reading }) = sensing {
+                if let Some(RobotSensors { sensors, reading }) = sensing {
                     let seen = sensors.look(time, reading, situation.heading, &sight.bodies);
-                    known = Measured::of(&seen);
+                    known = MeasuredState::of(&seen);
                     let measured = known.fix.and_then(|fix| fix.heading);
                     situation.heading = measured.unwrap_or(situation.heading);
                     situation.bodies = sensors.bodies(&sight.bodies);
                     situation.ages = sensors.ages();
                 } else {
-                    known = Measured {
+                    known = MeasuredState {
                         clear: sight.clear(),
-                        ..Measured::exactly(sight.own)
+                        ..MeasuredState::exactly(sight.own)
                     };
                     situation.bodies = &sight.bodies;
                 }
@@ -378,7 +378,7 @@ fn guests(world: &CrowdWorld) -> usize {
 }
 
 /// What a law knows of the world before the run.
-fn scenario_of(world: &CrowdWorld, index: usize, known: Vec<Known>) -> Result<Scenario> {
+fn scenario_of(world: &CrowdWorld, index: usize, known: Vec<KnownBody>) -> Result<Scenario> {
     let setup = &world.robots[index];
     let rules = Rules {
         control_period: setup.control_period,

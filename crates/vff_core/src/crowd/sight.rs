@@ -22,7 +22,7 @@ type Vector = Vector2<f64>;
 const THICKNESS: f64 = 1e-3;
 
 /// Somebody or something that laws are told of, before its regions are known.
-pub(super) struct Known {
+pub(super) struct KnownBody {
     pub obstacle: Obstacle,
     /// Largest speed in m/s, `None` for no bound.
     pub bound: Option<f64>,
@@ -41,7 +41,7 @@ enum Slot {
 
 /// Past positions of somebody, with noise.
 #[derive(Clone, Debug)]
-struct Track {
+struct NoisyPast {
     noise: Noise,
     last: Option<Vector>,
     past: VecDeque<Vector>,
@@ -52,8 +52,8 @@ struct Track {
 struct Blur {
     /// Age in steps of the world.
     age: f64,
-    own: Option<Track>,
-    others: Option<Vec<Track>>,
+    own: Option<NoisyPast>,
+    others: Option<Vec<NoisyPast>>,
 }
 
 /// What one robot sees.
@@ -71,27 +71,27 @@ pub(super) struct Sight {
 }
 
 /// A person or robot who moves: its regions are sized for a speed, and it is never taken for furniture.
-fn mover(place: [f64; 2], radius: f64, speed: f64, bound: Option<f64>) -> Result<Known> {
+fn mover(place: [f64; 2], radius: f64, speed: f64, bound: Option<f64>) -> Result<KnownBody> {
     let limits = Limits {
         max_speed: Some(speed),
         ..Limits::default()
     };
-    Ok(Known {
+    Ok(KnownBody {
         obstacle: Obstacle::disc(radius, Motion::at_rest(place), limits)?,
         bound,
         stands: false,
     })
 }
 
-fn person(traits: &Traits, speed: f64, model: &Model, place: [f64; 2]) -> Result<Known> {
+fn person(traits: &Traits, speed: f64, model: &Model, place: [f64; 2]) -> Result<KnownBody> {
     let most = model.cap() * speed;
     let bound = most.is_finite().then_some(most);
     mover(place, traits.radius, bound.unwrap_or(speed), bound)
 }
 
 /// Walls as what stands: discs, rectangles, and segments as thin rectangles.
-fn standing(wall: &Wall) -> Vec<Known> {
-    let known = |shape: PlacedShape| Known {
+fn standing(wall: &Wall) -> Vec<KnownBody> {
+    let known = |shape: PlacedShape| KnownBody {
         obstacle: Obstacle {
             shape: shape.shape,
             motion: Motion::at_rest(shape.center.into()),
@@ -129,7 +129,7 @@ impl Sight {
         people: &[PersonState],
         index: usize,
         guests: usize,
-    ) -> Result<(Self, Vec<Known>)> {
+    ) -> Result<(Self, Vec<KnownBody>)> {
         let (mut slots, mut known) = (Vec::new(), Vec::new());
         for (number, (setup, state)) in world.people.iter().zip(people).enumerate() {
             let model = &world.models[setup.traits.model];
@@ -333,7 +333,7 @@ impl Blur {
         let track = |slot: usize| {
             let number = ((index as u64) << 24) | slot as u64;
             let mut stream = stream_of(world.seed, Purpose::Measurement, number);
-            Track {
+            NoisyPast {
                 noise: Noise::new(measurement, stream.bits(), 0),
                 last: None,
                 past: VecDeque::new(),
@@ -349,7 +349,7 @@ impl Blur {
     }
 }
 
-impl Track {
+impl NoisyPast {
     fn keep(&mut self, position: Vector, longest: usize) {
         if self.past.len() >= longest {
             self.past.pop_front();

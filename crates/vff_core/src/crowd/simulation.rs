@@ -10,11 +10,11 @@ use smallvec::SmallVec;
 
 use crate::crowd::agent::Agent;
 use crate::crowd::divergence::{Diverged, Divergence};
-use crate::crowd::pedestrian::Decision;
+use crate::crowd::pedestrian::PersonDecision;
 use crate::crowd::people::{Companions, Groups, OfPeople, PersonState, Presence};
 use crate::crowd::record::{Trajectories, check_rows, whole_steps};
 use crate::crowd::robots::CrowdRobot;
-use crate::crowd::snapshot::{Models, Setting, Snapshot};
+use crate::crowd::snapshot::{CrowdSetting, Models, Snapshot};
 use crate::crowd::sources::Source;
 use crate::crowd::world::{CrowdWorld, count_of};
 use crate::error::Result;
@@ -24,7 +24,7 @@ use crate::run::{Clock, Episode, Interrupted, Parts, Request};
 /// stepped in turn can share it and find it in the cache.
 #[derive(Clone, Debug, Default)]
 pub struct DecisionRoom {
-    decisions: Vec<Decision>,
+    decisions: Vec<PersonDecision>,
     snapshot: Snapshot,
 }
 
@@ -141,7 +141,7 @@ impl CrowdParts {
             decisions,
             snapshot,
         } = &mut *self.room;
-        let setting = Setting {
+        let setting = CrowdSetting {
             walls: &world.walls,
             company: &Companions {
                 groups: &self.groups,

@@ -4,13 +4,13 @@ use crate::crowd::agent::Agent;
 use crate::crowd::models::Model;
 use crate::crowd::neighbors::Neighbors;
 use crate::crowd::neighbors::grid::{Grid, Period};
-use crate::crowd::pedestrian::{Around, Decision, Fellows, Room, Walker};
+use crate::crowd::pedestrian::{Around, Fellows, PersonDecision, Room, Walker};
 use crate::crowd::walls::Wall;
 use crate::lanes::vectors;
 
 /// What is the same for everybody.
 #[derive(Clone, Copy, Debug)]
-pub struct Setting<'a> {
+pub struct CrowdSetting<'a> {
     /// What stands.
     pub walls: &'a [Wall],
     /// Who belongs together.
@@ -73,13 +73,13 @@ impl Snapshot {
     #[allow(clippy::cast_possible_truncation)] // at most a million people
     pub fn decide(
         &mut self,
-        setting: &Setting<'_>,
+        setting: &CrowdSetting<'_>,
         (count, walker_of): (usize, impl Fn(usize) -> Option<Walker>),
         robots: &[Agent],
         models: Models<'_, '_>,
-        decisions: &mut Vec<Decision>,
+        decisions: &mut Vec<PersonDecision>,
     ) {
-        let Setting { reach, period, .. } = *setting;
+        let CrowdSetting { reach, period, .. } = *setting;
         let present = (0..count).filter_map(|number| {
             let position = walker_of(number)?.agent.position;
             Some((number as u32, position))
@@ -95,7 +95,7 @@ impl Snapshot {
         });
         self.robots.fill(robots, reach, period);
         decisions.clear();
-        decisions.resize(count, Decision::default());
+        decisions.resize(count, PersonDecision::default());
         self.decide_placed(setting, models, decisions);
     }
 
@@ -103,9 +103,9 @@ impl Snapshot {
     #[inline(never)]
     fn decide_placed(
         &mut self,
-        setting: &Setting<'_>,
+        setting: &CrowdSetting<'_>,
         models: Models<'_, '_>,
-        decisions: &mut [Decision],
+        decisions: &mut [PersonDecision],
     ) {
         let Self {
             people,
@@ -119,7 +119,7 @@ impl Snapshot {
             company: setting.company,
             step: setting.step,
         };
-        let job = Job {
+        let job = DecisionJob {
             around: &around,
             placed,
             models,
@@ -134,15 +134,15 @@ impl Snapshot {
 }
 
 /// The decisions of everybody: with vectors those of pairs together, else one by one with the same bits.
-struct Job<'a, 'm> {
+struct DecisionJob<'a, 'm> {
     around: &'a Around<'a>,
     placed: &'a mut [Walker],
     models: Models<'a, 'm>,
-    decisions: &'a mut [Decision],
+    decisions: &'a mut [PersonDecision],
     room: &'a mut Room,
 }
 
-impl pulp::NullaryFnOnce for Job<'_, '_> {
+impl pulp::NullaryFnOnce for DecisionJob<'_, '_> {
     type Output = ();
 
     #[inline(always)]
@@ -156,7 +156,7 @@ impl pulp::NullaryFnOnce for Job<'_, '_> {
     }
 }
 
-impl<'m> Job<'_, 'm> {
+impl<'m> DecisionJob<'_, 'm> {
     /// The model of everybody, if all have the same one and the world does not repeat itself.
     #[inline(always)]
     fn mutual(&self) -> Option<&'m Model> {
@@ -170,7 +170,7 @@ impl<'m> Job<'_, 'm> {
         for own in self.placed.iter_mut().filter(|own| own.decides) {
             let number = own.agent.number as usize;
             let order = self.models.of(number).decide(own, self.around, self.room);
-            self.decisions[number] = Decision::of(own, order);
+            self.decisions[number] = PersonDecision::of(own, order);
         }
     }
 }
@@ -250,7 +250,7 @@ mod tests {
                     of: &groups,
                     period: Period::default(),
                 };
-                let setting = Setting {
+                let setting = CrowdSetting {
                     walls: &walls,
                     company: &company,
                     period: Period::default(),

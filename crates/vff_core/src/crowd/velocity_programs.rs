@@ -23,7 +23,7 @@ type Plane = HalfPlane<Each>;
 
 /// Limit and goal of the programs of one person of each world.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Objective {
+pub(super) struct VelocityGoal {
     /// Greatest speed in m/s.
     pub max_speed: Each,
     /// Wanted velocity in m/s.
@@ -35,7 +35,7 @@ const PLACES: usize = FEW.next_power_of_two();
 
 /// The constraints on the velocity of one person of each world, in the order of the others' numbers.
 #[derive(Clone, Copy, Debug)]
-struct Row {
+struct ConstraintRow {
     all: [Constraint; PLACES],
     count: usize,
 }
@@ -44,7 +44,7 @@ struct Row {
 #[derive(Clone, Debug)]
 pub(super) struct VelocityPrograms {
     /// One for each person.
-    rows: Vec<Row>,
+    rows: Vec<ConstraintRow>,
     ranks: [Each; PLACES],
     planes: [Plane; PLACES],
     /// How many half-planes there are in each world, and at most.
@@ -83,7 +83,7 @@ pub(super) struct LaneRoom {
 impl VelocityPrograms {
     /// Nothing constrains any of so many people.
     pub fn open(&mut self, people: usize) {
-        self.rows.resize(people, Row::empty());
+        self.rows.resize(people, ConstraintRow::empty());
         for row in &mut self.rows {
             row.count = 0;
         }
@@ -116,7 +116,7 @@ impl VelocityPrograms {
         &mut self,
         (person, velocity): (usize, Vectors),
         most: usize,
-        objective: &Objective,
+        objective: &VelocityGoal,
     ) -> Vectors {
         self.rank(person, most);
         self.line_up(person, velocity);
@@ -165,8 +165,8 @@ impl VelocityPrograms {
 
     /// The program of each world; those without a solution are left to the solver.
     #[inline(always)]
-    fn program(&mut self, objective: &Objective) -> Vectors {
-        let Objective { max_speed, wanted } = *objective;
+    fn program(&mut self, objective: &VelocityGoal) -> Vectors {
+        let VelocityGoal { max_speed, wanted } = *objective;
         let speed = wanted.dot(&wanted).sqrt();
         let shorter = wanted * (max_speed / speed);
         let mut velocity = Planar::<Each>::select(speed.gt(max_speed), shorter, wanted);
@@ -223,7 +223,7 @@ impl VelocityPrograms {
     }
 }
 
-impl Row {
+impl ConstraintRow {
     fn empty() -> Self {
         let nothing = Constraint {
             change: Vectors::zeros(),
@@ -254,7 +254,11 @@ fn everything() -> Plane {
 
 /// Best velocities on the lines of half-planes, and where there are none.
 #[inline(always)]
-fn on_line(earlier: &[Plane], plane: &Plane, objective: &Objective) -> (Vectors, LaneMask<WIDTH>) {
+fn on_line(
+    earlier: &[Plane],
+    plane: &Plane,
+    objective: &VelocityGoal,
+) -> (Vectors, LaneMask<WIDTH>) {
     let Plane { point, direction } = *plane;
     let foot = point.dot(&direction);
     let away = point.perp(&direction);

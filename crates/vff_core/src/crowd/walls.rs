@@ -13,7 +13,7 @@ const PASSED: f64 = 1e-9;
 
 /// Nearest point of a wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Near {
+pub struct NearestPoint {
     /// Unit vector away from the wall.
     pub normal: Vector,
     /// Distance in m, negative inside.
@@ -58,7 +58,7 @@ impl Wall {
     /// The nearest point; of segments at the same distance that of the first. `None` on the wall.
     #[inline]
     #[must_use]
-    pub fn nearest(&self, place: Vector) -> Option<Near> {
+    pub fn nearest(&self, place: Vector) -> Option<NearestPoint> {
         match self {
             Self::Polyline(points) => {
                 let mut best = (f64::INFINITY, Vector::zeros());
@@ -77,7 +77,7 @@ impl Wall {
 
     /// The nearest point of every segment, or of the contour, in order.
     #[inline]
-    pub fn each_part(&self, place: Vector, mut see: impl FnMut(Near)) {
+    pub fn each_part(&self, place: Vector, mut see: impl FnMut(NearestPoint)) {
         match self {
             Self::Polyline(points) => points
                 .windows(2)
@@ -134,21 +134,21 @@ fn from_segment(ends: &[Vector], place: Vector) -> Vector {
     offset - along * (offset.dot(&along) / squared).clamp(0.0, 1.0)
 }
 
-fn off(offset: Vector) -> Option<Near> {
+fn off(offset: Vector) -> Option<NearestPoint> {
     let distance = offset.norm();
-    (distance >= SHORTEST).then(|| Near {
+    (distance >= SHORTEST).then(|| NearestPoint {
         normal: offset / distance,
         distance,
     })
 }
 
-fn off_contour(shape: &PlacedShape, place: Vector) -> Option<Near> {
+fn off_contour(shape: &PlacedShape, place: Vector) -> Option<NearestPoint> {
     let near = contour(shape, place);
     (near.distance.abs() >= SHORTEST).then_some(near)
 }
 
 /// The nearest point of the contour of a disc or rectangle.
-pub(super) fn contour(shape: &PlacedShape, place: Vector) -> Near {
+pub(super) fn contour(shape: &PlacedShape, place: Vector) -> NearestPoint {
     let offset = place - shape.center;
     match shape.shape {
         Shape::Disc { radius } => {
@@ -159,7 +159,7 @@ pub(super) fn contour(shape: &PlacedShape, place: Vector) -> Near {
             } else {
                 offset / length
             };
-            Near { normal, distance }
+            NearestPoint { normal, distance }
         }
         Shape::Rectangle {
             half_length,
@@ -179,7 +179,7 @@ pub(super) fn contour(shape: &PlacedShape, place: Vector) -> Near {
             } else {
                 Vector::new(0.0, 1.0_f64.copysign(local.y))
             };
-            Near {
+            NearestPoint {
                 normal: out_of_axes(outward, axis),
                 distance: -least,
             }
@@ -189,7 +189,11 @@ pub(super) fn contour(shape: &PlacedShape, place: Vector) -> Near {
 
 /// Sum of the pushes of all walls, each through its nearest point.
 #[inline]
-pub(super) fn pushes(walls: &[Wall], place: Vector, push: impl Fn(&Near) -> Vector) -> Vector {
+pub(super) fn pushes(
+    walls: &[Wall],
+    place: Vector,
+    push: impl Fn(&NearestPoint) -> Vector,
+) -> Vector {
     let mut sum = Vector::zeros();
     for wall in walls {
         if let Some(near) = wall.nearest(place) {

@@ -62,7 +62,7 @@ impl WorldLanes {
         }
         self.seated = true;
         seat_robots(&mut self.agents, worlds);
-        let job = Job {
+        let job = MotionJob {
             model,
             step: worlds[0].part(),
             lanes: self,
@@ -81,13 +81,13 @@ impl WorldLanes {
 }
 
 /// Decisions and motion, compiled once for each instruction set; their bits are the same for all.
-struct Job<'a> {
+struct MotionJob<'a> {
     model: &'a Model,
     step: f64,
     lanes: &'a mut WorldLanes,
 }
 
-impl pulp::NullaryFnOnce for Job<'_> {
+impl pulp::NullaryFnOnce for MotionJob<'_> {
     /// Where everybody is at a finite place.
     type Output = LaneMask<WIDTH>;
 

@@ -7,11 +7,11 @@
 mod clock;
 mod told;
 
-pub use told::{Observation, Order, Sighting, Timing};
+pub use told::{HeldOrder, Observation, Sighting, Timing};
 
 use crate::error::{Failure, Given, Result, finite, finite_pair, not_negative};
 use crate::lanes::Vector2;
-use crate::laws::shield::{Course, Limits, Status};
+use crate::laws::shield::{Course, ShieldLimits, Status};
 use crate::laws::{Law, Situation, Stop};
 use crate::robots::differential::Twist;
 use crate::run::any_law::AnyLaw;
@@ -101,7 +101,7 @@ impl Controller {
     /// # Errors
     /// A value is not finite, an obstacle does not exist or stands, a measurement is of a time to come, a
     /// scan does not suit the lidar, or the law answers no finite force.
-    pub fn update(&mut self, told: &Observation<'_>, stop: Stop<'_>) -> Result<Order> {
+    pub fn update(&mut self, told: &Observation<'_>, stop: Stop<'_>) -> Result<HeldOrder> {
         self.check(told)?;
         let mut now = told.time + self.lacking;
         let (more, reading) = match self.reckon(now, told.robot) {
@@ -272,7 +272,7 @@ impl Controller {
         told: &Observation<'_>,
         robot: RobotState<f64>,
         stop: Stop<'_>,
-    ) -> Result<Order> {
+    ) -> Result<HeldOrder> {
         let frame = Frame::at(robot.position.into(), told.heading);
         if let Some(ranges) = told.scan {
             self.scan(told.time, &frame, ranges)?;
@@ -301,7 +301,7 @@ impl Controller {
         let to_goal = Vector2::from(self.scenario.goal) - robot.position;
         let since = course.since(told.time);
         let next = since + course.period();
-        Ok(Order {
+        Ok(HeldOrder {
             force: command.force,
             velocity: course.velocity(next),
             twist: course.twist(next),
@@ -323,7 +323,7 @@ impl Controller {
         let asked = point.acceleration(force) * period;
         let reached = robot.velocity + point.change(robot.velocity, asked, period);
         let (velocity, _) = point.limited_velocity::<f64>(reached);
-        let limits = Limits {
+        let limits = ShieldLimits {
             radius: point.radius,
             max_speed: point.max_speed,
             max_acceleration: point.guaranteed_acceleration(),
@@ -333,10 +333,10 @@ impl Controller {
     }
 
     /// The rest of the last plan, for a robot that does not know where it is.
-    fn brake(&self, now: f64) -> Order {
+    fn brake(&self, now: f64) -> HeldOrder {
         let course = self.last.and_then(|last| last.order.course);
         let course = course.map(|(course, _)| (course, course.since(now).max(0.0)));
-        Order {
+        HeldOrder {
             timing: Timing::Lost,
             oldest: self.oldest(now),
             ..self.rest(course)
@@ -346,7 +346,7 @@ impl Controller {
     /// The rest of the last plan after an update that counts for nothing. Nobody knows how much time went by: as much as
     /// the clock came on since the update before, a control period where it went back or stands, and at least as much
     /// as the robot can be farther on in its plan.
-    fn run_on(&mut self, held: Held, now: f64, robot: Option<RobotState<f64>>) -> Order {
+    fn run_on(&mut self, held: Held, now: f64, robot: Option<RobotState<f64>>) -> HeldOrder {
         let Some(last) = self.last else {
             return self.rest(None);
         };
@@ -363,7 +363,7 @@ impl Controller {
             let latest = held.latest.unwrap_or(since).min(course.end());
             (course, latest.max(since + gone))
         };
-        let order = Order {
+        let order = HeldOrder {
             timing: Timing::OutOfOrder,
             off_plan: off.and_then(|(((course, since), robot), shield)| {
                 shield.refuted(&course, since, &robot)
@@ -387,7 +387,7 @@ impl Controller {
     }
 
     /// Rest of a plan, from a time of it in s on; the robot rests where there is none.
-    fn rest(&self, course: Option<(Course, f64)>) -> Order {
+    fn rest(&self, course: Option<(Course, f64)>) -> HeldOrder {
         let zero = Vector2::zeros();
         let velocities = course.map_or([zero; 2], |(course, since)| {
             [since, since + course.period()].map(|time| course.velocity(time))
@@ -395,7 +395,7 @@ impl Controller {
         let (robot, period) = (&self.scenario.robot, self.scenario.rules.control_period);
         let wheels = self.scenario.differential.is_some();
         let twist = course.and_then(|(course, since)| course.twist(since + course.period()));
-        Order {
+        HeldOrder {
             force: (velocities[1] - velocities[0]) * (robot.mass / period),
             velocity: velocities[1],
             // A robot with two wheels that knows of no plan stands.

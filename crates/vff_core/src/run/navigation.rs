@@ -9,12 +9,12 @@ use crate::error::Result;
 use crate::lanes::{Planar, Vector2};
 use crate::laws::trace::Trace;
 use crate::laws::{Command, Law, Situation, Stop, force_toward};
-use crate::robots::drives::{Fix, MotorDrive, Order, Reading};
+use crate::robots::drives::{MotorDrive, Order, PoseFix, Reading};
 use crate::run::Interrupted;
 use crate::run::any_law::AnyLaw;
 use crate::run::as_built::AsBuilt;
 use crate::run::as_built::history::{AsBuiltTrajectory, Everything, Listener};
-use crate::run::as_built::sight::{SensedState, Sight};
+use crate::run::as_built::sight::{BuiltSensors, SensedState};
 use crate::run::as_built::{clock_of, robot_under};
 use crate::run::episode::{Episode, Parts};
 use crate::run::options::Clock;
@@ -39,15 +39,15 @@ pub enum Request {
 
 /// State of the robot as measured at the last sample.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Known {
+pub(crate) struct MeasuredState {
     pub robot: RobotState<f64>,
     /// The pose, `None` where it is known exactly.
-    pub fix: Option<Fix>,
+    pub fix: Option<PoseFix>,
     /// Whether the robot is outside every active region, as far as it knows.
     pub clear: bool,
 }
 
-impl Known {
+impl MeasuredState {
     /// A robot that stands where it is, and knows it.
     pub fn exactly(robot: RobotState<f64>) -> Self {
         Self {
@@ -92,8 +92,8 @@ pub struct Navigation<L = Everything> {
     /// How long a force acts, in s.
     interval: f64,
     scene: Scene<Arc<Scenario>>,
-    sight: Sight,
-    known: Known,
+    sight: BuiltSensors,
+    known: MeasuredState,
     runs: LaneState<Arc<Scenario>, f64>,
     reading: Reading,
     /// Electrical loss so far in J.
@@ -137,7 +137,7 @@ impl<L: Listener> Episode<Navigation<L>> {
         let scene = Scene::new(Arc::clone(&scenario));
         let bodies = &scene.frames[0];
         let reading = Reading::at(&built.start_in(&scenario));
-        let sight = Sight::new(&scenario, built, bodies)?;
+        let sight = BuiltSensors::new(&scenario, built, bodies)?;
         let steering = law.map(|law| law.with_own_gains(sight.known(&scenario)));
         let parts = Navigation {
             law: steering.transpose()?,
@@ -145,7 +145,7 @@ impl<L: Listener> Episode<Navigation<L>> {
             stop_on_contact: built.stop_on_contact,
             interval: clock.interval,
             sight,
-            known: Known::exactly(reading.robot),
+            known: MeasuredState::exactly(reading.robot),
             runs: LaneState::new(
                 Arc::clone(&scenario),
                 clock,
@@ -266,7 +266,7 @@ impl<L: Listener> Parts for Navigation<L> {
         let heading = self.robot.known_heading();
         let bodies = &self.scene.frames[0];
         let seen = self.sight.look(time, &self.reading, heading, bodies);
-        self.known = Known::of(&seen);
+        self.known = MeasuredState::of(&seen);
     }
 }
 

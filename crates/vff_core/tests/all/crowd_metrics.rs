@@ -5,8 +5,8 @@ use nalgebra::{Rotation2, Vector2};
 use numeric::error::Failure;
 use serde_json::Value;
 use vff_core::crowd::metrics::{
-    Episode, Kind, KnownArrival, Paths, ROBOT_METRICS, RobotMetrics, Rules, Whole, Without,
-    evaluate, evaluate_world,
+    Kind, KnownArrival, MetricRules, ObservedEpisode, Paths, ROBOT_METRICS, RobotMetrics, Whole,
+    Without, evaluate, evaluate_world,
 };
 use vff_core::crowd::neighbors::grid::Period;
 use vff_core::crowd::walls::Wall;
@@ -30,7 +30,7 @@ struct Case {
     without: Vec<Point>,
     goals: Vec<Point>,
     arrivals: Option<[Vec<KnownArrival>; 2]>,
-    rules: Rules,
+    rules: MetricRules,
     expected: Value,
 }
 
@@ -92,7 +92,7 @@ impl Case {
             without: all_points(&options["without"]),
             goals: points(&options["person_goal"]),
             arrivals: None,
-            rules: Rules {
+            rules: MetricRules {
                 step: number(&options["dt"]),
                 goal: point(&options["goal"]),
                 robot_radius: number(&options["robot_radius"]),
@@ -129,7 +129,7 @@ impl Case {
                     .map(|known| [&known[0][..], &known[1][..]]),
             })
         };
-        evaluate(&Episode {
+        evaluate(&ObservedEpisode {
             robot: &self.robot,
             people: Paths::new("people", &self.people, count)?,
             radii: &self.radii,
@@ -149,7 +149,7 @@ impl Case {
             walls: self.walls.iter().map(|wall| wall.map(&place)).collect(),
             without: all(&self.without),
             goals: all(&self.goals),
-            rules: Rules {
+            rules: MetricRules {
                 goal: place(self.rules.goal),
                 ..self.rules
             },
@@ -283,7 +283,7 @@ fn whole_periods_do_not_matter_where_the_world_repeats() {
         let found = case.metrics().unwrap();
         assert_equal(&found, &expected, 1e-9, &case.name);
         let near = Case {
-            rules: Rules {
+            rules: MetricRules {
                 period: Period::default(),
                 ..case.rules
             },
@@ -320,7 +320,7 @@ fn a_stop_of_five_seconds_is_frozen_and_rounding_of_the_step_does_not_matter() {
 fn walls_count_inside_discs_and_rectangles_too() {
     let case = cases().swap_remove(0);
     let walls = [Wall::solid(PlacedShape::upright([2.0, 0.0], [1.0, 1.0])).unwrap()];
-    let found = evaluate(&Episode {
+    let found = evaluate(&ObservedEpisode {
         robot: &case.robot,
         people: Paths::default(),
         radii: &[],
@@ -448,9 +448,9 @@ fn a_world_counts_who_left_stands_and_touches() {
             robots: Paths::new("robots", &robots, 3)?,
             radii,
             time_limit: 20.0,
-            rules: Rules {
+            rules: MetricRules {
                 step: 0.1,
-                ..Rules::of_people()
+                ..MetricRules::of_people()
             },
         })
     };

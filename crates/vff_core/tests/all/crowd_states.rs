@@ -9,7 +9,7 @@ use vff_core::crowd::Model;
 use vff_core::crowd::agent::{Agent, FIRST_ROBOT, direction_of};
 use vff_core::crowd::neighbors::grid::Period;
 use vff_core::crowd::pedestrian::{Groupings, Walker};
-use vff_core::crowd::snapshot::{Models, Setting, Snapshot};
+use vff_core::crowd::snapshot::{CrowdSetting, Models, Snapshot};
 use vff_core::crowd::walls::Wall;
 use vff_core::error::{Failure, Given, Result};
 
@@ -157,7 +157,7 @@ fn decided(case: &Value, defaults: &Value, all_pairs: bool) -> Vec<Vector2<f64>>
     let people: Vec<_> = people.collect();
     let robots = all.iter().filter(|(_, robot)| *robot);
     let robots: Vec<_> = robots.map(|(walker, _)| walker.agent).collect();
-    let setting = Setting {
+    let setting = CrowdSetting {
         walls: &walls_of(state),
         company: &groups,
         period: Period(period),

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use proptest::prelude::*;
 use vff_core::laws::planning::footprint::Footprint;
 use vff_core::laws::shield::{
-    Guard, Limits, Person, Plan, Shield, StaticObstacles, Tracking, View,
+    BrakingPlan, Guard, Person, Shield, ShieldLimits, StaticObstacles, TrackingError, View,
 };
 use vff_core::world::geometry::{Approach, Body, RobotState};
 use vff_core::world::map::StaticMap;
@@ -132,7 +132,7 @@ proptest! {
         sides in (0.2..2.0f64, 0.2..2.0f64), heading in -3.0..3.0f64, place in pair(1.6),
         velocity in pair(0.8), command in pair(0.8), speed in 0.2..2.0f64,
     ) {
-        let limits = Limits { radius: 0.2, max_speed: 1.2, max_acceleration: 3.0, period: 0.1 };
+        let limits = ShieldLimits { radius: 0.2, max_speed: 1.2, max_acceleration: 3.0, period: 0.1 };
         let guard = Guard::new(Shield::default(), limits).unwrap();
         let robot = RobotState { position: Vector::zeros(), velocity };
         let command = guard.clipped(&robot, command);
@@ -143,7 +143,7 @@ proptest! {
         }];
         let view = View { robot, people: &people, walls: StaticObstacles::NONE };
         prop_assume!(guard.verified(&view, command));
-        let plan = Plan::new(&robot, command, &guard.limits, Tracking::EXACT);
+        let plan = BrakingPlan::new(&robot, command, &guard.limits, TrackingError::EXACT);
         for step in 0..=60 {
             let time = plan.end() * f64::from(step) / 60.0;
             let at = plan.position(time);

@@ -3,7 +3,7 @@
 use crate::crowd::agent_lanes::WIDTH;
 use crate::crowd::environments::one::Shared;
 use crate::crowd::environments::row::Row;
-use crate::crowd::environments::settings::Settings;
+use crate::crowd::environments::settings::EnvironmentSettings;
 use crate::crowd::models::Model;
 use crate::crowd::simulation::Simulation;
 use crate::error::Result;
@@ -15,7 +15,7 @@ pub(super) const BLOCK: usize = WIDTH;
 /// What a step of all environments consists of.
 pub(super) struct BlockStep<'a> {
     /// What they have in common.
-    pub settings: &'a Settings,
+    pub settings: &'a EnvironmentSettings,
     /// The model of the people, if those of several worlds can move together.
     pub model: Option<&'a Model>,
     /// What the robots do.

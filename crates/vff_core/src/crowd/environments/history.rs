@@ -1,6 +1,6 @@
 //! Positions of an episode under way, for its metrics.
 
-use crate::crowd::metrics::{self, Paths, RobotMetrics, Rules};
+use crate::crowd::metrics::{self, MetricRules, Paths, RobotMetrics};
 use crate::crowd::simulation::Simulation;
 use crate::lanes::Vector2;
 
@@ -51,21 +51,21 @@ impl History {
         }
         self.make_rectangular(people.len());
         let setup = &world.robots[0];
-        metrics::evaluate_checked(&metrics::Episode {
+        metrics::evaluate_checked(&metrics::ObservedEpisode {
             robot: &self.robot,
             people: Paths::known(&self.people, people.len()),
             radii: &self.radii,
             groups: &self.groups,
             walls: &world.walls,
             without: None,
-            rules: Rules {
+            rules: MetricRules {
                 step: world.step,
                 goal: setup.goal.into(),
                 robot_radius: setup.radius(),
                 arrival_tolerance: setup.arrival_tolerance,
                 max_speed: setup.max_speed(),
                 period: world.period,
-                ..Rules::of_people()
+                ..MetricRules::of_people()
             },
         })
     }

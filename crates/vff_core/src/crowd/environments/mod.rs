@@ -13,7 +13,7 @@ mod settings;
 pub use layout::{Area, Layout, seed_of};
 pub use observation::{BOUND, RANGE};
 pub use one::{Environment, Shared, State, Step};
-pub use settings::{Action, Autoreset, Axes, Rewards, Settings};
+pub use settings::{Action, Autoreset, Axes, EnvironmentSettings, Rewards};
 
 use crate::crowd::environments::block::{BLOCK, BlockStep};
 use crate::crowd::environments::row::{METRICS, Row};
@@ -54,7 +54,7 @@ pub struct Outputs<'a> {
 
 /// Environments side by side.
 pub struct Environments {
-    settings: Settings,
+    settings: EnvironmentSettings,
     each: Vec<Environment>,
     threads: Option<usize>,
 }
@@ -65,7 +65,7 @@ impl Environments {
     /// # Errors
     /// A setting breaks a rule, there is no room for everybody, or the caller asked to stop.
     pub fn new(
-        settings: Settings,
+        settings: EnvironmentSettings,
         count: usize,
         seed: u64,
         threads: Option<usize>,
@@ -96,7 +96,7 @@ impl Environments {
 
     /// What they have in common.
     #[must_use]
-    pub fn settings(&self) -> &Settings {
+    pub fn settings(&self) -> &EnvironmentSettings {
         &self.settings
     }
 
@@ -195,7 +195,7 @@ fn check_size(world: &CrowdWorld, count: usize) -> Result<()> {
 
 /// Does something with some environments at a time and their results, on so many threads.
 fn each_block(
-    (settings, threads): (&Settings, Option<usize>),
+    (settings, threads): (&EnvironmentSettings, Option<usize>),
     each: &mut [Environment],
     outputs: Outputs<'_>,
     work: impl Fn(&mut [(usize, Row<'_>)], &mut Shared) -> Result<()> + Sync + Send,

@@ -1,6 +1,6 @@
 //! What a robot sees: itself, the nearest people, ranges of a lidar.
 
-use crate::crowd::environments::settings::{Axes, Settings};
+use crate::crowd::environments::settings::{Axes, EnvironmentSettings};
 use crate::crowd::people::PersonState;
 use crate::crowd::simulation::Simulation;
 use crate::crowd::walls::Wall;
@@ -117,7 +117,7 @@ impl Ranking {
 /// Writes an observation; `own` goal and greatest speed are those of the robot that is driven. Returns how many
 /// people of it are there. `ways`: from the robot to the people, NaN to those who are absent.
 pub(super) fn observe(
-    settings: &Settings,
+    settings: &EnvironmentSettings,
     (simulation, ways): (&Simulation, &[Vector]),
     ranking: &mut Ranking,
     into: &mut [f32],
@@ -130,17 +130,20 @@ pub(super) fn observe(
     let [goal_x, goal_y] = turn.into_axes(to_goal);
     let [speed_x, speed_y] = turn.into_axes(state.velocity);
     let own = [goal_x, goal_y, speed_x, speed_y, setup.max_speed()];
-    let (head, rest) = into.split_at_mut(Settings::OWN);
+    let (head, rest) = into.split_at_mut(EnvironmentSettings::OWN);
     for (slot, value) in head.iter_mut().zip(own) {
         *slot = bounded(value, -BOUND, BOUND);
     }
     head[5] = bounded(simulation.time() / world.time_limit, 0.0, 1.0);
-    let (people, rays) = rest.split_at_mut(Settings::PERSON * settings.people);
+    let (people, rays) = rest.split_at_mut(EnvironmentSettings::PERSON * settings.people);
     let nearest = ranking.nearest(simulation.people(), ways, settings.people);
     let radius = setup.radius();
-    let (there, nobody) = people.split_at_mut(Settings::PERSON * nearest.len());
+    let (there, nobody) = people.split_at_mut(EnvironmentSettings::PERSON * nearest.len());
     nobody.fill(0.0);
-    for (slots, (distance, number)) in there.chunks_exact_mut(Settings::PERSON).zip(nearest) {
+    for (slots, (distance, number)) in there
+        .chunks_exact_mut(EnvironmentSettings::PERSON)
+        .zip(nearest)
+    {
         let person: &PersonState = &simulation.people()[*number];
         let [x, y] = turn.into_axes(ways[*number]);
         let [vx, vy] = turn.into_axes(person.velocity - state.velocity);

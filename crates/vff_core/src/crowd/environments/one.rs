@@ -3,7 +3,7 @@
 use crate::crowd::environments::history::History;
 use crate::crowd::environments::layout::seed_of;
 use crate::crowd::environments::observation::{Ranking, observe};
-use crate::crowd::environments::settings::{Action, Settings};
+use crate::crowd::environments::settings::{Action, EnvironmentSettings};
 use crate::crowd::metrics::{RobotMetrics, nearest_between};
 use crate::crowd::neighbors::grid::Period;
 use crate::crowd::people::OfPeople;
@@ -130,7 +130,7 @@ impl Environment {
     ///
     /// # Errors
     /// The world breaks a rule, or there is no room for everybody.
-    pub fn new(settings: &Settings, seed: u64) -> Result<Self> {
+    pub fn new(settings: &EnvironmentSettings, seed: u64) -> Result<Self> {
         let mut world = settings.world.clone();
         world.seed = seed_of(seed, 0);
         settings.layout.draw(&mut world)?;
@@ -160,7 +160,7 @@ impl Environment {
     ///
     /// # Errors
     /// There is no room for everybody.
-    pub fn reset(&mut self, settings: &Settings, seed: Option<u64>) -> Result<()> {
+    pub fn reset(&mut self, settings: &EnvironmentSettings, seed: Option<u64>) -> Result<()> {
         if let Some(seed) = seed {
             (self.seed, self.next) = (seed, 0);
         }
@@ -175,7 +175,7 @@ impl Environment {
         Ok(())
     }
 
-    fn open(&mut self, settings: &Settings) {
+    fn open(&mut self, settings: &EnvironmentSettings) {
         self.next += 1;
         self.state = State::Running;
         let to_goal = self.to_goal(settings);
@@ -200,21 +200,26 @@ impl Environment {
     }
 
     /// Writes what the robot sees; returns how many of the people are there.
-    pub fn observe(&self, settings: &Settings, shared: &mut Shared, into: &mut [f32]) -> usize {
+    pub fn observe(
+        &self,
+        settings: &EnvironmentSettings,
+        shared: &mut Shared,
+        into: &mut [f32],
+    ) -> usize {
         let seen = (&self.simulation, &self.ways[..]);
         observe(settings, seen, &mut shared.ranking, into)
     }
 
     /// Metrics of the episode up to now, if positions are kept.
     #[must_use]
-    pub fn metrics(&mut self, settings: &Settings) -> Option<RobotMetrics> {
+    pub fn metrics(&mut self, settings: &EnvironmentSettings) -> Option<RobotMetrics> {
         settings
             .metrics
             .then(|| self.history.metrics(&self.simulation))
     }
 
     /// Tells the robot what to do in the next step.
-    pub(super) fn begin(&mut self, settings: &Settings, action: [f64; 2]) {
+    pub(super) fn begin(&mut self, settings: &EnvironmentSettings, action: [f64; 2]) {
         (self.clearance, self.wall_gap) = (f64::INFINITY, f64::INFINITY);
         self.distance = self.to_goal(settings).norm();
         let request = self.request(settings, action);
@@ -232,7 +237,7 @@ impl Environment {
     }
 
     /// Looks at what a step of the world has brought.
-    pub(super) fn account(&mut self, settings: &Settings) {
+    pub(super) fn account(&mut self, settings: &EnvironmentSettings) {
         let clearance = self.look(settings);
         self.clearance = self.clearance.min(clearance);
         self.look_at_walls(settings);
@@ -240,7 +245,7 @@ impl Environment {
     }
 
     /// What the step has brought.
-    pub(super) fn end(&mut self, settings: &Settings) -> Step {
+    pub(super) fn end(&mut self, settings: &EnvironmentSettings) -> Step {
         let clearance = self.clearance;
         let distance = self.to_goal(settings).norm();
         self.state = self.judged(settings, clearance, distance);
@@ -265,13 +270,13 @@ impl Environment {
 
     // The robot, the walls and the period are those of the settings, which all environments read.
 
-    fn to_goal(&self, settings: &Settings) -> Vector {
+    fn to_goal(&self, settings: &EnvironmentSettings) -> Vector {
         let goal = settings.world.robots[0].goal;
         Vector::from(goal) - self.simulation.robots()[0].state().position
     }
 
     /// What the robot is told, from an action in [-1, 1].
-    fn request(&mut self, settings: &Settings, action: [f64; 2]) -> Request {
+    fn request(&mut self, settings: &EnvironmentSettings, action: [f64; 2]) -> Request {
         let action = Vector::from(action.map(|share| share.clamp(-1.0, 1.0)));
         let setup = &settings.world.robots[0];
         let fastest = setup.max_speed();
@@ -298,7 +303,7 @@ impl Environment {
     }
 
     /// How the episode stands at the end of a step.
-    fn judged(&self, settings: &Settings, clearance: f64, distance: f64) -> State {
+    fn judged(&self, settings: &EnvironmentSettings, clearance: f64, distance: f64) -> State {
         let (simulation, world) = (&self.simulation, &settings.world);
         let setup = &world.robots[0];
         let touches = |gap: f64| gap < -TOUCH;
@@ -316,7 +321,7 @@ impl Environment {
     }
 
     /// Least gap to people since the last look, in straight relative motion, in m.
-    fn look(&mut self, settings: &Settings) -> f64 {
+    fn look(&mut self, settings: &EnvironmentSettings) -> f64 {
         let period = settings.world.period;
         if period == Period::default() {
             self.look_along(|way| way)
@@ -351,7 +356,7 @@ impl Environment {
     }
 
     /// Least gap to walls on the straight way since the last instant.
-    fn look_at_walls(&mut self, settings: &Settings) {
+    fn look_at_walls(&mut self, settings: &EnvironmentSettings) {
         let world = &settings.world;
         let place = self.simulation.robots()[0].state().position;
         // Where the world repeats itself, the robot may have been put to the other side of it.
@@ -363,7 +368,7 @@ impl Environment {
         self.place = place;
     }
 
-    fn note(&mut self, settings: &Settings) {
+    fn note(&mut self, settings: &EnvironmentSettings) {
         if settings.metrics {
             self.history.push(&self.simulation);
         }

@@ -1,7 +1,7 @@
 //! One environment of many, with the rows of the arrays that its results are written to.
 
 use crate::crowd::environments::one::{Environment, Shared, State};
-use crate::crowd::environments::settings::{Autoreset, Settings};
+use crate::crowd::environments::settings::{Autoreset, EnvironmentSettings};
 use crate::crowd::metrics::{ROBOT_METRICS, RobotMetrics};
 use crate::error::Result;
 
@@ -23,7 +23,7 @@ pub(super) struct Row<'a> {
 }
 
 impl Row<'_> {
-    pub fn show(&mut self, settings: &Settings, shared: &mut Shared) {
+    pub fn show(&mut self, settings: &EnvironmentSettings, shared: &mut Shared) {
         let seen = self.environment.observe(settings, shared, self.observation);
         self.seen[0] = count(seen);
         *self.state = self.environment.state().code();
@@ -39,7 +39,7 @@ impl Row<'_> {
     /// the world is to be moved.
     pub fn begin(
         &mut self,
-        settings: &Settings,
+        settings: &EnvironmentSettings,
         action: [f64; 2],
         shared: &mut Shared,
     ) -> Result<bool> {
@@ -56,7 +56,7 @@ impl Row<'_> {
     }
 
     /// Writes what the step has brought.
-    pub fn end(&mut self, settings: &Settings, shared: &mut Shared) -> Result<()> {
+    pub fn end(&mut self, settings: &EnvironmentSettings, shared: &mut Shared) -> Result<()> {
         let step = self.environment.end(settings);
         let rescues = self.rescues();
         (*self.reward, *self.clearance) = (step.reward, step.clearance);

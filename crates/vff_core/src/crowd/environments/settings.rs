@@ -49,7 +49,7 @@ pub struct Rewards {
 
 /// What all environments of a set have in common.
 #[derive(Clone)]
-pub struct Settings {
+pub struct EnvironmentSettings {
     /// The world of an episode, one of whose robots, the first, is driven.
     pub world: CrowdWorld,
     /// What differs between episodes.
@@ -74,7 +74,7 @@ pub struct Settings {
     pub metrics: bool,
 }
 
-impl Settings {
+impl EnvironmentSettings {
     /// Returns the settings if they obey their rules.
     ///
     /// # Errors

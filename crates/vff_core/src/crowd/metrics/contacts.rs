@@ -5,7 +5,7 @@ use numeric::order::sort_indices;
 use crate::crowd::walls::Wall;
 use crate::lanes::Vector2;
 
-use super::episode::Episode;
+use super::episode::ObservedEpisode;
 
 /// Speeds that differ by no more are equal, in m/s.
 const ALIKE: f64 = 1e-9;
@@ -31,7 +31,7 @@ pub(super) struct Contacts {
 }
 
 impl Contacts {
-    pub fn of(episode: &Episode<'_>, end: usize, touches: &[Touch]) -> Self {
+    pub fn of(episode: &ObservedEpisode<'_>, end: usize, touches: &[Touch]) -> Self {
         let (walls, wall_clearance) = at_walls(episode, end);
         let mut contacts = Self {
             robot_on_person: 0,
@@ -78,14 +78,18 @@ impl Contacts {
 
 /// From the robot to a person.
 #[inline]
-fn offset(episode: &Episode<'_>, instant: usize, person: usize) -> Vector2<f64> {
+fn offset(episode: &ObservedEpisode<'_>, instant: usize, person: usize) -> Vector2<f64> {
     let place = episode.people.at(instant)[person];
     episode.rules.period.wrap(place - episode.robot[instant])
 }
 
 /// Speeds of robot and person toward each other over the step into a contact; over the next step where
 /// there is none before.
-fn closing(episode: &Episode<'_>, (instant, end): (usize, usize), person: usize) -> [f64; 2] {
+fn closing(
+    episode: &ObservedEpisode<'_>,
+    (instant, end): (usize, usize),
+    person: usize,
+) -> [f64; 2] {
     let (people, step) = (&episode.people, episode.rules.step);
     let came = instant > 0 && people.place(instant - 1, person).is_some();
     let start = if came { instant - 1 } else { instant };
@@ -105,7 +109,7 @@ fn closing(episode: &Episode<'_>, (instant, end): (usize, usize), person: usize)
 }
 
 /// Number of contacts with walls, those within steps too, and least distance to one, in m.
-fn at_walls(episode: &Episode<'_>, end: usize) -> (u32, f64) {
+fn at_walls(episode: &ObservedEpisode<'_>, end: usize) -> (u32, f64) {
     let (mut count, mut least, mut touched) = (0, f64::INFINITY, false);
     if episode.walls.is_empty() {
         return (count, least);

@@ -25,7 +25,7 @@ impl Kind {
 
 /// What is known about a metric.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Metric {
+pub struct DeclaredMetric {
     /// Its name, in every language and file.
     pub name: &'static str,
     /// What it is counted in.
@@ -72,7 +72,7 @@ macro_rules! declared {
         }
 
         #[doc = concat!("All values of [`", stringify!($row), "`] in their order.")]
-        pub const $list: [Metric; 0 $(+ one!($field))*] = [$(Metric {
+        pub const $list: [DeclaredMetric; 0 $(+ one!($field))*] = [$(DeclaredMetric {
             name: stringify!($field),
             kind: Kind::$kind,
             unit: $unit,

@@ -2,7 +2,7 @@
 
 use crate::lanes::Vector2;
 
-use super::episode::{Episode, KnownArrival, Paths, Without};
+use super::episode::{KnownArrival, ObservedEpisode, Paths, Without};
 
 /// Share of a step by which an arrival may miss an instant.
 const ROUNDING: f64 = 1e-6;
@@ -16,7 +16,7 @@ pub(super) struct Effect {
 }
 
 impl Effect {
-    pub fn of(episode: &Episode<'_>) -> Self {
+    pub fn of(episode: &ObservedEpisode<'_>) -> Self {
         let Some(without) = &episode.without else {
             return Self {
                 delay: f64::NAN,
@@ -67,7 +67,7 @@ impl Arrival {
     /// The first instant within the tolerance of the goal.
     pub fn near(
         people: &Paths<'_>,
-        episode: &Episode<'_>,
+        episode: &ObservedEpisode<'_>,
         person: usize,
         goal: Vector2<f64>,
     ) -> Option<Self> {
@@ -127,7 +127,7 @@ pub(super) fn arrival(
 }
 
 /// Mean distance of the people from where they are without robots, over the instants at which both are there.
-fn deviation(episode: &Episode<'_>, without: &Without<'_>) -> f64 {
+fn deviation(episode: &ObservedEpisode<'_>, without: &Without<'_>) -> f64 {
     let instants = episode.people.instants().min(without.people.instants());
     let (mut sum, mut count) = (0.0, 0_u64);
     for instant in 0..instants {

@@ -90,7 +90,7 @@ fn sound(place: &Point) -> bool {
 
 /// Sizes and bounds that a robot is measured by.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rules {
+pub struct MetricRules {
     /// Time between two instants, in s.
     pub step: f64,
     /// Goal of the robot, in m.
@@ -109,7 +109,7 @@ pub struct Rules {
     pub period: Period,
 }
 
-impl Rules {
+impl MetricRules {
     /// Rules where there is no robot: a step of 1 s, a tolerance of 0.3 m.
     #[must_use]
     pub fn of_people() -> Self {
@@ -174,7 +174,7 @@ impl KnownArrival {
 
 /// One robot among people.
 #[derive(Clone, Copy, Debug)]
-pub struct Episode<'a> {
+pub struct ObservedEpisode<'a> {
     /// Positions of the robot at all instants, in m.
     pub robot: &'a [Point],
     /// Positions of the people at the same instants.
@@ -188,10 +188,10 @@ pub struct Episode<'a> {
     /// The same without robots, if known.
     pub without: Option<Without<'a>>,
     /// What is measured by.
-    pub rules: Rules,
+    pub rules: MetricRules,
 }
 
-impl Episode<'_> {
+impl ObservedEpisode<'_> {
     /// Looks at all values.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! Extremes of what an episode holds, from which follows for most episodes that nothing of it is in doubt.
 
-use super::episode::Episode;
+use super::episode::ObservedEpisode;
 
 /// Names of the extremes, as [`Extremes::into_array`] has them.
 pub const EXTREMES: [&str; 6] = [
@@ -30,7 +30,7 @@ pub struct Extremes {
 }
 
 impl Extremes {
-    pub(super) fn of(episode: &Episode<'_>, may_be_passed: bool) -> Self {
+    pub(super) fn of(episode: &ObservedEpisode<'_>, may_be_passed: bool) -> Self {
         let (rules, people) = (&episode.rules, &episode.people);
         let last = people.instants().saturating_sub(1);
         let mut way = f64::NAN;

@@ -13,8 +13,10 @@ mod proximity;
 mod travel;
 mod whole;
 
-pub use declared::{Kind, Metric, ROBOT_METRICS, RobotMetrics, WORLD_METRICS, WorldMetrics};
-pub use episode::{Episode, KnownArrival, Paths, Rules, Without};
+pub use declared::{
+    DeclaredMetric, Kind, ROBOT_METRICS, RobotMetrics, WORLD_METRICS, WorldMetrics,
+};
+pub use episode::{KnownArrival, MetricRules, ObservedEpisode, Paths, Without};
 pub use extremes::{EXTREMES, Extremes};
 pub use whole::{Whole, evaluate_world};
 
@@ -33,20 +35,20 @@ pub(crate) const STANDSTILL: f64 = 0.05;
 ///
 /// # Errors
 /// Names the value of the episode that is out of range.
-pub fn evaluate(episode: &Episode<'_>) -> Result<RobotMetrics> {
+pub fn evaluate(episode: &ObservedEpisode<'_>) -> Result<RobotMetrics> {
     episode.check()?;
     Ok(evaluate_checked(episode))
 }
 
 /// As [`evaluate`], of an episode that is known to be valid.
 #[must_use]
-pub fn evaluate_checked(episode: &Episode<'_>) -> RobotMetrics {
+pub fn evaluate_checked(episode: &ObservedEpisode<'_>) -> RobotMetrics {
     evaluate_with_extremes(episode).0
 }
 
 /// The same with what tells whether anything of it is in doubt.
 #[must_use]
-pub fn evaluate_with_extremes(episode: &Episode<'_>) -> (RobotMetrics, Extremes) {
+pub fn evaluate_with_extremes(episode: &ObservedEpisode<'_>) -> (RobotMetrics, Extremes) {
     let travel = Travel::of(episode);
     let (near, touches) = Proximity::of(episode, travel.end);
     let contacts = Contacts::of(episode, travel.end, &touches);

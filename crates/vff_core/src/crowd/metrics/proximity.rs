@@ -6,7 +6,7 @@ use crate::crowd::neighbors::grid::Period;
 use crate::lanes::Vector2;
 
 use super::contacts::Touch;
-use super::episode::Episode;
+use super::episode::ObservedEpisode;
 use super::pressure::Pressures;
 
 /// Ends of the intimate, personal and social zones of E. T. Hall (1966), in m.
@@ -52,7 +52,7 @@ struct Sums {
 
 impl Proximity {
     /// Looks at everybody once at every instant, and tells who is touched.
-    pub fn of(episode: &Episode<'_>, end: usize) -> (Self, Vec<Touch>) {
+    pub fn of(episode: &ObservedEpisode<'_>, end: usize) -> (Self, Vec<Touch>) {
         let groups = members(episode.groups);
         let mut sums = Sums::default();
         let mut watch = Watch {
@@ -100,7 +100,7 @@ impl Proximity {
 }
 
 /// What is least at an instant; infinite without people.
-struct Near {
+struct Nearness {
     /// Between the surfaces, in m.
     gap: f64,
     /// The same of those who are touched within the next step only, on straight ways; negative.
@@ -129,11 +129,11 @@ impl Watch {
         self.passing.iter().any(hidden)
     }
 
-    fn at(&mut self, episode: &Episode<'_>, instant: usize) -> Near {
+    fn at(&mut self, episode: &ObservedEpisode<'_>, instant: usize) -> Nearness {
         let (rules, robot, people) = (&episode.rules, episode.robot, &episode.people);
         let next = instant + usize::from(instant < self.end);
         let velocity = (robot[next] - robot[instant]) / rules.step;
-        let mut near = Near {
+        let mut near = Nearness {
             gap: f64::INFINITY,
             passed: f64::INFINITY,
             zone: f64::INFINITY,
@@ -190,7 +190,7 @@ impl Watch {
 }
 
 impl Sums {
-    fn count(&mut self, near: &Near, moves: bool) {
+    fn count(&mut self, near: &Nearness, moves: bool) {
         if near.gap < f64::INFINITY {
             self.clearance += near.gap;
             self.with_people += 1;
@@ -244,7 +244,7 @@ fn members(groups: &[i64]) -> Vec<Vec<usize>> {
 }
 
 /// Whether the robot is in the personal zone of a group, all of whom are present.
-fn intrudes(episode: &Episode<'_>, instant: usize, group: &[usize]) -> bool {
+fn intrudes(episode: &ObservedEpisode<'_>, instant: usize, group: &[usize]) -> bool {
     let (rules, places) = (&episode.rules, episode.people.at(instant));
     let first = places[group[0]];
     // From the first one, so that a group is not torn apart where the world repeats; NaN if one is absent.
@@ -260,21 +260,21 @@ fn intrudes(episode: &Episode<'_>, instant: usize, group: &[usize]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::crowd::metrics::{Paths, Rules};
+    use crate::crowd::metrics::{MetricRules, Paths};
 
     /// A robot of 0.3 m at zero, and somebody of 0.2 m who walks 1 m in each of two steps of 1 s.
     fn passed(start: [f64; 2]) -> (bool, usize) {
         let people = [0.0, 1.0, 2.0].map(|x| Vector2::new(start[0] + x, start[1]));
-        let episode = Episode {
+        let episode = ObservedEpisode {
             robot: &[Vector2::zeros(); 3],
             people: Paths::new("people", &people, 1).unwrap(),
             radii: &[0.2],
             groups: &[],
             walls: &[],
             without: None,
-            rules: Rules {
+            rules: MetricRules {
                 robot_radius: 0.3,
-                ..Rules::of_people()
+                ..MetricRules::of_people()
             },
         };
         let (found, touches) = Proximity::of(&episode, 2);

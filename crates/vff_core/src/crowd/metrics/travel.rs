@@ -3,7 +3,7 @@
 use crate::lanes::Vector2;
 
 use super::STANDSTILL;
-use super::episode::Episode;
+use super::episode::ObservedEpisode;
 use crate::robots::differential::wrapped;
 
 /// The goal has come nearer when its distance has fallen by so much, in m.
@@ -36,14 +36,14 @@ pub(super) struct Travel {
 }
 
 impl Travel {
-    pub fn of(episode: &Episode<'_>) -> Self {
+    pub fn of(episode: &ObservedEpisode<'_>) -> Self {
         let (rules, robot) = (&episode.rules, episode.robot);
         let distance = |place: &Vector2<f64>| (rules.goal - place).norm();
         let found = robot
             .iter()
             .position(|place| distance(place) <= rules.arrival_tolerance);
         let (arrived, end) = (found.is_some(), found.unwrap_or(robot.len() - 1));
-        let motion = Motion::of(episode, end);
+        let motion = TravelSums::of(episode, end);
         let longest = longest_without_progress(episode, end, arrived);
         let shortest = rules
             .shortest_length
@@ -80,7 +80,7 @@ impl Travel {
 }
 
 /// Longest time since the last mark of the goal distance, in s.
-fn longest_without_progress(episode: &Episode<'_>, end: usize, arrived: bool) -> f64 {
+fn longest_without_progress(episode: &ObservedEpisode<'_>, end: usize, arrived: bool) -> f64 {
     let (mut mark, mut since, mut longest) = (f64::INFINITY, 0, 0);
     // The arrival itself is not counted.
     let last = if arrived { end } else { end + 1 };
@@ -124,7 +124,7 @@ impl Mean {
 
 /// Sums over the steps up to the end.
 #[derive(Default)]
-struct Motion {
+struct TravelSums {
     length: f64,
     speed: Mean,
     toward: Mean,
@@ -135,8 +135,8 @@ struct Motion {
     stalled: u32,
 }
 
-impl Motion {
-    fn of(episode: &Episode<'_>, end: usize) -> Self {
+impl TravelSums {
+    fn of(episode: &ObservedEpisode<'_>, end: usize) -> Self {
         let (goal, step) = (episode.rules.goal, episode.rules.step);
         let mut motion = Self::default();
         let (mut velocity_before, mut acceleration_before) = (None, None);

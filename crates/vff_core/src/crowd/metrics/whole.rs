@@ -5,7 +5,7 @@ use crate::lanes::Vector2;
 use super::STANDSTILL;
 use super::declared::WorldMetrics;
 use super::effect::arrival;
-use super::episode::{Paths, Rules, same};
+use super::episode::{MetricRules, Paths, same};
 use crate::error::{Result, not_negative, positive};
 
 /// Who has stood for so long is in a deadlock, in s.
@@ -29,7 +29,7 @@ pub struct Whole<'a> {
     /// Time limit, in s.
     pub time_limit: f64,
     /// Step, tolerance of people and period.
-    pub rules: Rules,
+    pub rules: MetricRules,
 }
 
 /// Metrics of a world.

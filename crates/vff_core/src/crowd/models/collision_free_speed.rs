@@ -6,7 +6,7 @@ use crate::crowd::agent::SHORTEST;
 use crate::crowd::models::parameters::Parameters;
 use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::neighbors::others::Each;
-use crate::crowd::pedestrian::{Around, Body, Pedestrian, Room, Walker};
+use crate::crowd::pedestrian::{Around, Pedestrian, Room, SeenBody, Walker};
 use crate::crowd::walls::pushes;
 use crate::error::Result;
 use crate::lanes::{Number, Planar, Real, Vector2, Zero};
@@ -62,7 +62,7 @@ impl CollisionFreeSpeed {
             let size = Each::splat(self.strength) * exp(overlap / Each::splat(self.range));
             others.add(others.normal * (others.weight * size), &mut sum);
             let gap = (others.distance - touch) / others.weight;
-            ahead.push(Body {
+            ahead.push(SeenBody {
                 offset: others.offset,
                 gap: Each::select(others.present(), gap, Each::splat(f64::INFINITY)),
                 touch,
@@ -83,7 +83,7 @@ impl CollisionFreeSpeed {
 
 /// Way in m that is free ahead.
 #[inline(always)]
-fn spacing(ahead: Vector, bodies: &[Body]) -> f64 {
+fn spacing(ahead: Vector, bodies: &[SeenBody]) -> f64 {
     let ahead: Vector2<Each> = Planar::<Each>::splat(ahead.into());
     let mut least = Each::splat(f64::INFINITY);
     for body in bodies {

@@ -15,7 +15,7 @@ use crate::crowd::models::moussaid::Moussaid;
 use crate::crowd::models::reciprocal_people::ReciprocalPeople;
 use crate::crowd::models::social_force_1995::SocialForce1995;
 use crate::crowd::models::social_force_2000::SocialForce2000;
-use crate::crowd::pedestrian::{Around, Decision, Pedestrian, Room, Walker};
+use crate::crowd::pedestrian::{Around, Pedestrian, PersonDecision, Room, Walker};
 use crate::crowd::velocity_programs::LaneRoom;
 use crate::error::{Failure, Given, Result};
 use crate::lanes::Vector2;
@@ -84,7 +84,7 @@ macro_rules! pedestrian_models {
                 walkers: &[Walker],
                 around: &Around<'_>,
                 room: &mut Room,
-                decisions: &mut [Decision],
+                decisions: &mut [PersonDecision],
             ) -> bool {
                 match self { $(Self::$variant(model) => model.decide_together(walkers, around, room, decisions),)* }
             }

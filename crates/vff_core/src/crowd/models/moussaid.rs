@@ -13,7 +13,7 @@ use crate::crowd::models::parameters::Parameters;
 use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::neighbors::others::Each;
 use crate::crowd::pedestrian::{
-    Around, Decision, Pedestrian, Room, Walker, awareness_of, deciding, drive, drives,
+    Around, Pedestrian, PersonDecision, Room, Walker, awareness_of, deciding, drive, drives,
 };
 use crate::crowd::velocity_programs::LaneRoom;
 use crate::crowd::walls::pushes;
@@ -193,7 +193,7 @@ impl Pedestrian for Moussaid {
         walkers: &[Walker],
         around: &Around<'_>,
         room: &mut Room,
-        decisions: &mut [Decision],
+        decisions: &mut [PersonDecision],
     ) -> bool {
         let awareness = awareness_of(walkers);
         let Room { pairs, sums, .. } = room;
@@ -211,7 +211,7 @@ impl Pedestrian for Moussaid {
         let grouped = around.company.any();
         for (place, own) in deciding(walkers) {
             let decision = self.beside_others(sums[place], own, (around, grouped));
-            decisions[own.agent.number as usize] = Decision::of(own, decision);
+            decisions[own.agent.number as usize] = PersonDecision::of(own, decision);
         }
         true
     }

@@ -2,10 +2,10 @@
 
 use crate::crowd::agent_lanes::{self, AgentLanes};
 use crate::crowd::models::reciprocal_people::{DiscPair, ReciprocalPeople, away, permitted};
-use crate::crowd::neighbors::mutual::Known;
+use crate::crowd::neighbors::mutual::KnownPair;
 use crate::crowd::neighbors::pairs::Each;
-use crate::crowd::pedestrian::{Around, Decision, Room, Walker, awareness_of, deciding};
-use crate::crowd::velocity_programs::{LaneRoom, Objective, VelocityPrograms};
+use crate::crowd::pedestrian::{Around, PersonDecision, Room, Walker, awareness_of, deciding};
+use crate::crowd::velocity_programs::{LaneRoom, VelocityGoal, VelocityPrograms};
 use crate::lanes::{Number, Planar, Real, Truth, Vector2};
 use crate::laws::planning::half_planes::HalfPlane;
 
@@ -21,7 +21,7 @@ impl ReciprocalPeople {
         walkers: &[Walker],
         around: &Around<'_>,
         room: &mut Room,
-        decisions: &mut [Decision],
+        decisions: &mut [PersonDecision],
     ) {
         self.meet(walkers, around, room);
         for (place, own) in deciding(walkers) {
@@ -37,7 +37,7 @@ impl ReciprocalPeople {
             let distance = |index: usize| known[index].distance;
             let number_of = |index: u32| pairs.number(known[index as usize].other);
             for index in nearest.at((known.len(), distance), self.max_neighbors, number_of) {
-                let Known {
+                let KnownPair {
                     change, direction, ..
                 } = known[*index as usize];
                 planes.push(HalfPlane {
@@ -46,7 +46,7 @@ impl ReciprocalPeople {
                 });
             }
             let order = permitted(own, hard, around.step, room);
-            decisions[own.agent.number as usize] = Decision::of(own, order);
+            decisions[own.agent.number as usize] = PersonDecision::of(own, order);
         }
     }
 
@@ -79,7 +79,7 @@ impl ReciprocalPeople {
             let speed = intention
                 .desired_speed
                 .min(intention.to_go / Real::splat(step));
-            let objective = Objective {
+            let objective = VelocityGoal {
                 max_speed: intention.desired_speed,
                 wanted: own.direction * speed,
             };
@@ -133,7 +133,7 @@ impl ReciprocalPeople {
                     let places = pair.places.map(|places| places[lane] as usize);
                     let distance = pair.distance.lane(lane);
                     for (side, (change, direction)) in sides.iter().enumerate() {
-                        let known = Known {
+                        let known = KnownPair {
                             change: change.lane(lane).into(),
                             direction: direction.lane(lane).into(),
                             distance,

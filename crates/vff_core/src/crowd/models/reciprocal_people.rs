@@ -9,7 +9,7 @@ use crate::crowd::agent_lanes::{AgentLanes, Vectors};
 use crate::crowd::models::parameters::Parameters;
 use crate::crowd::neighbors::Unnoticed;
 use crate::crowd::neighbors::others::{Each, WIDTH, apart};
-use crate::crowd::pedestrian::{Around, Decision, Pedestrian, Room, Walker};
+use crate::crowd::pedestrian::{Around, Pedestrian, PersonDecision, Room, Walker};
 use crate::crowd::velocity_programs::LaneRoom;
 use crate::error::{Result, at_most};
 use crate::lanes::{Planar, Real, Truth, Vector2};
@@ -246,7 +246,7 @@ impl Pedestrian for ReciprocalPeople {
         walkers: &[Walker],
         around: &Around<'_>,
         room: &mut Room,
-        decisions: &mut [Decision],
+        decisions: &mut [PersonDecision],
     ) -> bool {
         let few = around.neighbors.are_few();
         if few {

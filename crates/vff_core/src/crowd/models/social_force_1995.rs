@@ -10,7 +10,7 @@ use crate::crowd::models::parameters::Parameters;
 use crate::crowd::neighbors::others::Each;
 use crate::crowd::neighbors::{Neighbors, Unnoticed};
 use crate::crowd::pedestrian::{
-    Around, Decision, Pedestrian, Room, Walker, awareness_of, deciding, drive, drives,
+    Around, Pedestrian, PersonDecision, Room, Walker, awareness_of, deciding, drive, drives,
 };
 use crate::crowd::velocity_programs::LaneRoom;
 use crate::crowd::walls::pushes;
@@ -221,7 +221,7 @@ impl Pedestrian for SocialForce1995 {
         walkers: &[Walker],
         around: &Around<'_>,
         room: &mut Room,
-        decisions: &mut [Decision],
+        decisions: &mut [PersonDecision],
     ) -> bool {
         let neighbors = &around.neighbors;
         let (people, robots) = (neighbors.people.agents(), neighbors.robots.agents());
@@ -240,7 +240,7 @@ impl Pedestrian for SocialForce1995 {
         self.push_together(neighbors, awareness_of(walkers), room);
         for (place, own) in deciding(walkers) {
             let decision = room.sums[place] + self.walls(own.agent.position, around);
-            decisions[own.agent.number as usize] = Decision::of(own, decision);
+            decisions[own.agent.number as usize] = PersonDecision::of(own, decision);
         }
         true
     }

@@ -63,12 +63,12 @@ impl<'a> Neighbors<'a> {
             own,
             period: people.period,
             kinds: [
-                Kind {
+                NeighborKind {
                     agents: people.agents(),
                     near,
                     weight: 1.0,
                 },
-                Kind {
+                NeighborKind {
                     agents: robots.agents(),
                     near: &rest[..second],
                     weight: awareness,
@@ -80,7 +80,7 @@ impl<'a> Neighbors<'a> {
 
 /// People or robots near a person.
 #[derive(Clone, Copy, Debug)]
-struct Kind<'a> {
+struct NeighborKind<'a> {
     agents: &'a [Agent],
     near: &'a [u32],
     weight: f64,
@@ -91,7 +91,7 @@ struct Kind<'a> {
 pub struct Near<'a> {
     own: &'a Agent,
     period: Period,
-    kinds: [Kind<'a>; 2],
+    kinds: [NeighborKind<'a>; 2],
 }
 
 impl<'a> Near<'a> {

@@ -6,7 +6,7 @@ type Vector = Vector2<f64>;
 
 /// How a person keeps off somebody.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Known {
+pub struct KnownPair {
     /// Change of the own velocity in m/s.
     pub change: Vector,
     /// Direction of the line of permitted velocities.
@@ -21,7 +21,7 @@ pub struct Known {
 #[derive(Clone, Debug, Default)]
 pub struct Mutual {
     /// For each person a row that has room for everybody.
-    known: Vec<Known>,
+    known: Vec<KnownPair>,
     /// How many of each row there are.
     counts: Vec<usize>,
     width: usize,
@@ -35,13 +35,13 @@ impl Mutual {
         self.counts.clear();
         self.counts.resize(people, 0);
         if self.known.len() < people * self.width {
-            self.known.resize(people * self.width, Known::default());
+            self.known.resize(people * self.width, KnownPair::default());
         }
     }
 
     /// Adds somebody to those whom a person keeps off.
     #[inline(always)]
-    pub fn push(&mut self, row: usize, known: Known) {
+    pub fn push(&mut self, row: usize, known: KnownPair) {
         // Robots, who come after the people, have no row.
         if let Some(count) = self.counts.get_mut(row) {
             self.known[row * self.width + *count] = known;
@@ -52,7 +52,7 @@ impl Mutual {
     /// Those whom a person keeps off.
     #[inline(always)]
     #[must_use]
-    pub fn row(&self, row: usize) -> &[Known] {
+    pub fn row(&self, row: usize) -> &[KnownPair] {
         let start = row * self.width;
         &self.known[start..start + self.counts[row]]
     }

@@ -6,7 +6,7 @@ use crate::laws::guide::{Detour, Guidance, LocalGoal, Takeover};
 use crate::laws::safe::settings::SafeNavigation;
 use crate::laws::safe::surroundings::Surroundings;
 use crate::laws::shield::{
-    Course, Decision, Deviation, Guard, Limits, Status, TwistGuard, TwistState, TwistView,
+    Course, Decision, Deviation, Guard, ShieldLimits, Status, TwistGuard, TwistState, TwistView,
     Verifier, View,
 };
 use crate::laws::trace::Trace;
@@ -34,7 +34,7 @@ pub struct SafeLaw {
     detour: Option<Detour>,
     /// When the robot heads for its (local) goal by itself.
     takeover: Option<Takeover>,
-    limits: Limits,
+    limits: ShieldLimits,
     /// Largest speed of the law in m/s.
     preferred: f64,
     mass: f64,
@@ -73,7 +73,7 @@ impl SafeLaw {
         let inner = family.inner(scenario)?;
         let robot = &scenario.robot;
         let wheels = scenario.differential.as_ref();
-        let limits = Limits {
+        let limits = ShieldLimits {
             radius: robot.radius,
             max_speed: wheels.map_or(robot.max_speed, |wheels| wheels.max_speed),
             max_acceleration: robot.guaranteed_acceleration(),

@@ -1,7 +1,7 @@
 //! The plan that a robot executes: kept as it was verified, never computed again from what is measured.
 
 use crate::lanes::Vector2;
-use crate::laws::shield::Limits;
+use crate::laws::shield::ShieldLimits;
 use crate::laws::shield::plan::braking_periods;
 use crate::laws::shield::twist::{TwistLimits, TwistState};
 use crate::robots::differential::Twist;
@@ -35,7 +35,7 @@ impl Course {
         begun: f64,
         robot: &RobotState<f64>,
         command: Vector2<f64>,
-        limits: &Limits,
+        limits: &ShieldLimits,
     ) -> Self {
         Self {
             begun,
@@ -190,13 +190,13 @@ impl Course {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::laws::shield::Tracking;
-    use crate::laws::shield::plan::Plan;
+    use crate::laws::shield::TrackingError;
+    use crate::laws::shield::plan::BrakingPlan;
     use crate::robots::differential::DifferentialLimits;
 
     #[test]
     fn it_is_the_plan_that_was_verified_between_period_ends_too() {
-        let limits = Limits {
+        let limits = ShieldLimits {
             radius: 0.2,
             max_speed: 1.0,
             max_acceleration: 1.0,
@@ -207,7 +207,7 @@ mod tests {
             velocity: Vector2::new(0.25, 0.1),
         };
         let command = Vector2::new(0.3003, 0.02);
-        let plan = Plan::new(&robot, command, &limits, Tracking::EXACT);
+        let plan = BrakingPlan::new(&robot, command, &limits, TrackingError::EXACT);
         let course = Course::of_velocity(7.0, &robot, command, &limits);
         assert_eq!(course.since(7.0 + 0.1), 0.1);
         assert_eq!(course.rates(course.since(7.1)), command);

@@ -23,9 +23,9 @@ pub use bound::speed_bound;
 pub use course::Course;
 pub use half_disc::half_disc_distance;
 pub use person::{KnownVelocity, Person};
-pub use plan::{Plan, braking, braking_periods};
+pub use plan::{BrakingPlan, braking, braking_periods};
 pub use reading::PlanTimes;
-pub use tracking::Tracking;
+pub use tracking::TrackingError;
 pub use twist::{TwistGuard, TwistLimits, TwistState, TwistView};
 pub use verifier::Verifier;
 pub use walls::StaticObstacles;
@@ -85,7 +85,7 @@ pub struct Shield {
     /// Largest distance of the robot from its plan in m.
     pub position_tracking: f64,
     /// Largest difference of its velocity from that of its plan.
-    pub velocity_tracking: Tracking,
+    pub velocity_tracking: TrackingError,
     /// Distance `m_s` that is kept from walls, in m.
     pub wall_margin: f64,
     /// Whether people are left a way to stop.
@@ -102,7 +102,7 @@ impl Default for Shield {
             velocity_bounds: None,
             margin: 0.005,
             position_tracking: 0.005,
-            velocity_tracking: Tracking::default(),
+            velocity_tracking: TrackingError::default(),
             wall_margin: 0.005,
             friendly: None,
         }
@@ -183,7 +183,7 @@ impl Shield {
 
 /// Limits of the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
+pub struct ShieldLimits {
     /// Radius in m, `rho + m` and the tracking of positions.
     pub radius: f64,
     /// Largest speed in m/s.
@@ -194,7 +194,7 @@ pub struct Limits {
     pub period: f64,
 }
 
-impl Limits {
+impl ShieldLimits {
     /// Largest change of velocity in a period, in m/s.
     #[inline]
     #[must_use]
@@ -300,7 +300,7 @@ pub struct Guard {
     /// Assumptions of the shield.
     pub shield: Shield,
     /// Limits of the robot, the radius with the margin and the tracking of the shield.
-    pub limits: Limits,
+    pub limits: ShieldLimits,
 }
 
 impl Guard {
@@ -308,14 +308,14 @@ impl Guard {
     ///
     /// # Errors
     /// Names the number that is not allowed.
-    pub fn new(shield: Shield, limits: Limits) -> Result<Self> {
+    pub fn new(shield: Shield, limits: ShieldLimits) -> Result<Self> {
         positive("max_speed", limits.max_speed)?;
         positive("max_acceleration", limits.max_acceleration)?;
         positive("control_period", limits.period)?;
         let radius = positive("radius", limits.radius)? + shield.checked()?.around();
         Ok(Self {
             shield,
-            limits: Limits { radius, ..limits },
+            limits: ShieldLimits { radius, ..limits },
         })
     }
 
@@ -325,7 +325,7 @@ impl Guard {
         let tracking = self.shield.position_tracking;
         Self {
             shield: self.shield.doubled(),
-            limits: Limits {
+            limits: ShieldLimits {
                 radius: self.limits.radius + tracking,
                 ..self.limits
             },
@@ -352,8 +352,8 @@ impl Guard {
 
     /// The plan behind a command.
     #[must_use]
-    pub fn plan(&self, robot: &RobotState<f64>, command: Vector2<f64>) -> Plan {
-        Plan::new(robot, command, &self.limits, self.shield.velocity_tracking)
+    pub fn plan(&self, robot: &RobotState<f64>, command: Vector2<f64>) -> BrakingPlan {
+        BrakingPlan::new(robot, command, &self.limits, self.shield.velocity_tracking)
     }
 
     /// The wanted velocity as far as the robot can take it up.

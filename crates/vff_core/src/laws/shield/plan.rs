@@ -3,7 +3,7 @@
 use crate::lanes::Vector2;
 use crate::laws::shield::half_disc::Look;
 use crate::laws::shield::person::Person;
-use crate::laws::shield::{Limits, Tracking};
+use crate::laws::shield::{ShieldLimits, TrackingError};
 use crate::world::geometry::RobotState;
 use crate::world::shape::Shape;
 
@@ -32,14 +32,14 @@ const ROUNDING: f64 = 1e-9;
 /// Whole periods in which a robot can brake from a speed.
 #[inline]
 #[must_use]
-pub fn braking_periods(speed: f64, limits: &Limits) -> f64 {
+pub fn braking_periods(speed: f64, limits: &ShieldLimits) -> f64 {
     (speed / limits.change() - ROUNDING).ceil().max(0.0)
 }
 
 /// The velocity after one period of the braking that the last verified plan ends with,
 /// `V (N-1)/N`.
 #[must_use]
-pub fn braking(velocity: Vector2<f64>, limits: &Limits) -> Vector2<f64> {
+pub fn braking(velocity: Vector2<f64>, limits: &ShieldLimits) -> Vector2<f64> {
     let periods = braking_periods(velocity.norm(), limits);
     if periods <= 1.0 {
         return Vector2::zeros();
@@ -49,7 +49,7 @@ pub fn braking(velocity: Vector2<f64>, limits: &Limits) -> Vector2<f64> {
 
 /// Ramp from `V` to `u` within a period `T`, then braking along `u` in whole periods, then rest.
 #[derive(Clone, Copy, Debug)]
-pub struct Plan {
+pub struct BrakingPlan {
     position: Vector2<f64>,
     before: Vector2<f64>,
     command: Vector2<f64>,
@@ -62,18 +62,18 @@ pub struct Plan {
     deviation: f64,
     /// Where the half discs of `V` and of `u` look, in the ramp the union.
     ramp: [Look; 2],
-    tracking: Tracking,
+    tracking: TrackingError,
 }
 
-impl Plan {
+impl BrakingPlan {
     /// The plan for a command `u` that is given to a robot, which follows it as its tracking tells.
     #[inline]
     #[must_use]
     pub fn new(
         robot: &RobotState<f64>,
         command: Vector2<f64>,
-        limits: &Limits,
-        tracking: Tracking,
+        limits: &ShieldLimits,
+        tracking: TrackingError,
     ) -> Self {
         let (first, second) = (robot.velocity.norm(), command.norm());
         let ahead = [
@@ -214,7 +214,7 @@ impl Plan {
 
     /// Whether somebody can be ahead when the robot comes to rest: then [`Self::avoids`] is false, because no
     /// step of it passes an instant at which `g` is negative.
-    pub(super) fn is_met_at_end(&self, person: &Person, limits: &Limits) -> bool {
+    pub(super) fn is_met_at_end(&self, person: &Person, limits: &ShieldLimits) -> bool {
         let radius = limits.radius + person.radius();
         !self.rests() && self.clearance(person, radius, self.end()).0 < -SURELY
     }
@@ -222,7 +222,7 @@ impl Plan {
     /// Whether nobody can be ahead at any time of the plan; `grown`: what is added to the radius
     /// at its end, in m.
     #[inline]
-    pub(super) fn avoids(&self, person: &Person, limits: &Limits, grown: f64) -> bool {
+    pub(super) fn avoids(&self, person: &Person, limits: &ShieldLimits, grown: f64) -> bool {
         if self.rests() {
             return true;
         }
@@ -251,7 +251,7 @@ impl Plan {
     /// Least `g` over the plan in m, to `accuracy` m (at the finest a millionth of what `g` can
     /// change by) and never above it by more; infinite for a robot that rests.
     #[must_use]
-    pub fn gap(&self, person: &Person, limits: &Limits, accuracy: f64) -> f64 {
+    pub fn gap(&self, person: &Person, limits: &ShieldLimits, accuracy: f64) -> f64 {
         if self.rests() {
             return f64::INFINITY;
         }

@@ -137,10 +137,10 @@ fn by_place(course: &Course, [first, last]: [f64; 2], place: Vector2<f64>) -> f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::laws::shield::Limits;
+    use crate::laws::shield::ShieldLimits;
 
     fn course(before: [f64; 2], command: [f64; 2]) -> Course {
-        let limits = Limits {
+        let limits = ShieldLimits {
             radius: 0.2,
             max_speed: 1.5,
             max_acceleration: 2.0,

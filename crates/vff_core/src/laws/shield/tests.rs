@@ -8,7 +8,7 @@ const EXACT: Shield = Shield {
     velocity_bounds: None,
     margin: 0.005,
     position_tracking: 0.0,
-    velocity_tracking: Tracking::EXACT,
+    velocity_tracking: TrackingError::EXACT,
     wall_margin: 0.005,
     friendly: None,
 };
@@ -49,7 +49,7 @@ const ROWS: [Row; 3] = [
 impl Row {
     fn guard(&self) -> Guard {
         let [max_speed, max_acceleration, period, radius] = self.limits;
-        let limits = Limits {
+        let limits = ShieldLimits {
             radius,
             max_speed,
             max_acceleration,
@@ -117,7 +117,7 @@ fn plans_of_the_specification() {
 
 /// A robot among two people, drawn at random.
 fn drawn(stream: &mut numeric::random::Stream) -> (Guard, RobotState<f64>, Vec<Person>) {
-    let limits = Limits {
+    let limits = ShieldLimits {
         radius: stream.uniform(0.15, 0.35),
         max_speed: stream.uniform(0.5, 1.5),
         max_acceleration: stream.uniform(2.0, 10.0),
@@ -242,12 +242,12 @@ fn braking_continues_a_verified_plan() {
             position: Vector2::zeros(),
             velocity: robot.velocity,
         };
-        let old = Plan::new(&still, robot.velocity, &limits, Tracking::EXACT);
+        let old = BrakingPlan::new(&still, robot.velocity, &limits, TrackingError::EXACT);
         let turned = RobotState {
             position: old.position(limits.period),
             velocity: robot.velocity,
         };
-        let new = Plan::new(&turned, slower, &limits, Tracking::EXACT);
+        let new = BrakingPlan::new(&turned, slower, &limits, TrackingError::EXACT);
         for part in 0..=10 {
             let time = 0.1 * f64::from(part) * new.end();
             let [one, other] = [old.position(limits.period + time), new.position(time)];
@@ -258,7 +258,7 @@ fn braking_continues_a_verified_plan() {
 
 #[test]
 fn who_may_have_any_speed_is_ahead_unless_his_velocity_is_known() {
-    let limits = Limits {
+    let limits = ShieldLimits {
         radius: 0.3,
         max_speed: 1.0,
         max_acceleration: 1.0,
@@ -282,7 +282,7 @@ fn who_may_have_any_speed_is_ahead_unless_his_velocity_is_known() {
             }),
             ..anywhere
         };
-        let plan = Plan::new(&robot, robot.velocity, &limits, Tracking::EXACT);
+        let plan = BrakingPlan::new(&robot, robot.velocity, &limits, TrackingError::EXACT);
         assert!(!plan.avoids(&anywhere, &limits, 0.0));
         assert_eq!(plan.gap(&anywhere, &limits, 1e-3), f64::NEG_INFINITY);
         assert!(plan.avoids(&known, &limits, 0.0));
@@ -293,7 +293,7 @@ fn who_may_have_any_speed_is_ahead_unless_his_velocity_is_known() {
 
 #[test]
 fn a_gap_from_a_very_fast_one_takes_a_bounded_number_of_steps() {
-    let limits = Limits {
+    let limits = ShieldLimits {
         radius: 0.3,
         max_speed: 1.0,
         max_acceleration: 1.0,
@@ -307,7 +307,7 @@ fn a_gap_from_a_very_fast_one_takes_a_bounded_number_of_steps() {
         max_speed: 1e12,
         ..Person::disc([5.0, 0.0], 0.3)
     };
-    let plan = Plan::new(&robot, robot.velocity, &limits, Tracking::EXACT);
+    let plan = BrakingPlan::new(&robot, robot.velocity, &limits, TrackingError::EXACT);
     let least = 4.4 - 1e12 * plan.end();
     let gap = plan.gap(&fast, &limits, 1e-5);
     assert!((gap / least - 1.0).abs() < 1e-5, "{gap} {least}");
@@ -319,7 +319,7 @@ fn what_a_robot_does_within_its_tracking_stays_off_everybody_a_verified_plan_avo
     let mut refused = 0;
     for round in 0..300 {
         let (exact, robot, people) = drawn(&mut stream);
-        let tracking = Tracking {
+        let tracking = TrackingError {
             absolute: if round % 2 == 0 {
                 0.0
             } else {
@@ -332,7 +332,7 @@ fn what_a_robot_does_within_its_tracking_stays_off_everybody_a_verified_plan_avo
             velocity_tracking: tracking,
             ..EXACT
         };
-        let limits = Limits {
+        let limits = ShieldLimits {
             radius: exact.limits.radius - EXACT.around(),
             ..exact.limits
         };
@@ -381,14 +381,14 @@ fn what_a_robot_does_within_its_tracking_stays_off_everybody_a_verified_plan_avo
 
 #[test]
 fn a_measurement_beyond_all_that_is_assumed_refutes_the_plan() {
-    let limits = Limits {
+    let limits = ShieldLimits {
         radius: 0.2,
         max_speed: 1.0,
         max_acceleration: 1.0,
         period: 0.1,
     };
     let shield = Shield {
-        velocity_tracking: Tracking {
+        velocity_tracking: TrackingError {
             absolute: 0.01,
             relative: 0.02,
         },

@@ -4,14 +4,14 @@ use crate::error::{Result, not_negative};
 
 /// Largest difference between the velocity of a robot and that of its plan: `s_abs + s_rel |v|`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tracking {
+pub struct TrackingError {
     /// `s_abs` in m/s.
     pub absolute: f64,
     /// `s_rel`, a share of the planned speed.
     pub relative: f64,
 }
 
-impl Default for Tracking {
+impl Default for TrackingError {
     /// A base that stands when it is to stand, and follows to 2 %.
     fn default() -> Self {
         Self {
@@ -21,7 +21,7 @@ impl Default for Tracking {
     }
 }
 
-impl Tracking {
+impl TrackingError {
     /// A robot that does exactly what is planned.
     pub const EXACT: Self = Self {
         absolute: 0.0,

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::lanes::Vector2;
 use crate::laws::shield::person::Person;
 use crate::laws::shield::walls::{ROUNDING, StaticObstacles};
-use crate::laws::shield::{Limits, Shield, Status};
+use crate::laws::shield::{Shield, ShieldLimits, Status};
 use crate::robots::differential::{DifferentialLimits, Twist};
 use numeric::order::sort_pairs;
 use plan::{STILL, TwistPlan, unit};
@@ -48,7 +48,7 @@ impl TwistGuard {
     ///
     /// # Errors
     /// Names the number that is not allowed.
-    pub fn new(shield: Shield, drive: DifferentialLimits, limits: &Limits) -> Result<Self> {
+    pub fn new(shield: Shield, drive: DifferentialLimits, limits: &ShieldLimits) -> Result<Self> {
         let radius = limits.radius + shield.checked()?.around();
         let drive = DifferentialLimits {
             max_turn_rate: drive.max_turn_rate.min(MOST_TURN / limits.period),
@@ -178,7 +178,7 @@ impl TwistGuard {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::laws::shield::Tracking;
+    use crate::laws::shield::TrackingError;
 
     /// For a robot that does exactly what is planned.
     const EXACT: Shield = Shield {
@@ -188,13 +188,13 @@ mod tests {
         velocity_bounds: None,
         margin: 0.005,
         position_tracking: 0.0,
-        velocity_tracking: Tracking::EXACT,
+        velocity_tracking: TrackingError::EXACT,
         wall_margin: 0.005,
         friendly: None,
     };
 
     fn guard() -> TwistGuard {
-        let limits = Limits {
+        let limits = ShieldLimits {
             radius: 0.2,
             max_speed: 0.7,
             max_acceleration: 10.0,
@@ -278,7 +278,7 @@ mod tests {
     #[test]
     fn a_straight_plan_is_that_of_the_holonomic_robot() {
         let twists = guard();
-        let limits = Limits {
+        let limits = ShieldLimits {
             radius: 0.2,
             max_speed: 0.7,
             max_acceleration: 10.0,

@@ -8,7 +8,7 @@ mod conflict;
 
 use crate::error::{Result, not_negative, positive};
 use crate::lanes::{Lanes, Mask, Number, Planar, Real, Truth, Vector2};
-use crate::laws::shield::{Limits, StaticObstacles};
+use crate::laws::shield::{ShieldLimits, StaticObstacles};
 use crate::world::geometry::RobotState;
 use conflict::{Conflict, Crowd, NearestConflict, Stretch};
 
@@ -118,7 +118,7 @@ pub struct Outlook<'a> {
 pub struct Yielder {
     settings: Yielding,
     /// Limits of the robot.
-    pub(crate) limits: Limits,
+    pub(crate) limits: ShieldLimits,
     /// Directions of the candidates from that to the goal: nearest first.
     turns: [Vector2<f64>; DIRECTIONS],
     processor: pulp::Arch,
@@ -129,7 +129,7 @@ impl Yielder {
     ///
     /// # Errors
     /// Names the number that is not allowed.
-    pub fn new(settings: Yielding, limits: Limits) -> Result<Self> {
+    pub fn new(settings: Yielding, limits: ShieldLimits) -> Result<Self> {
         let mut turns = [Vector2::zeros(); DIRECTIONS];
         for (index, turn) in turns.iter_mut().enumerate() {
             let steps = index.div_ceil(2) as f64;

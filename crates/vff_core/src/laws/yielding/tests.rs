@@ -2,8 +2,8 @@
 
 use super::*;
 
-fn limits() -> Limits {
-    Limits {
+fn limits() -> ShieldLimits {
+    ShieldLimits {
         radius: 0.3,
         max_speed: 1.5,
         max_acceleration: 10.0,

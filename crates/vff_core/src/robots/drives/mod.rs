@@ -81,7 +81,7 @@ impl Reading {
 
 /// A measured pose.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Fix {
+pub(crate) struct PoseFix {
     /// Position in m.
     pub position: Vector2<f64>,
     /// Heading in rad, if it is measured.
@@ -94,7 +94,7 @@ pub(crate) struct Order {
     /// Commanded force in N.
     pub force: Vector2<f64>,
     /// The pose as measured now, `None` where it is known exactly.
-    pub fix: Option<Fix>,
+    pub fix: Option<PoseFix>,
     /// Set where the robot is outside every active region, as far as it knows.
     pub clear: bool,
 }

@@ -8,7 +8,7 @@ use crate::robots::differential::{
 };
 use crate::robots::drives::driven::{DrivenWheels, WheelSize};
 use crate::robots::drives::velocity::VelocitySteering;
-use crate::robots::drives::{Drive, Fix, MotorDrive, Order, PointMass, Reading, Start, WHEELS};
+use crate::robots::drives::{Drive, MotorDrive, Order, PointMass, PoseFix, Reading, Start, WHEELS};
 use crate::robots::wheels::{DifferentialKinematics, Slip, WheelDrive};
 use crate::robots::{DifferentialDriveRobot, DifferentialWheels};
 use crate::world::geometry::RobotState;
@@ -145,7 +145,7 @@ impl TwoWheels {
     }
 
     /// Takes over a share of the difference from the measured pose.
-    fn correct(&mut self, fix: &Fix) {
+    fn correct(&mut self, fix: &PoseFix) {
         let measured = fix.position.lane(0);
         for (known, measured) in self.known.position.iter_mut().zip(measured) {
             *known += self.fusion.position * (measured - *known);

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::error::Result;
-use crate::robots::drives::{Fix, Reading};
+use crate::robots::drives::{PoseFix, Reading};
 use crate::run::as_built::AsBuilt;
 use crate::sensing::noisy::NoisyPositions;
 use crate::sensing::sensor::{Sensor, Truth};
@@ -19,7 +19,7 @@ pub(crate) struct SensedState<'a> {
     /// The obstacles.
     pub bodies: &'a [Body],
     /// The pose as measured, `None` where it is known exactly.
-    pub fix: Option<Fix>,
+    pub fix: Option<PoseFix>,
 }
 
 impl SensedState<'_> {
@@ -34,7 +34,7 @@ impl SensedState<'_> {
 }
 
 /// The sensors of a robot.
-pub(crate) struct Sight {
+pub(crate) struct BuiltSensors {
     sensors: Vec<Box<dyn Sensor>>,
     /// Which of the known obstacles each sensor tells of.
     told: Vec<Range<usize>>,
@@ -45,7 +45,7 @@ pub(crate) struct Sight {
     ages: Vec<f64>,
 }
 
-impl Sight {
+impl BuiltSensors {
     pub fn new(scenario: &Scenario, built: &AsBuilt, bodies: &[Body]) -> Result<Self> {
         let sensors = sensors_of(scenario, built, bodies)?;
         let mut obstacles: Vec<PlacedObstacle> = Vec::new();
@@ -121,7 +121,7 @@ impl Sight {
         SensedState {
             robot,
             bodies: self.bodies(actual),
-            fix: located.map(|found| Fix {
+            fix: located.map(|found| PoseFix {
                 position: found.robot.position,
                 heading: found.heading,
             }),

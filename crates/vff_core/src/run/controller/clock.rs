@@ -8,7 +8,7 @@
 
 use crate::laws::shield::{Course, PlanTimes, Shield, Status};
 use crate::run::controller::Controller;
-use crate::run::controller::told::Order;
+use crate::run::controller::told::HeldOrder;
 use crate::world::geometry::RobotState;
 
 /// A time that is not known to be any shorter, in s.
@@ -36,7 +36,7 @@ pub(super) struct Last {
     pub restarted: f64,
     /// Set where it was seen to be set back since the last update that counted.
     pub set_back: bool,
-    pub order: Order,
+    pub order: HeldOrder,
     /// Assumptions of the shield, if there is one.
     pub shield: Option<Shield>,
 }
@@ -138,10 +138,10 @@ impl Controller {
     /// verified, and brakes as hard as the robot can; of a robot that is behind it if that comes to rest no later.
     pub(super) fn run_on_if_off(
         &self,
-        order: Order,
+        order: HeldOrder,
         now: f64,
         reading: Option<PlanTimes>,
-    ) -> Order {
+    ) -> HeldOrder {
         let last = self.last.as_ref().and_then(Last::verified);
         let braking = order.status == Some(Status::Braking) && order.off_plan.is_some();
         let Some(((_, course), reading)) = last.zip(reading).filter(|_| braking) else {
@@ -154,7 +154,7 @@ impl Controller {
         if reading.latest < course.since(now) && course.end() - since > rest {
             return order;
         }
-        Order {
+        HeldOrder {
             timing: order.timing,
             off_plan: order.off_plan,
             arrived: order.arrived,

@@ -64,7 +64,7 @@ impl Timing {
 
 /// Order to a robot until the next update.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Order {
+pub struct HeldOrder {
     /// Force in N.
     pub force: Vector2<f64>,
     /// Velocity at the next sample in m/s.

@@ -18,10 +18,10 @@ use crate::laws::{Situation, Stop};
 use crate::robots::drives::{MotorDrive, Reading};
 use crate::run::Interrupted;
 use crate::run::any_law::AnyLaw;
-use crate::run::as_built::sight::{SensedState, Sight};
+use crate::run::as_built::sight::{BuiltSensors, SensedState};
 use crate::run::as_built::{AsBuilt, clock_of, robot_under};
 use crate::run::episode::{Episode, Parts};
-use crate::run::navigation::Known;
+use crate::run::navigation::MeasuredState;
 use crate::run::options::Clock;
 use crate::run::outcome::{CONTACT_SPEED, ContactCounts, DECIDED_OVERLAP};
 use crate::run::scene::bodies_at;
@@ -163,8 +163,8 @@ struct PursuitParts<'a> {
     law: Box<dyn Law<f64>>,
     tracked: Tracked,
     maps: Maps,
-    sight: Sight,
-    known: Known,
+    sight: BuiltSensors,
+    known: MeasuredState,
     /// Obstacles as the law knows them.
     seen: Vec<Body>,
     reading: Reading,
@@ -200,7 +200,7 @@ pub fn pursue(
     let robot = robot_under(scenario, built, Some(law))?;
     let clock = clock_of(scenario, built)?;
     let reading = Reading::at(&built.start_in(scenario));
-    let sight = Sight::new(scenario, built, &bodies_at(scenario, 0.0))?;
+    let sight = BuiltSensors::new(scenario, built, &bodies_at(scenario, 0.0))?;
     let parts = PursuitParts {
         scenario,
         pursuer,
@@ -210,7 +210,7 @@ pub fn pursue(
         tracked: Tracked::new(scenario, pursuer.start, clock.step),
         maps: Maps::of(scenario, law.map(), &built.sensors),
         sight,
-        known: Known::exactly(reading.robot),
+        known: MeasuredState::exactly(reading.robot),
         seen: Vec::new(),
         reading,
         followed: vec![Followed::default(); scenario.obstacles.len()],
@@ -431,7 +431,7 @@ impl Parts for PursuitParts<'_> {
         if let (Some(state), Some(body)) = (measured, self.seen.get_mut(last)) {
             body.state = state;
         }
-        self.known = Known::of(&SensedState {
+        self.known = MeasuredState::of(&SensedState {
             bodies: &self.seen,
             ..seen
         });

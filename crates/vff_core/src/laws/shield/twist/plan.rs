@@ -1,7 +1,7 @@
 //! Plans of a robot with two wheels: a ramp within a period, then braking on the curve of the command.
 
 use crate::lanes::Vector2;
-use crate::laws::shield::Tracking;
+use crate::laws::shield::TrackingError;
 use crate::laws::shield::half_disc::Look;
 use crate::laws::shield::person::Person;
 use crate::laws::shield::walls::StaticObstacles;
@@ -138,7 +138,7 @@ impl TwistPlan {
         state: &TwistState,
         command: Twist,
         limits: &TwistLimits,
-        tracking: Tracking,
+        tracking: TrackingError,
     ) -> Self {
         let first = PlanPoint {
             time: 0.0,
