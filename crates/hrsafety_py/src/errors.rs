@@ -47,7 +47,7 @@ fn invalid(refused: InvalidParameter) -> PyErr {
     }
 }
 
-/// What was given, as Python prints it: words of ours without quotes.
+/// Given value as Python prints it: words of ours without quotes.
 fn shown(py: Python<'_>, value: Given) -> PyResult<Py<PyAny>> {
     match value {
         Given::Number(number) => number.into_py_any(py),

@@ -21,7 +21,7 @@ pub struct Law {
     /// The law.
     pub any: AnyLaw,
     field: Option<laws::VirtualForceField>,
-    /// Whether it runs under the interpreter.
+    /// True for a law that runs under the interpreter.
     python: bool,
 }
 
@@ -45,7 +45,7 @@ impl Law {
         }
     }
 
-    /// Whether it runs under the interpreter, and so in the thread of its caller.
+    /// True for a law that runs under the interpreter, and so in the thread of its caller.
     pub fn is_python(&self) -> bool {
         self.python
     }

@@ -37,7 +37,7 @@ fn two_columns(py: Python<'_>, points: impl Iterator<Item = [f64; 2]>) -> PyResu
     flat.into_pyarray(py).reshape([rows, 2])
 }
 
-/// What stands still.
+/// Map of everything that stands still.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
 pub struct StaticMap(pub map::StaticMap);
 

@@ -271,7 +271,7 @@ impl Scenario {
         crate::python_law::point_mass(&self.0)
     }
 
-    /// The same scenario with another seed.
+    /// Copy of the scenario with another seed.
     fn reseeded(&self, seed: u64) -> Self {
         Self(self.0.clone().reseeded(seed))
     }

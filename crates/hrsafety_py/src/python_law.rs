@@ -12,7 +12,7 @@ use vff_core::world::scenario::Scenario;
 use crate::run::situation::situation_fields;
 
 thread_local! {
-    /// What a law raised; the core knows of it only that the force is not a number.
+    /// Error that a law raised; the core knows of it only that the force is not a number.
     static RAISED: RefCell<Option<PyErr>> = const { RefCell::new(None) };
 }
 
@@ -28,7 +28,7 @@ const NUMBERS: [&str; 1] = ["none"];
 pub struct PythonLaw {
     /// Takes robot, start, goal and seed.
     pub begin: Arc<Py<PyAny>>,
-    /// Whether it answers with a velocity in m/s, not with a force in N.
+    /// True for answers that are velocities in m/s, not forces in N.
     pub velocity: bool,
 }
 
@@ -89,7 +89,7 @@ pub fn point_mass(scenario: &Scenario) -> PointMass {
 /// The law at work in one scenario.
 pub struct AtWork {
     begin: Arc<Py<PyAny>>,
-    /// What is asked, from its first command on.
+    /// Law under the interpreter, from its first command on.
     asked: Option<Py<PyAny>>,
     velocity: bool,
     robot: PointMass,

@@ -38,7 +38,7 @@ type OutlineState = ([f64; 2], [f64; 3], [f64; 2], [f64; 2]);
 type PersonState = ([f64; 2], f64, [f64; 2]);
 
 value_class! {
-    /// What the shield assumes.
+    /// Assumptions of the shield.
     Shield(shield::Shield) of given {
         let bounds: (Option<f64>, Option<f64>) = (
             given.take("velocity_error")?,
@@ -111,7 +111,7 @@ value_class! {
 /// Parts of a plan between the instants that are told.
 const PARTS_OF_PLAN: u32 = 24;
 
-/// What a robot in the open sees.
+/// View of a robot in the open.
 fn seen((position, velocity): MotionState, people: &[Person]) -> View<'_> {
     View {
         robot: RobotState {

@@ -22,7 +22,7 @@ const MOST_QUESTIONS: u32 = 64;
 /// The clock is read more often when so much time has passed since it was read last.
 const LONG: Duration = Duration::from_millis(1);
 
-/// What the work asks and reports while it runs.
+/// Questions and reports of work while it runs.
 #[derive(Default)]
 pub struct Control<'a> {
     cancelled: AtomicBool,

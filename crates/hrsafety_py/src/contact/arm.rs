@@ -54,7 +54,7 @@ impl Arm {
         Ok(Self(arm))
     }
 
-    /// What is known of the arm without a pose.
+    /// Properties of the arm that need no pose.
     fn facts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (arm, fields) = (&self.0, Fields::new(py));
         let kind = |kind| match kind {

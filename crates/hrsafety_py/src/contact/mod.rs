@@ -24,7 +24,7 @@ use crate::errors::{CoreError, CoreResult};
 use crate::impact::many::Numbers;
 use crate::watch::{Control, Report, spread, watched};
 
-/// What all rows share, by the names of Python's dictionary.
+/// Arguments that all rows share, by the names of Python's dictionary.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Shared {
@@ -111,7 +111,7 @@ pub fn contact_words() -> [Vec<&'static str>; 3] {
     ]
 }
 
-/// What rows are asked for.
+/// Quantity that rows are computed for.
 #[derive(Clone, Copy, PartialEq)]
 enum RowsOf {
     Collisions,

@@ -47,7 +47,7 @@ pub fn crowd_metric_names() -> [Vec<[&'static str; 4]>; 2] {
     ]
 }
 
-/// What is measured by.
+/// Sizes and bounds of metrics from Python's keywords.
 fn rules(given: &Keywords<'_>) -> PyResult<MetricRules> {
     let goal: [f64; 2] = given.take("goal")?;
     Ok(taken!(given: MetricRules {
@@ -129,7 +129,7 @@ impl CrowdEpisode {
 }
 
 impl CrowdEpisode {
-    /// As the core takes it; the values have been checked.
+    /// Borrowed view for the core; the values have been checked.
     fn view(&self) -> metrics::ObservedEpisode<'_> {
         let count = self.radii.len();
         metrics::ObservedEpisode {

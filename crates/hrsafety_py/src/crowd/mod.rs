@@ -77,7 +77,7 @@ fn route_of(given: Vec<Vec<[f64; 2]>>) -> PyResult<Vec<Waypoint>> {
     elements.collect()
 }
 
-/// What people have in common.
+/// Traits of people from Python's keywords.
 fn traits_of(given: &Keywords<'_>) -> PyResult<Traits> {
     let ends = [
         ("stay", RouteEnd::Stay),
@@ -189,7 +189,7 @@ impl CrowdSource {
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
 pub struct CrowdRobot {
     setup: RobotSetup,
-    /// Whether its law runs under the interpreter.
+    /// True for a law that runs under the interpreter.
     python: bool,
 }
 
@@ -218,7 +218,7 @@ impl CrowdRobot {
     }
 }
 
-/// What stands.
+/// Wall of a world.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
 pub struct CrowdWall(Wall);
 
@@ -306,7 +306,7 @@ impl CrowdWorld {
 }
 
 impl CrowdWorld {
-    /// As the core has it.
+    /// World of the core.
     pub fn core(&self) -> &vff_core::crowd::CrowdWorld {
         &self.core
     }

@@ -38,7 +38,7 @@ pub struct GainProblem {
     dimension: usize,
     /// Objectives and constraints on metrics.
     native: Option<search::GainProblem>,
-    /// Those that are callables.
+    /// Objectives that are callables.
     scorer: Option<Scorer>,
     /// Whether each objective is a metric.
     is_metric: Vec<bool>,
@@ -150,7 +150,7 @@ impl GainProblem {
 }
 
 impl GainProblem {
-    /// What a callable raised, once.
+    /// Error that a callable raised, once.
     pub fn take_raised(&self) -> Option<PyErr> {
         let scorer = self.scorer.as_ref()?;
         scorer.raised.lock().ok()?.take()

@@ -1,4 +1,4 @@
-//! What searches return, as dictionaries of arrays.
+//! Results of searches, as dictionaries of arrays.
 
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;

@@ -27,7 +27,7 @@ pub struct Scorer {
     pub options: BatchOptions,
     /// Whether the last constraint is that every run arrives without a contact.
     pub requires_arrival: bool,
-    /// What the callable raised, until it is taken.
+    /// Error that the callable raised, until it is taken.
     pub raised: Mutex<Option<PyErr>>,
 }
 

@@ -28,7 +28,7 @@ pub struct Followers {
     pub save: Option<Py<PyAny>>,
 }
 
-/// What the observer leaves for the thread that holds the interpreter.
+/// Reports of the observer for the thread that holds the interpreter.
 struct Watch {
     latest: Mutex<Option<Progress>>,
     state: Mutex<Option<SearchState>>,

@@ -48,7 +48,7 @@ pub fn row_tuple<'py>(
     PyTuple::new(py, values)
 }
 
-/// What is known about each criterion: name, label, unit, symbol, whether peaks alone give it.
+/// Facts about a criterion: name, label, unit, symbol, whether peaks alone give it.
 type Known = (&'static str, &'static str, &'static str, &'static str, bool);
 
 /// The criteria, in the order of rows.

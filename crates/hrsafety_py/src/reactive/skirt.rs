@@ -229,7 +229,7 @@ impl UltrasonicSkirt {
         Ok(self.0.decider().pattern(readings.as_slice()?))
     }
 
-    /// What is done.
+    /// Action of the robot for its readings.
     fn action(&self, readings: PyReadonlyArray1<'_, f64>) -> PyResult<&'static str> {
         Ok(action_word(self.0.decider().action(readings.as_slice()?)))
     }

@@ -67,7 +67,7 @@ value_class! {
         }
     }
 
-    /// What the encoder reads of an open-loop test.
+    /// Encoder readings of an open-loop test.
     #[pyo3(signature = (*, command, start_angle, periods))]
     fn open_loop_angles<'py>(
         &self,

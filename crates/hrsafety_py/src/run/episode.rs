@@ -17,7 +17,7 @@ use crate::run::trajectory_fields;
 /// Wanted and commanded velocity, whether the law was taken over from, and the status.
 type Told = ([f64; 2], [f64; 2], bool, &'static str);
 
-/// What is said of a run that is being stepped.
+/// Error message of a run that is being stepped.
 pub const BUSY: &str = "a step of this run is under way; step it from one place at a time";
 
 /// A run under way.

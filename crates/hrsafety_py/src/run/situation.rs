@@ -1,4 +1,4 @@
-//! What a controller sees, as Python takes it.
+//! Situation of a controller as a Python class.
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -1,4 +1,4 @@
-//! What Python steps, from one place at a time.
+//! Runs that Python steps, from one place at a time.
 
 use std::sync::{Mutex, MutexGuard};
 
@@ -11,7 +11,7 @@ use crate::watch::{Report, here};
 /// A state that one thread at a time works on.
 pub struct Stepped<T> {
     state: Mutex<T>,
-    /// What is said while somebody is at work on it.
+    /// Error message while another caller steps it.
     busy: &'static str,
 }
 

@@ -24,7 +24,7 @@ pub(super) struct LaneAgent {
     pub radius: Each,
 }
 
-/// What one person of each world wants.
+/// Intention of one person of each world.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Intention {
     /// Speed `v0` in m/s.
@@ -61,7 +61,7 @@ pub(super) struct Pair {
 pub(super) struct AgentLanes {
     /// People, then robots.
     pub all: Vec<LaneAgent>,
-    /// What the people want.
+    /// Intentions of the people.
     pub intentions: Vec<Intention>,
     /// Places of two who may be near each other: a person, and another one who comes later, then a robot.
     pub pairs: Vec<(usize, usize)>,

@@ -1,4 +1,4 @@
-//! What a pedestrian model knows and answers.
+//! Input and output of a pedestrian model.
 
 use crate::arguments::Named;
 use crate::crowd::agent::{Agent, SHORTEST};
@@ -33,7 +33,7 @@ pub struct Walker {
     pub awareness: f64,
 }
 
-/// What a person has decided.
+/// Decision of a person.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PersonDecision {
     /// Acceleration in m/s^2 of a force model, velocity in m/s of a velocity model.
@@ -69,9 +69,9 @@ pub struct Company {
 pub struct Around<'a> {
     /// The others.
     pub neighbors: Neighbors<'a>,
-    /// What stands.
+    /// Walls of the world.
     pub walls: &'a [Wall],
-    /// Those the person belongs to.
+    /// Group of the person.
     pub company: &'a dyn Fellows,
     /// How long the decision holds, in s.
     pub step: f64,
@@ -171,7 +171,7 @@ pub struct Room {
     pub ways: Vec<Vector2<f64>>,
     /// See `ways`.
     pub aheads: Vec<Vector2<f64>>,
-    /// What everybody has gathered so far, by the places of [`Pairs`](crate::crowd::neighbors::pairs::Pairs).
+    /// Sums of all people so far, by the places of [`Pairs`](crate::crowd::neighbors::pairs::Pairs).
     pub sums: Vec<Vector2<f64>>,
 }
 
@@ -225,7 +225,7 @@ pub(super) fn drives(
     walkers.iter().map(move |own| drive(own, relaxation_time))
 }
 
-/// Those who decide, with their places in a grid.
+/// People who decide, with their places in a grid.
 #[inline(always)]
 pub(super) fn deciding(walkers: &[Walker]) -> impl Iterator<Item = (usize, &Walker)> {
     walkers.iter().enumerate().filter(|(_, own)| own.decides)

@@ -20,7 +20,7 @@ type Vector = Vector2<f64>;
 /// Mean, standard deviation and bounds of walking speeds in m/s, Weidmann (1993).
 const SPEED: [f64; 4] = [1.34, 0.26, 0.5, 2.2];
 
-/// What is drawn; each purpose has streams of its own.
+/// Purpose of a draw; each has streams of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Purpose {
     Speed = 1,

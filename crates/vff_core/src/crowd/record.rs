@@ -1,4 +1,4 @@
-//! What is kept of a world while it is under way.
+//! Recorder of a world while it is under way.
 
 use crate::crowd::people::PersonState;
 use crate::crowd::robots::CrowdRobot;

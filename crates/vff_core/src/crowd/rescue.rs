@@ -38,7 +38,7 @@ struct SweptMove {
     kept: f64,
 }
 
-/// What a wall does to a motion: the lower in order, the more urgent.
+/// Effect of a wall on a motion: the lower in order, the more urgent.
 #[derive(Clone, Copy, Debug)]
 struct WallStop {
     /// Share of the motion at which the wall is crossed, from 0 to 1; above 1 where it is only too near.
@@ -152,7 +152,7 @@ impl SweptMove {
             && !apart(self.from.y, self.to.y, one.y, other.y)
     }
 
-    /// What a wall does that is crossed at a share of the motion at a place with a normal.
+    /// Effect of a wall that is crossed at a share of the motion at a place with a normal.
     fn crossing(&self, share: f64, place: Vector, normal: Vector) -> WallStop {
         WallStop {
             order: share,
@@ -161,7 +161,7 @@ impl SweptMove {
         }
     }
 
-    /// What a wall does whose nearest point is `near` of the end of the motion.
+    /// Effect of a wall whose nearest point is `near` of the end of the motion.
     fn nearing(&self, near: NearestPoint) -> Option<WallStop> {
         (near.distance < self.kept * (1.0 - ROUNDING)).then(|| WallStop {
             // The nearest one first; all after those that are crossed.
@@ -172,7 +172,7 @@ impl SweptMove {
     }
 }
 
-/// What a segment does to a motion.
+/// Effect of a segment on a motion.
 fn off_segment([start, end]: [Vector; 2], step: &SweptMove) -> Option<WallStop> {
     let along = end - start;
     let length = along.norm();
@@ -223,7 +223,7 @@ fn off_segment([start, end]: [Vector; 2], step: &SweptMove) -> Option<WallStop> 
     step.nearing(NearestPoint { normal, distance })
 }
 
-/// What a disc or rectangle does to a motion.
+/// Effect of a disc or rectangle on a motion.
 fn off_solid(shape: &PlacedShape, step: &SweptMove) -> Option<WallStop> {
     let (from, to) = (step.from - shape.center, step.to - shape.center);
     let entry = match shape.shape {

@@ -25,7 +25,7 @@ const GUESTS: usize = 16;
 /// Longest motion step of a robot as built in s: its wheels are controlled more often than people decide.
 const BUILT_STEP: f64 = 0.01;
 
-/// What moves a robot.
+/// Kinematics of a robot.
 enum Chassis {
     /// A robot that accelerates in any direction; nobody asks here for the currents of its motors.
     Point(PointMass),
@@ -39,10 +39,10 @@ struct RobotSensors {
     reading: Reading,
 }
 
-/// What drives a robot by itself: apart from it, for robots that are told what to do have none.
+/// Controller of a robot that drives itself: apart from it, for robots that are told what to do have none.
 struct Pilot {
     law: Box<dyn Law<f64>>,
-    /// What the law sees, or what there is to be sensed.
+    /// Surroundings as the law sees them, or as they are for sensors.
     sight: Sight,
     sensing: Option<RobotSensors>,
 }
@@ -86,7 +86,7 @@ pub struct CrowdRobot {
     chassis: Chassis,
     mass: f64,
     pilot: Option<Box<Pilot>>,
-    /// What is asked for from outside.
+    /// Request from outside.
     request: Request,
     /// Steps of the world between two commands.
     every: usize,
@@ -185,7 +185,7 @@ impl CrowdRobot {
         self.arrival_time
     }
 
-    /// Whether it has arrived; it then brakes and stays.
+    /// True once the robot has arrived; it then brakes and stays.
     #[must_use]
     pub fn has_arrived(&self) -> bool {
         !self.arrival_time.is_nan()
@@ -197,7 +197,7 @@ impl CrowdRobot {
         self.energy
     }
 
-    /// What parts around the law did in the last control period, if there are any.
+    /// Trace of the parts around the law in the last control period, if there are any.
     #[must_use]
     pub fn trace(&self) -> Option<Trace> {
         self.pilot.as_ref()?.law.trace()
@@ -216,7 +216,7 @@ impl CrowdRobot {
         }
     }
 
-    /// What it is to do from the next command on; [`Request::Law`]: what its law says, or to stand.
+    /// Sets the request from the next command on; [`Request::Law`]: the answer of its law, or to stand.
     pub(super) fn ask(&mut self, request: Request) {
         self.request = request;
     }
@@ -361,7 +361,7 @@ impl CrowdRobot {
         }
     }
 
-    /// Whether its state is finite.
+    /// True for a finite state.
     pub(super) fn is_finite(&self) -> bool {
         is_finite(self.state.position, self.state.velocity)
     }
@@ -377,7 +377,7 @@ fn guests(world: &CrowdWorld) -> usize {
     if world.sources.is_empty() { 0 } else { GUESTS }
 }
 
-/// What a law knows of the world before the run.
+/// Knowledge of a law about the world before the run.
 fn scenario_of(world: &CrowdWorld, index: usize, known: Vec<KnownBody>) -> Result<Scenario> {
     let setup = &world.robots[index];
     let rules = Rules {

@@ -1,4 +1,4 @@
-//! What the law of a robot is told of people, other robots and walls.
+//! Knowledge of the law of a robot about people, other robots and walls.
 
 use std::collections::VecDeque;
 
@@ -56,7 +56,7 @@ struct Blur {
     others: Option<Vec<NoisyPast>>,
 }
 
-/// What one robot sees.
+/// View of one robot.
 pub(super) struct Sight {
     slots: Vec<Slot>,
     /// Places for people of each source.

@@ -28,7 +28,7 @@ pub struct DecisionRoom {
     snapshot: Snapshot,
 }
 
-/// What an episode of a crowd consists of.
+/// Parts of an episode of a crowd.
 struct CrowdParts {
     world: Arc<CrowdWorld>,
     people: OfPeople<PersonState>,
@@ -326,7 +326,7 @@ impl Simulation {
     /// Starts again in the same world after a change: another seed, other places.
     ///
     /// # Errors
-    /// As [`Self::new`]; the simulation cannot be stepped then.
+    /// Starts again, with the errors of [`Self::new`]; the simulation cannot be stepped then.
     pub fn restart(&mut self, change: impl FnOnce(&mut CrowdWorld)) -> Result<()> {
         let parts = &mut self.0.parts;
         change(Arc::make_mut(&mut parts.world));
@@ -362,7 +362,7 @@ impl Simulation {
     /// The first part of a step of the world: robots decide; `false` if it has ended.
     ///
     /// # Errors
-    /// As [`Self::step`].
+    /// First half of [`Self::step`].
     pub(super) fn begin(&mut self, interrupted: Interrupted<'_>) -> Result<bool> {
         self.0.begin((), interrupted)
     }
@@ -376,7 +376,7 @@ impl Simulation {
     /// The last part: who has arrived, come or left.
     ///
     /// # Errors
-    /// As [`Self::step`].
+    /// Second half of [`Self::step`].
     pub(super) fn end(&mut self) -> Result<()> {
         self.0.end()
     }
@@ -406,7 +406,7 @@ impl Simulation {
     /// Advances to the end.
     ///
     /// # Errors
-    /// As [`Self::step`].
+    /// Steps to the end like [`Self::step`].
     pub fn completed(self, interrupted: Interrupted<'_>) -> Result<Self> {
         let mut ended = self.0.run(interrupted)?;
         if let Some(record) = &mut ended.parts.record {
@@ -415,7 +415,7 @@ impl Simulation {
         Ok(Self(ended))
     }
 
-    /// Whether it has ended: the time is over, nobody is on the way any more, or it has diverged.
+    /// True after the end: the time is over, all people have arrived, or the run has diverged.
     #[must_use]
     pub fn finished(&self) -> bool {
         self.0.finished()
@@ -469,7 +469,7 @@ impl Simulation {
         self.0.parts.record.take()
     }
 
-    /// What was recorded so far.
+    /// Trajectories so far, if they are recorded.
     #[must_use]
     pub fn recorded(&self) -> Option<&Trajectories> {
         self.0.parts.record.as_ref()

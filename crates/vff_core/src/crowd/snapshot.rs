@@ -8,10 +8,10 @@ use crate::crowd::pedestrian::{Around, Fellows, PersonDecision, Room, Walker};
 use crate::crowd::walls::Wall;
 use crate::lanes::vectors;
 
-/// What is the same for everybody.
+/// Inputs of decisions that all people share.
 #[derive(Clone, Copy, Debug)]
 pub struct CrowdSetting<'a> {
-    /// What stands.
+    /// Walls of the world.
     pub walls: &'a [Wall],
     /// Who belongs together.
     pub company: &'a dyn Fellows,
@@ -62,7 +62,7 @@ impl<'m> Models<'_, 'm> {
 pub struct Snapshot {
     people: Grid,
     robots: Grid,
-    /// Those who are present, in the order of their grid: they are looked at one after the other.
+    /// People who are present, in the order of their grid.
     placed: Vec<Walker>,
     room: Room,
 }
@@ -99,7 +99,7 @@ impl Snapshot {
         self.decide_placed(setting, models, decisions);
     }
 
-    /// The same once everybody has a place; compiled once, whoever tells of the people.
+    /// Decides once all people have a place; compiled once for every kind of groups.
     #[inline(never)]
     fn decide_placed(
         &mut self,

@@ -50,7 +50,7 @@ pub(super) struct VelocityPrograms {
     /// How many half-planes there are in each world, and at most.
     counts: Each,
     most: usize,
-    /// Those of one world, and its program if it has no solution.
+    /// Half-planes of one world, and its program if it has no solution.
     alone: Vec<HalfPlane>,
     solver: Solver,
 }
@@ -204,7 +204,7 @@ impl VelocityPrograms {
         velocity
     }
 
-    /// What violates the half-planes of one world least, of which the one with a number left nothing.
+    /// Velocity of one world that violates its half-planes least; `failed` is the one whose feasible set was empty.
     fn compromise(
         &mut self,
         lane: usize,

@@ -1,4 +1,4 @@
-//! What stands among people: polylines, rectangles, discs, by their nearest points.
+//! Walls among people: polylines, rectangles, discs, by their nearest points.
 
 use crate::crowd::agent::SHORTEST;
 use crate::error::{Failure, Given, Result, finite_pair};

@@ -1,4 +1,4 @@
-//! What a world of people and robots consists of, and what it must obey.
+//! Worlds of people and robots, and their rules.
 
 use crate::crowd::agent::SHORTEST;
 use crate::crowd::models::Model;
@@ -28,7 +28,7 @@ pub const MOST_SIGHTINGS: usize = 10_000_000;
 /// Most steps of a world.
 const MOST_STEPS: f64 = 1e7;
 
-/// What a person does at the end of the route.
+/// Behavior of a person at the end of the route.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RouteEnd {
     /// Stands there for good, and remains a neighbor.
@@ -97,7 +97,7 @@ impl Waypoint {
 pub struct Route {
     /// Elements, one after the other; nobody goes anywhere without one.
     pub points: Vec<Waypoint>,
-    /// What comes after the last one.
+    /// Behavior after the last one.
     pub end: RouteEnd,
     /// Distance in m at which a point is reached.
     pub arrival_radius: f64,
@@ -151,7 +151,7 @@ fn check_line(index: usize, ends: &[[f64; 2]; 2]) -> Result<()> {
     Err(failure.mended_by("give a point (x, y) instead of a line"))
 }
 
-/// What people have in common, at the start or when they come.
+/// Traits of people, at the start or when they come.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traits {
     /// Radius in m.
@@ -191,7 +191,7 @@ pub struct PersonSetup {
     pub enters: f64,
     /// The way of a person who follows a recording and reacts to nobody.
     pub recorded: Option<Motion>,
-    /// What a person does who sees the first robot and wants it to do wrong, and reacts to nobody else.
+    /// Attack of a person who sees the first robot and wants it to do wrong, and reacts to nobody else.
     pub pursuer: Option<Pursuer>,
     /// Members of a group have its number.
     pub group: Option<u32>,
@@ -223,7 +223,7 @@ pub struct SourceSetup {
     pub rate: f64,
     /// Whether they come at equal intervals, not at random.
     pub regular: bool,
-    /// What they are like.
+    /// Traits of the people.
     pub traits: Traits,
 }
 
@@ -247,7 +247,7 @@ impl SourceSetup {
 /// A robot at the start.
 #[derive(Clone)]
 pub struct RobotSetup {
-    /// What it is.
+    /// Kinematics of the robot.
     pub mover: Mover,
     /// Position in m.
     pub start: [f64; 2],
@@ -265,7 +265,7 @@ pub struct RobotSetup {
     pub measurement: Option<Measurement>,
     /// Wheels and sensors, if it is not ideal; their step is that of the world.
     pub built: Option<AsBuilt>,
-    /// What drives it; commands from outside where `None`.
+    /// Law of the robot; commands from outside where `None`.
     pub law: Option<AnyLaw>,
 }
 
@@ -346,7 +346,7 @@ pub struct CrowdWorld {
     pub robots: Vec<RobotSetup>,
     /// Where more people come from.
     pub sources: Vec<SourceSetup>,
-    /// What stands.
+    /// Walls of the world.
     pub walls: Vec<Wall>,
     /// Number of the last walls that laws are not told of: who knows them has a map, or sees them.
     pub untold: usize,

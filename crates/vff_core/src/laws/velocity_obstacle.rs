@@ -102,7 +102,7 @@ impl Selection {
 /// Velocities that one obstacle forbids.
 #[derive(Clone, Copy, Debug)]
 struct Cone {
-    /// As seen where the robot turns into its new velocity.
+    /// Outline seen from where the robot turns into its new velocity.
     outline: Outline,
     legs: Option<Legs>,
 }

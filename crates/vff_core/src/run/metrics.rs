@@ -37,7 +37,7 @@ pub struct Performance {
 }
 
 impl Performance {
-    /// The same with `T*/T` and `L*/L` of at most 1, as a search counts them: a law that dawdles
+    /// Costs with `T*/T` and `L*/L` of at most 1, as a search counts them: a law that dawdles
     /// without obstacles would otherwise be paid for it.
     pub(crate) fn with_capped_ratios(self, weights: Weights) -> Self {
         // Nearly every run is slower among obstacles; its bits stay as they are.

@@ -25,7 +25,7 @@ use crate::run::walls::Maps;
 use crate::world::geometry::{Body, RobotState};
 use crate::world::scenario::Scenario;
 
-/// What drives the robot in a control period.
+/// Source of the command of a control period.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Request {
     /// The law of the episode.
@@ -57,7 +57,7 @@ impl MeasuredState {
         }
     }
 
-    /// What was seen at a sample.
+    /// State from the readings of a sample.
     pub fn of(seen: &SensedState<'_>) -> Self {
         Self {
             robot: seen.robot,
@@ -112,7 +112,7 @@ impl Episode<Navigation> {
         })
     }
 
-    /// What is left of the run so far, with its present state as the last row. The outcome counts
+    /// Rows of the run so far, with its present state as the last one. The outcome counts
     /// once the run is finished.
     #[must_use]
     pub fn recorded(&self) -> (RunSummary, AsBuiltTrajectory) {
@@ -124,7 +124,7 @@ impl Episode<Navigation> {
 }
 
 impl<L: Listener> Episode<Navigation<L>> {
-    /// The same with a listener of its own, made for a scenario and a number of wheels.
+    /// Run with a listener of its own, made for a scenario and a number of wheels.
     pub(crate) fn with_listener(
         scenario: Arc<Scenario>,
         law: Option<&AnyLaw>,
@@ -184,13 +184,13 @@ impl<L: Listener> Episode<Navigation<L>> {
         }
     }
 
-    /// What parts around the law did in the last control period, if there are any.
+    /// Trace of the parts around the law in the last control period, if there are any.
     #[must_use]
     pub fn trace(&self) -> Option<Trace> {
         self.parts.law.as_ref()?.trace()
     }
 
-    /// What the controller sees now; after the end of the run, at the end of its last motion step.
+    /// Situation of the controller now; after the end of the run, at the end of its last motion step.
     #[must_use]
     pub fn situation(&self) -> Situation<'_, f64> {
         self.parts.seen(self.stepped(), Stop::never())
@@ -199,7 +199,7 @@ impl<L: Listener> Episode<Navigation<L>> {
     /// Runs to the end under the law.
     ///
     /// # Errors
-    /// As [`Self::period`].
+    /// Runs to the end, with the errors of [`Self::period`].
     pub(crate) fn completed(self, interrupted: Interrupted<'_>) -> Result<(RunSummary, L)> {
         let mut ended = self.run(interrupted)?;
         let (row, summary) = ended.parts.closing(ended.time());
@@ -283,7 +283,7 @@ impl<L: Listener> Navigation<L> {
         }
     }
 
-    /// What is asked for until the next sample.
+    /// Command until the next sample.
     fn command(
         &mut self,
         time: f64,

@@ -94,7 +94,7 @@ impl Kept {
 }
 
 impl Default for Kept {
-    /// Everything.
+    /// Keeps every column of every row.
     fn default() -> Self {
         Self {
             every: 1,

@@ -45,7 +45,7 @@ impl Outcome {
 /// Totals of a run, the same few numbers for every scenario.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunTotals {
-    /// How it ended.
+    /// Outcome of the run.
     pub outcome: Outcome,
     /// When it ended, in s.
     pub end_time: f64,
@@ -144,7 +144,7 @@ impl ContactCounts {
 /// Summary of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunSummary {
-    /// How it ended.
+    /// Outcome of the run.
     pub outcome: Outcome,
     /// When it ended, in s.
     pub end_time: f64,

@@ -23,7 +23,7 @@ pub(crate) struct NoisyPositions {
 }
 
 impl NoisyPositions {
-    /// As a scenario measures, with the motion step in s and the distance of the second mark in m;
+    /// Sensor of a scenario, with the motion step in s and the distance of the second mark in m;
     /// `None` if everything is known exactly.
     pub fn new(
         scenario: &Scenario,

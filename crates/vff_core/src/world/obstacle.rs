@@ -76,7 +76,7 @@ impl Obstacle {
         })
     }
 
-    /// What a point of a scan or an echo is taken for: a point that may move at up to a speed in m/s.
+    /// Point of a scan or an echo: it may move at up to a speed in m/s.
     pub(crate) fn point(max_speed: f64) -> Self {
         Self {
             shape: Shape::Disc { radius: 0.0 },

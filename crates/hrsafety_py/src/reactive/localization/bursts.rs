@@ -163,7 +163,7 @@ fn channels<'a>(samples: &'a PyReadonlyArray2<'_, f64>) -> PyResult<[&'a [f64]; 
     Ok([first, second, third])
 }
 
-/// What is found in samples by a finder that is made for them, told whether to stop.
+/// Runs a finder, which is told whether to stop, on samples.
 fn in_samples<T: Send>(
     py: Python<'_>,
     array: &MicrophoneArray,

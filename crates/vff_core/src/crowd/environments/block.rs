@@ -12,13 +12,13 @@ use crate::run::Interrupted;
 /// How many environments are stepped at a time.
 pub(super) const BLOCK: usize = WIDTH;
 
-/// What a step of all environments consists of.
+/// Inputs and outputs of a step of all environments.
 pub(super) struct BlockStep<'a> {
-    /// What they have in common.
+    /// Settings of all environments.
     pub settings: &'a EnvironmentSettings,
     /// The model of the people, if those of several worlds can move together.
     pub model: Option<&'a Model>,
-    /// What the robots do.
+    /// Actions of the robots.
     pub actions: &'a [[f64; 2]],
     /// Whether to stop.
     pub interrupted: Interrupted<'a>,

@@ -1,4 +1,4 @@
-//! What differs between the episodes of an environment: where people start and where they go.
+//! Differences between the episodes of an environment: where people start and where they go.
 
 use numeric::random::Stream;
 

@@ -32,9 +32,9 @@ const LEAST_SHARE: usize = 16;
 
 /// Where results are written, a row for each environment.
 pub struct Outputs<'a> {
-    /// What the robots see.
+    /// Observations of the robots.
     pub observations: &'a mut [f32],
-    /// What they saw at the end of an episode that was followed by another one in the same step.
+    /// Last observations of an episode that was followed by another one in the same step.
     pub final_observations: &'a mut [f32],
     /// How many of the people that each can see are there, after the step and at such an end.
     pub seen: &'a mut [[i64; 2]],
@@ -94,7 +94,7 @@ impl Environments {
         })
     }
 
-    /// What they have in common.
+    /// Settings of all environments.
     #[must_use]
     pub fn settings(&self) -> &EnvironmentSettings {
         &self.settings

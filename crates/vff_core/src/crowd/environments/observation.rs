@@ -1,4 +1,4 @@
-//! What a robot sees: itself, the nearest people, ranges of a lidar.
+//! Observation of a robot: itself, the nearest people, ranges of a lidar.
 
 use crate::crowd::environments::settings::{Axes, EnvironmentSettings};
 use crate::crowd::people::PersonState;
@@ -53,7 +53,7 @@ const FEW: usize = 8;
 /// Room for the order of the people.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Ranking {
-    /// Those present, by number.
+    /// People who are present, by number.
     present: Vec<Ranked>,
     /// The nearest of them in their order.
     nearest: Vec<Ranked>,

@@ -84,7 +84,7 @@ impl State {
     }
 }
 
-/// What a step brought.
+/// Result of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
     /// How the episode stands.
@@ -244,7 +244,7 @@ impl Environment {
         self.note(settings);
     }
 
-    /// What the step has brought.
+    /// Ends a step; returns its result.
     pub(super) fn end(&mut self, settings: &EnvironmentSettings) -> Step {
         let clearance = self.clearance;
         let distance = self.to_goal(settings).norm();
@@ -275,7 +275,7 @@ impl Environment {
         Vector::from(goal) - self.simulation.robots()[0].state().position
     }
 
-    /// What the robot is told, from an action in [-1, 1].
+    /// Request to the robot, from an action in [-1, 1].
     fn request(&mut self, settings: &EnvironmentSettings, action: [f64; 2]) -> Request {
         let action = Vector::from(action.map(|share| share.clamp(-1.0, 1.0)));
         let setup = &settings.world.robots[0];
@@ -330,7 +330,7 @@ impl Environment {
         }
     }
 
-    /// The same, with differences of positions as the world has them.
+    /// Observes with differences of positions as the world has them.
     #[inline(always)]
     fn look_along(&mut self, wrap: impl Fn(Vector) -> Vector) -> f64 {
         let robot = &self.simulation.robots()[0];

@@ -1,4 +1,4 @@
-//! What an environment is told, shows and rewards.
+//! Settings of environments: inputs, observations, rewards.
 
 use crate::crowd::environments::layout::Layout;
 use crate::crowd::world::CrowdWorld;
@@ -21,18 +21,18 @@ pub enum Action {
 /// Axes of the vectors of an observation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
-    /// Those of the world.
+    /// Axes of the world.
     World,
     /// The x axis points from the robot to its goal.
     Goal,
 }
 
-/// What comes after the end of an episode.
+/// Start of the next episode after the end of one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Autoreset {
     /// The next step starts the next episode, whatever the action.
     NextStep,
-    /// The same step starts it.
+    /// Within the step that ends the last one.
     SameStep,
     /// The caller starts it.
     Disabled,
@@ -47,14 +47,14 @@ pub struct Rewards {
     pub step: f64,
 }
 
-/// What all environments of a set have in common.
+/// Settings of all environments of a set.
 #[derive(Clone)]
 pub struct EnvironmentSettings {
     /// The world of an episode, one of whose robots, the first, is driven.
     pub world: CrowdWorld,
-    /// What differs between episodes.
+    /// Differences between episodes.
     pub layout: Layout,
-    /// How it is driven.
+    /// Meaning of an action.
     pub action: Action,
     /// Greatest acceleration, in m/s^2.
     pub max_acceleration: f64,
@@ -66,9 +66,9 @@ pub struct EnvironmentSettings {
     pub rays: usize,
     /// Axes of what it sees.
     pub axes: Axes,
-    /// What it is rewarded for.
+    /// Weights of the reward.
     pub rewards: Rewards,
-    /// What comes after an episode.
+    /// Start of the next episode.
     pub autoreset: Autoreset,
     /// Whether positions are kept to score each episode at its end.
     pub metrics: bool,

@@ -1,6 +1,6 @@
 //! The list of metrics: name, kind, unit and meaning of each, from which rows, columns and documentation follow.
 
-/// What a metric is counted in.
+/// Unit of a metric.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A number; NaN where it is not defined.
@@ -23,16 +23,16 @@ impl Kind {
     }
 }
 
-/// What is known about a metric.
+/// Name, unit and meaning of a metric.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DeclaredMetric {
     /// Its name, in every language and file.
     pub name: &'static str,
-    /// What it is counted in.
+    /// Its unit.
     pub kind: Kind,
     /// Its unit; empty without one.
     pub unit: &'static str,
-    /// What it is, in words.
+    /// Meaning in words.
     pub meaning: &'static str,
 }
 

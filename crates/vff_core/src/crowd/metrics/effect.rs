@@ -1,4 +1,4 @@
-//! What a robot costs the people: the same world and seed with it and without.
+//! Costs of a robot for people: differences between one world and seed with it and without.
 
 use crate::lanes::Vector2;
 

@@ -1,4 +1,4 @@
-//! What is scored: positions over time with the sizes and rules that they are measured by.
+//! Observed episodes: positions over time with the sizes and rules that they are measured by.
 
 use crate::crowd::neighbors::grid::Period;
 use crate::crowd::walls::Wall;
@@ -99,7 +99,7 @@ pub struct MetricRules {
     pub robot_radius: f64,
     /// Distance to the goal that counts as arrival, in m.
     pub arrival_tolerance: f64,
-    /// The same for people, in m.
+    /// Tolerance of arrival for people, in m.
     pub person_tolerance: f64,
     /// Speed that efficacy is measured by, in m/s.
     pub max_speed: f64,
@@ -141,7 +141,7 @@ impl MetricRules {
     }
 }
 
-/// The same people in the same world without robots.
+/// People of the same world without robots.
 #[derive(Clone, Copy, Debug)]
 pub struct Without<'a> {
     /// Where they are.
@@ -183,11 +183,11 @@ pub struct ObservedEpisode<'a> {
     pub radii: &'a [f64],
     /// Their groups; below 0 for who belongs to none, empty without any.
     pub groups: &'a [i64],
-    /// What stands still.
+    /// Walls and other things that stand still.
     pub walls: &'a [Wall],
-    /// The same without robots, if known.
+    /// Paths of the people without robots, if known.
     pub without: Option<Without<'a>>,
-    /// What is measured by.
+    /// Sizes and bounds of the metrics.
     pub rules: MetricRules,
 }
 

@@ -40,13 +40,13 @@ pub fn evaluate(episode: &ObservedEpisode<'_>) -> Result<RobotMetrics> {
     Ok(evaluate_checked(episode))
 }
 
-/// As [`evaluate`], of an episode that is known to be valid.
+/// Metrics like [`evaluate`], of an episode that is known to be valid.
 #[must_use]
 pub fn evaluate_checked(episode: &ObservedEpisode<'_>) -> RobotMetrics {
     evaluate_with_extremes(episode).0
 }
 
-/// The same with what tells whether anything of it is in doubt.
+/// Metrics with the extremes that tell whether any of them is in doubt.
 #[must_use]
 pub fn evaluate_with_extremes(episode: &ObservedEpisode<'_>) -> (RobotMetrics, Extremes) {
     let travel = Travel::of(episode);

@@ -17,10 +17,10 @@ const COMFORT: f64 = 0.5;
 const DISCOMFORT: f64 = 0.2;
 /// A time to a collision below it is low, in s.
 const LOW_TIME: f64 = 2.0;
-/// What rounding may change of lengths and times, relative to them: far more than it does.
+/// Relative change of lengths and times by rounding: far more than it is.
 const SLACK: f64 = 1e-9;
 
-/// What the distances to people tell.
+/// Metrics of the distances to people.
 pub(super) struct Proximity {
     pub min_clearance: f64,
     pub mean_clearance: f64,
@@ -99,11 +99,11 @@ impl Proximity {
     }
 }
 
-/// What is least at an instant; infinite without people.
+/// Least distances at an instant; infinite without people.
 struct Nearness {
     /// Between the surfaces, in m.
     gap: f64,
-    /// The same of those who are touched within the next step only, on straight ways; negative.
+    /// Least gap to people who are touched within the next step only, on straight ways; negative.
     passed: f64,
     /// From the surface of the robot to a center, in m.
     zone: f64,
@@ -111,7 +111,7 @@ struct Nearness {
     time: f64,
 }
 
-/// What is gathered on the way.
+/// Sums on the way.
 struct Watch {
     end: usize,
     pressures: Pressures,

@@ -13,7 +13,7 @@ const FROZEN: f64 = 5.0;
 /// Rounding of sums of steps, in s.
 const ROUNDING: f64 = 1e-9;
 
-/// What the positions of the robot tell.
+/// Metrics of the positions of the robot.
 pub(super) struct Travel {
     /// The instant `E`.
     pub end: usize,

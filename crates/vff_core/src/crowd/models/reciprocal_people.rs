@@ -25,7 +25,7 @@ const MOST_NEIGHBORS: usize = 1 << 16;
 pub struct ReciprocalPeople {
     /// `tau`, time without contact with others, in s.
     pub horizon: f64,
-    /// The same with walls, in s.
+    /// Horizon for walls in s.
     pub wall_horizon: f64,
     /// Nearest neighbors that are avoided.
     pub max_neighbors: usize,
@@ -113,7 +113,7 @@ impl<R: Real> DiscPair<R> {
         self.way.dot(&self.way).le(self.touch * self.touch)
     }
 
-    /// The same discs as the other one sees them.
+    /// View of the other one of the pair on these discs.
     #[inline(always)]
     #[must_use]
     pub fn reversed(&self) -> Self {

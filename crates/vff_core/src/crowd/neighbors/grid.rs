@@ -266,7 +266,7 @@ impl Grid {
         count
     }
 
-    /// The same for those behind the agent at a place, in a world that does not repeat itself.
+    /// Finds neighbors behind the agent at a place, in a world that does not repeat itself.
     #[inline(always)]
     pub(crate) fn find_behind(&self, place: usize, reach: f64, found: &mut [u32]) -> usize {
         let own = &self.agents[place];

@@ -86,7 +86,7 @@ struct NeighborKind<'a> {
     weight: f64,
 }
 
-/// Those near a person.
+/// Neighbors of a person.
 #[derive(Clone, Debug)]
 pub struct Near<'a> {
     own: &'a Agent,

@@ -49,7 +49,7 @@ impl Mutual {
         }
     }
 
-    /// Those whom a person keeps off.
+    /// Neighbors whom a person avoids.
     #[inline(always)]
     #[must_use]
     pub fn row(&self, row: usize) -> &[KnownPair] {

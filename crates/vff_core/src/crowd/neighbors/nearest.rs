@@ -16,7 +16,7 @@ pub struct Nearest {
     distances: Vec<f64>,
     /// Who comes first, second and so on.
     order: Vec<u32>,
-    /// The same of very few.
+    /// Ranks of very few candidates.
     few: [u32; FEW],
 }
 
@@ -48,7 +48,7 @@ impl Nearest {
         self.first(most, number)
     }
 
-    /// As [`Self::rank`] of very few.
+    /// Ranks very few candidates like [`Self::rank`].
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // small counts
     fn rank_few(&mut self, count: usize, distance: impl Fn(usize) -> f64) -> bool {

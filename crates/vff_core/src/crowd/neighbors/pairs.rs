@@ -238,7 +238,7 @@ impl PairQueue {
         }
     }
 
-    /// Those that were found, side by side.
+    /// Pairs that were found, side by side.
     #[inline(always)]
     pub fn side_by_side(&self) -> impl Iterator<Item = Pairs<'_>> {
         let blocks = self.shown.div_ceil(WIDTH) * WIDTH;

@@ -233,7 +233,7 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
         true
     }
 
-    /// As [`Self::add_up`], with the sides of every rule and the terms kept in the slots.
+    /// Sum like [`Self::add_up`], with the sides of every rule and the terms kept in the slots.
     #[inline(always)]
     fn sum_in_full(&mut self, situation: &Situation<'_, R>) -> (Vector2<R>, R::Mask) {
         let critical = self.fill_slots(situation);

@@ -154,7 +154,7 @@ impl IncrementalSearch {
         self.repair_until(Stop::never());
     }
 
-    /// As [`Self::repair`], until told to stop; the costs are not final then.
+    /// Repairs like [`Self::repair`], until told to stop; the costs are not final then.
     pub(super) fn repair_until(&mut self, stop: Stop<'_>) {
         let mut dirty = std::mem::take(&mut self.dirty);
         for &node in &dirty {

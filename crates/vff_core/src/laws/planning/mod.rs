@@ -30,7 +30,7 @@ pub trait Planner: Send + 'static {
 
 /// A planner that decides for robots side by side, each in a scene of its own.
 pub trait ScenePlanner: Planner + Sized {
-    /// What [`Planner::desired_velocity`] of the planner of every lane is, bit for bit; all of them have
+    /// Vectors of [`Planner::desired_velocity`] of the planner of every lane, bit for bit; all of them have
     /// the same numbers.
     fn desired_velocities<R: Real>(
         planners: &mut [Self],

@@ -32,7 +32,7 @@ pub(super) struct Best<'a> {
     situation: &'a Situation<'a, f64>,
     reachable: Reachable,
     aim: Vector,
-    /// What it is worth by the first number: whatever promises less is not looked at.
+    /// Least value by the first number: whatever promises less is skipped.
     least: f64,
     found: Option<((f64, f64), Place, Vector)>,
     /// The cones that may forbid any velocity that may be worth enough, once they have been sorted out.
@@ -73,7 +73,7 @@ impl<'a> Best<'a> {
         }
     }
 
-    /// The same for a velocity that is not far out of reach and may be worth enough.
+    /// Takes a velocity that is not far out of reach and may be worth enough.
     #[inline(never)]
     fn take(&mut self, place: Place, velocity: Vector) {
         if !self.reachable.holds(velocity) {

@@ -10,7 +10,7 @@ pub(super) const ON_THE_LIMIT: f64 = 1e-9;
 /// A square this many times that of a limit is beyond the limit whatever the roundings.
 const FAR_BEYOND: f64 = 1.0 + 1e-8;
 
-/// The same where a line that nothing reachable lies on is left out: well above all roundings.
+/// Tolerance with which a line that nothing reachable lies on is left out: well above all roundings.
 const BESIDE: f64 = 1e-7;
 
 /// Discs whose common part the robot can reach by the next sample.
@@ -36,7 +36,7 @@ impl Reachable {
         ]
     }
 
-    /// Whether it is not far beyond what is reachable.
+    /// True for velocities not far beyond the reachable ones.
     #[inline]
     pub fn may_hold(&self, velocity: Vector) -> bool {
         let near = |vector: Vector, limit: f64| vector.dot(&vector) <= limit * limit * FAR_BEYOND;

@@ -231,7 +231,7 @@ impl Yielder {
             .unwrap_or_else(|| Conflict::never(self.settings.horizon))
     }
 
-    /// The same, or nothing as soon as the first meeting so far makes the answer useless.
+    /// Conflict, or nothing as soon as the first meeting so far makes the answer useless.
     #[inline(always)]
     fn conflict_unless<R: Real>(
         &self,

@@ -245,7 +245,7 @@ impl DifferentialLimits {
 pub struct DifferentialDrive {
     /// Where it is.
     pub pose: Pose,
-    /// How it moves.
+    /// Linear velocity and turn rate.
     pub twist: Twist,
     limits: DifferentialLimits,
 }

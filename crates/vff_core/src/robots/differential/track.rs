@@ -24,7 +24,7 @@ const RESERVED: usize = 1 << 16;
 pub struct TrackStart {
     /// Where the robot is.
     pub pose: Pose,
-    /// How it moves.
+    /// Linear velocity and turn rate.
     pub twist: Twist,
 }
 

@@ -17,7 +17,7 @@ pub enum Tracking {
     FullSpeed(FullSpeed),
     /// The law of the source, corrected, or as printed.
     Nonlinear(Nonlinear),
-    /// As `FullSpeed`; near the goal exponentially to it, whatever the reference does there.
+    /// Full speed like `FullSpeed`; near the goal exponentially to it, whatever the reference does there.
     ExponentialGoal(ExponentialGoal),
 }
 

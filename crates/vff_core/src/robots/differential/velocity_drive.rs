@@ -31,7 +31,7 @@ pub struct VelocityDrive {
     pub heading_gain: f64,
     /// Virtual speed below which the robot does not turn, in m/s.
     pub least_speed: f64,
-    /// How it moves over a step; the chord is that of the source.
+    /// Integration over a step; the chord is that of the source.
     pub integration: Integration,
 }
 

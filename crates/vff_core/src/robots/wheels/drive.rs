@@ -53,7 +53,7 @@ impl Motor {
         self.limited_near(current, induced)
     }
 
-    /// As `limited` by both limits, for an induced voltage in V.
+    /// Limits a current like `limited` by both limits, for an induced voltage in V.
     #[cold]
     #[inline(never)]
     fn limited_near(&self, current: f64, induced: f64) -> f64 {
@@ -116,7 +116,7 @@ pub(super) fn read_with(resolution: Option<f64>, angle: f64) -> f64 {
     resolution.map_or(angle, |count| rounded(angle / count) * count)
 }
 
-/// As `f64::round`, which without SSE 4.1 is a call; the sign of zero included.
+/// Rounds like `f64::round`, which without SSE 4.1 is a call; the sign of zero included.
 #[inline]
 fn rounded(value: f64) -> f64 {
     if value.abs() >= ALL_WHOLE || value.is_nan() {

@@ -1,4 +1,4 @@
-//! What is kept of a run of a robot as built.
+//! Records of a run of a robot as built.
 
 use crate::laws::Command;
 use crate::robots::drives::Reading;

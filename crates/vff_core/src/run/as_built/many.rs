@@ -19,7 +19,7 @@ use crate::world::geometry::Body;
 use crate::world::scenario::Scenario;
 use numeric::threads::{on_threads, try_map};
 
-/// What is kept of a run once every control period, and at its end.
+/// Records of a run once every control period, and at its end.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Histories {
     /// Instants in s.
@@ -90,7 +90,7 @@ pub struct ManyRuns {
     pub table: BatchTable,
     /// First contacts of each run with its obstacles.
     pub contact: Vec<Vec<Option<Contact>>>,
-    /// What was kept of each run; empty unless asked for.
+    /// Histories of each run; empty unless asked for.
     pub histories: Vec<Histories>,
 }
 

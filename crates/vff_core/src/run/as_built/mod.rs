@@ -99,7 +99,7 @@ impl AsBuilt {
         }
     }
 
-    /// The same without errors of measurement.
+    /// Copy without errors of measurement.
     fn seeing_all(&self) -> Self {
         Self {
             sensors: Vec::new(),

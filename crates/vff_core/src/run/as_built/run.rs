@@ -40,7 +40,7 @@ pub type Scored = (
 /// One run and its score against the run without obstacles.
 ///
 /// # Errors
-/// As [`simulate_as_built`].
+/// Fails like [`simulate_as_built`].
 pub fn evaluate_as_built(
     scenario: &Scenario,
     law: &AnyLaw,

@@ -1,4 +1,4 @@
-//! What the controller knows of itself and of the obstacles: the sensors of a robot together.
+//! Knowledge of the controller about itself and the obstacles: the sensors of a robot together.
 
 use std::ops::Range;
 
@@ -12,7 +12,7 @@ use crate::world::geometry::{Body, RobotState};
 use crate::world::motion::BodyState;
 use crate::world::scenario::{PlacedObstacle, Scenario};
 
-/// What the controller knows at a sample.
+/// Knowledge of the controller at a sample.
 pub(crate) struct SensedState<'a> {
     /// State of the robot.
     pub robot: RobotState<f64>,
@@ -97,7 +97,7 @@ impl BuiltSensors {
         &self.ages
     }
 
-    /// What is known at a sample; `heading` in rad is what the robot itself takes it for.
+    /// Senses at a sample; `heading` in rad is what the robot itself takes it for.
     pub fn look<'a>(
         &'a mut self,
         time: f64,

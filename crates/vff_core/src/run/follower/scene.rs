@@ -7,7 +7,7 @@ use crate::world::obstacle::{Obstacle, Shape};
 /// The source of the sound.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Leader {
-    /// How it moves.
+    /// Motion of the body.
     pub motion: Motion,
     /// Its shape if the sensors see it.
     pub shape: Option<Shape>,

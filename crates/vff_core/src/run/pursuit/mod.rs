@@ -38,7 +38,7 @@ pub struct Encounter {
     /// Least distance of the surfaces in m while the robot moved toward somebody, up to the first overlap with them
     /// by [`DECIDED_OVERLAP`], or touched a map; infinite if it never did.
     pub least_toward: f64,
-    /// The same at any speed, however slow: the theorem of the shield holds there, too.
+    /// Least distance of `least_toward` at any speed, however slow: the theorem of the shield holds there, too.
     pub least_ahead: f64,
     /// Least distance of the surfaces in m, from maps too.
     pub least: f64,

@@ -20,7 +20,7 @@ pub(crate) use scans::Scans;
 pub const MOST_BEAMS: usize = 100_000;
 /// Force laws brake this near to a boundary point beyond the radius of the robot, in m.
 const AT_THE_WALL: f64 = 0.001;
-/// What reads zero is taken to be this far along its beam, in m: at the robot itself it would be in no
+/// Distance along its beam in m of a reading of zero: at the robot itself it would have no
 /// direction, and no law would see it.
 const NEAREST: f64 = 1e-9;
 

@@ -140,7 +140,7 @@ impl Beam {
         index
     }
 
-    /// As `nearest`, of one shape; may be farther than the reach.
+    /// Distance like `nearest`, to one shape; may be farther than the reach.
     #[inline]
     fn nearest_of(&self, pose: &Frame, shape: &PlacedShape, reach: f64) -> f64 {
         if shape.out_of_reach(pose.position, reach) {

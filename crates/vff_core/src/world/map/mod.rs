@@ -135,7 +135,7 @@ impl MapShapes {
     /// other such grids.
     ///
     /// # Errors
-    /// As there.
+    /// Fails like [`MapShapes::grid`].
     pub fn limiting_grid(
         &mut self,
         occupied: &[bool],

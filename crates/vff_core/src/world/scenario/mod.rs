@@ -49,10 +49,10 @@ pub enum Mover {
     Differential(DifferentialDriveRobot),
 }
 
-/// What is simulated.
+/// Scenario of a simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
-    /// What a law drives: the robot, or the one that a two-wheel robot follows.
+    /// Robot that a law drives: the robot, or the one that a two-wheel robot follows.
     pub(crate) robot: HolonomicRobot,
     pub(crate) differential: Option<DifferentialDriveRobot>,
     pub(crate) start: [f64; 2],
@@ -61,9 +61,9 @@ pub struct Scenario {
     pub(crate) rules: Rules,
     pub(crate) measurement: Option<Measurement>,
     pub(crate) seed: u64,
-    /// What planners of whole paths know of walls.
+    /// Walls that planners of whole paths know.
     pub(crate) map: Option<StaticMap>,
-    /// What stands beside the obstacles: touched, seen by sensors, and not told of to laws.
+    /// Walls beside the obstacles: touched, seen by sensors, and not told of to laws.
     pub(crate) walls: Option<StaticMap>,
     /// Why laws that keep to regions cannot reach the goal, if they cannot.
     pub(crate) blocked: Option<Box<Failure>>,
@@ -92,7 +92,7 @@ impl Scenario {
         )
     }
 
-    /// The same scenario with a map that planners of whole paths keep out of; other laws see the
+    /// Scenario with a map that planners of whole paths keep out of; other laws see the
     /// boundary points that they are told of.
     #[must_use]
     pub fn with_map(mut self, map: StaticMap) -> Self {
@@ -100,11 +100,11 @@ impl Scenario {
         self
     }
 
-    /// The same for a two-wheel robot: its regions include the time that it needs to turn, and a
+    /// Scenario of a two-wheel robot: its regions include the time that it needs to turn, and a
     /// law drives the robot that it follows.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// Fails like [`Self::new`].
     pub fn for_differential(
         robot: DifferentialDriveRobot,
         start: [f64; 2],
@@ -116,10 +116,10 @@ impl Scenario {
         Self::sensed(robot, [start, goal], obstacles, rules, None)
     }
 
-    /// The same for any robot whose regions are sized for noisy or late measurements.
+    /// Scenario of any robot whose regions are sized for noisy or late measurements.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// Fails like [`Self::new`].
     pub fn sensed(
         robot: Mover,
         ends: [[f64; 2]; 2],
@@ -221,14 +221,14 @@ impl Scenario {
         })
     }
 
-    /// The same scenario with walls that no law is told of; who knows them has a map, or sees them.
+    /// Scenario with walls that no law is told of; who knows them has a map, or sees them.
     #[must_use]
     pub fn with_walls(mut self, walls: StaticMap) -> Self {
         self.walls = Some(walls);
         self
     }
 
-    /// The same scenario with noisy or late measurements drawn from a seed. Regions that were not
+    /// Scenario with noisy or late measurements drawn from a seed. Regions that were not
     /// given are sized for them.
     ///
     /// # Errors
@@ -247,10 +247,10 @@ impl Scenario {
         Ok(self)
     }
 
-    /// The same scenario with a slower robot; regions that were not given are sized for it.
+    /// Scenario with a slower robot; regions that were not given are sized for it.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// Fails like [`Self::new`].
     pub(crate) fn slowed(&self, max_speed: f64) -> Result<Self> {
         let mut slowed = self.clone();
         slowed.robot.max_speed = positive("max_speed", max_speed)?;
@@ -272,14 +272,14 @@ impl Scenario {
         self.differential.map_or(holonomic, |robot| robot.limits())
     }
 
-    /// The same scenario with other noise.
+    /// Copy of the scenario with other noise.
     #[must_use]
     pub fn reseeded(mut self, seed: u64) -> Self {
         self.seed = seed;
         self
     }
 
-    /// The same way without obstacles and without noise: what the nominal run uses.
+    /// Copy of the scenario without obstacles and without noise: the scene of the nominal run.
     #[must_use]
     pub fn nominal(&self) -> Self {
         Self {

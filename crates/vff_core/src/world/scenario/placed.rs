@@ -17,7 +17,7 @@ pub struct PlacedObstacle {
     pub regions: Regions,
     /// Distance `d` at which robot and obstacle touch, in m.
     pub contact_distance: f64,
-    /// Whether it never moves.
+    /// True for an obstacle that never moves.
     pub stationary: bool,
     /// Largest speed at any time in m/s, `None` if there is none.
     pub speed_bound: Option<f64>,
