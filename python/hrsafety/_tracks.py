@@ -85,7 +85,7 @@ class Breaks(NamedTuple):
     gaps : ndarray of bool
         Long times without a row.
     switches : list of (int, int)
-        Pairs of rows from which on two people go on where the other one was.
+        Pairs of rows from which on two people continue where the other one was.
     exchanged : ndarray of bool
         Steps over which ids were exchanged.
     jumps, back : ndarray of bool
@@ -328,7 +328,7 @@ class Ways(NamedTuple):
         return tuple(told)
 
     def _switches(self, gaps: Flags, sigma: float) -> list[tuple[int, int]]:
-        """Return pairs of rows from which on two people go on where the other one was."""
+        """Return pairs of rows from which on two people continue where the other one was."""
         least = max(SWITCH_RESIDUAL, 10.0 * (sigma if np.isfinite(sigma) else 0.0))
         if len(gaps) < 2:
             return []

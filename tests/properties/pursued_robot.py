@@ -130,7 +130,7 @@ def episode(
 
     In some the clock is set back by seconds between two bounds, by 1 ms as often as by 1 s. A robot that
     ``takes_all`` carries out the plan of each answer from the update on, also of those that did not count, instead of
-    going on with the last one that did.
+    continuing with the last one that did.
     """
     draw = random.Random(seed)
     period = draw.choice(PERIODS) if period is None else period

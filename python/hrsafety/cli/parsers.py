@@ -541,7 +541,7 @@ def _add_ros(commands: Any) -> None:
         "--delay", type=_number, default=0.0, metavar="S", help="time until a command is executed, in s [%(default)s]"
     )
     time.add_argument("--wait", action="store_true", help="people stand until the first velocity command comes")
-    time.add_argument("--stay", action="store_true", help="go on to the time limit when the robot rests at its goal")
+    time.add_argument("--stay", action="store_true", help="continue to the time limit when the robot rests at its goal")
     topics = parser.add_argument_group("topics")
     topics.add_argument("--topic", default="cmd_vel", metavar="NAME", help="of velocity commands [%(default)s]")
     topics.add_argument(

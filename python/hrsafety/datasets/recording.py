@@ -163,10 +163,10 @@ class Recording(Played):
         ``implausible``: a median time between the rows of a person above 2 s or below 1 ms, or speeds (above 0.05 m/s)
         with a median outside 0.1 to 3 m/s or a 95 % quantile outside 0.3 to 6 m/s; whole numbers as times and people
         slower than 0.7 m/s. ``teleport``: a step faster than 6 m/s and longer than 0.5 m among slow ones.
-        ``identity_switch``: two people go on where the other one was. ``gap_in_track``: no row for longer than 2 s and
+        ``identity_switch``: two people continue where the other one was. ``gap_in_track``: no row for longer than 2 s and
         10 median steps. ``noisy_positions``: noise of differences beyond 3 m/s^2 and a quarter of a step.
         ``single_row``: somebody has one row only. ``broken_tracks``: more than half of the ways
-        that end go on under another id within 1 s.
+        that end continue under another id within 1 s.
 
         Examples
         --------
@@ -289,7 +289,7 @@ class Recording(Played):
 
     @property
     def switches(self) -> list[tuple[Any, Any, float]]:
-        """Pairs of people who go on where the other one was, with the first instant after it in s."""
+        """Pairs of people who continue where the other one was, with the first instant after it in s."""
         ways = self._ways()
         ids = self._ids[ways.who]
         return [(*sorted((ids[a].item(), ids[b].item())), float(ways.time[a])) for a, b in self._breaks().switches]

@@ -21,11 +21,11 @@ LOST = 2.0
 REACH = 1.6
 """Greatest speed of people while nobody sees them, in m/s."""
 SOON, MANY_PERIODS = 1.0, 3.0
-"""A way goes on under another id within so many seconds, or median steps."""
+"""A way continues under another id within so many seconds, or median steps."""
 NEAR, ALIKE = 0.6, 1.0
 """There it begins so near the expected place, in m, and with a velocity that differs by less, in m/s."""
 BROKEN_SHARE, FEW_ENDS = 0.5, 5
-"""A larger share of the ends that go on under another id is no accident, if there are so many ends."""
+"""A larger share of the ends that continue under another id is no accident, if there are so many ends."""
 
 
 class TrackEnds(NamedTuple):
@@ -38,7 +38,7 @@ class TrackEnds(NamedTuple):
     first, last : ndarray, shape (n, 2)
         Their places in m.
     follower : ndarray of int, shape (n,)
-        Way that goes on where this one ends, -1 without one.
+        Way that continues where this one ends, -1 without one.
     span : tuple of float
         First and last instant of all, in s.
     """
@@ -61,9 +61,9 @@ class Moved(Protocol):
 
 
 def track_ends(ways: Ways) -> TrackEnds:
-    """Return where ways begin and end, and which go on under another id.
+    """Return where ways begin and end, and which continue under another id.
 
-    One goes on as another that begins within 1 s (or three median steps) after its end, at most 0.6 m from where it
+    One continues as another that begins within 1 s (or three median steps) after its end, at most 0.6 m from where it
     leads at constant velocity, with a velocity that differs by less than 1 m/s.
     """
     starts = np.flatnonzero(np.concatenate([[True], ~ways.same]))
@@ -106,9 +106,9 @@ def track_ends(ways: Ways) -> TrackEnds:
 
 
 def ends_doubts(ends: TrackEnds, named: Callable[[int], str], *, units: bool) -> tuple[ResultWarning, ...]:
-    """Return doubts about ids that change on the way: people with one row, and ways that go on under another id.
+    """Return doubts about ids that change on the way: people with one row, and ways that continue under another id.
 
-    ``units``: whether positions are in m and times in s, without which nobody knows who goes on as whom.
+    ``units``: whether positions are in m and times in s, without which nobody knows who continues as whom.
     """
     people = len(ends.begin)
     single = np.flatnonzero(ends.begin == ends.end)
@@ -126,7 +126,7 @@ def ends_doubts(ends: TrackEnds, named: Callable[[int], str], *, units: bool) ->
     if units and len(broken) >= FEW_ENDS and len(broken) > BROKEN_SHARE * before.sum():
         one = int(broken[0])
         message = (
-            f"{len(broken)} of {int(before.sum())} ways that end go on under another id ({named(one)} after "
+            f"{len(broken)} of {int(before.sum())} ways that end continue under another id ({named(one)} after "
             f"{ends.end[one]:g} s as {named(int(ends.follower[one]))}): ids change on the way, nobody is there in "
             "between, and who appears on a robot is counted apart; give each person one id"
         )
@@ -140,7 +140,7 @@ def lost_doubts(
     """Return doubts about people who may have been touched while nobody saw them, and about what came after the end.
 
     Somebody is within ``1.6 m/s |t - t_k|`` of the first or last place that is known for 2 s before or after it, of
-    both where the way goes on under another id.
+    both where the way continues under another id.
 
     Parameters
     ----------

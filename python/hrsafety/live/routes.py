@@ -1,4 +1,4 @@
-"""Who is where on the way: people of a world as they are at an instant, so that it can go on otherwise."""
+"""Who is where on the way: people of a world as they are at an instant, so that it can continue otherwise."""
 
 from __future__ import annotations
 

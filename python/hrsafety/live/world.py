@@ -45,7 +45,7 @@ FARTHEST = 1000.0
 MORE_PEOPLE = 20
 """Room of the controller for those who come from sources."""
 BEHIND = 0.25
-"""A world that is farther behind the wall clock, in s, goes on from there."""
+"""A world that is farther behind the wall clock, in s, continues from there."""
 KEPT = 12_000
 """States that are kept for the player."""
 
@@ -171,7 +171,7 @@ class LiveWorld:
             self.told.notify_all()
 
     def _grant(self) -> bool:
-        """Grant what is wished; whether people go on otherwise than their world has them."""
+        """Grant what is wished; whether people continue otherwise than their world has them."""
         again = False
         while self._changes:
             wish = self._changes.popleft()
@@ -253,7 +253,7 @@ class LiveWorld:
             self.told.notify_all()
 
     def _onward(self) -> World:
-        """Return the world as it goes on from now."""
+        """Return the world as it continues from now."""
         time, people, names = self._instant * self._part, [], []
         for number, walker in self._walkers.items():
             there = self._seen.get(number)
@@ -536,7 +536,7 @@ def _told_ways(world: World) -> dict[int, dict[str, Any]]:
     for column, index in enumerate(chosen):
         there = np.flatnonzero(np.isfinite(run.obstacle_position[:, column, 0]))
         times, places = run.time[there].tolist(), run.obstacle_position[there, column].tolist()
-        if there[-1] == len(run.time) - 1 and times[-1] < LONGEST:  # who stands in the end goes on standing
+        if there[-1] == len(run.time) - 1 and times[-1] < LONGEST:  # who stands in the end continues standing
             times, places = [*times, LONGEST], [*places, places[-1]]
         found[index] = {"recording": (times, places), "mover": None}
     return found

@@ -50,7 +50,7 @@ class Controller:
     have got there (``renamed``): people are then judged by their places only.
 
     Give the times of a clock that nobody sets. After one that was set back the robot executes the plan that it has, and
-    rests. It goes on when the clock shows a later time again, or has run for as long as the plan lasts; whoever is not
+    rests. It continues when the clock shows a later time again, or has run for as long as the plan lasts; whoever is not
     measured then may be anywhere.
 
     Parameters

@@ -60,7 +60,7 @@ class Command:
         went by as the clock came on, a control period where it went back or stands, and at least as much as the
         robot is farther on); or without the place of the robot, which then brakes alike. Out of order is, too, an
         update whose robot is farther on in its plan than the time tells, as after a clock that was set back. The
-        robot goes on with the plan that it has.
+        robot continues with the plan that it has.
     arrived : bool
         Whether the robot is within the arrival tolerance of the goal.
     oldest : float

@@ -73,7 +73,7 @@ class Trajectory(Played, Table):
     wheels and sensors of ideal point masses; scenario, law, forces, currents, energy and outcome of a run
     after a reference (`tracking.track`), which ends after its duration.
 
-    Of a `World` the obstacles are the people, those from sources last, the rows are its steps, and the run goes on
+    Of a `World` the obstacles are the people, those from sources last, the rows are its steps, and the run continues
     after the arrival of the robot; distances and contacts of a robot are those up to its arrival. In a world of several
     robots, or without any, what is of one robot stands in ``robots``, and asking the run for it raises an
     `AttributeError`.

@@ -69,7 +69,7 @@ class Settings(Parameters):
     wait : bool
         Whether people and robot stand until the first command comes; the clock runs meanwhile, but in lock-step.
     stay : bool
-        Whether the run goes on to its time limit when the robot rests at its goal.
+        Whether the run continues to its time limit when the robot rests at its goal.
 
     Raises
     ------
@@ -338,7 +338,7 @@ class Bridge:
         if not self._answered:
             self._commands.counts["lockstep_timeout"] += 1
             if self._commands.counts["lockstep_timeout"] == 1:
-                self._warn(f"no velocity command came within {_ANSWER:g} s of the wall: the step goes on without")
+                self._warn(f"no velocity command came within {_ANSWER:g} s of the wall: the step continues without")
 
     def _keep_pace(self, time: float) -> None:
         """Publish what is due at an instant, and move with the clock of the wall."""
@@ -367,7 +367,7 @@ class Bridge:
             bus.spin(left)
         if left < -_BEHIND:
             self._late -= left
-            self._begun -= left  # the world goes on from here, slower than it was to
+            self._begun -= left  # the world continues from here, slower than it was to
             self._commands.counts["overrun"] += 1
             if self._commands.counts["overrun"] == 1:
                 self._warn(f"the world cannot keep up with {speed:g} times real time on this machine")

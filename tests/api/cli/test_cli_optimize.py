@@ -295,7 +295,7 @@ def test_minimal_study_without_a_law_searches_without_stabilizing_force(tmp_path
     assert study.search == {"bounds": {}, "constraints": ()}
 
 
-# ---- stopping and going on --------------------------------------------------------------------------
+# ---- stopping and continuing --------------------------------------------------------------------------
 
 # Runs the command and tells on stdout how far the search is, and its best value, not finite at first.
 INTERRUPTED = """

@@ -102,7 +102,7 @@ impl<R: Real> WallContacts<R> {
         }
     }
 
-    /// A lane goes on from where the first lane of another group is.
+    /// A lane continues from where the first lane of another group is.
     pub fn follow(&mut self, lane: usize, leader: &mut Self) {
         for (number, own) in self.numbers().into_iter().zip(leader.numbers()) {
             number.set(lane, own.lane(0));

@@ -20,7 +20,7 @@ __all__ = ["is_dxf", "read_dxf"]
 
 BINARY = b"AutoCAD Binary DXF"
 SAME = 1e-6
-"""A line goes on where another one ends if its start is at most so far away, in m."""
+"""A line continues where another one ends if its start is at most so far away, in m."""
 MOST_BULGE = 1e6
 MOST_STREAMED = 1 << 27
 MOST_EXPANDED = 100_000
@@ -227,7 +227,7 @@ class _Walls:
             self.drawing.skipped[kind] += 1
 
     def line(self, entity: Entity, first: Pair, last: Pair) -> None:
-        """Begin a wall, or let the one before go on along a line that begins where it ended."""
+        """Begin a wall, or let the one before continue along a line that begins where it ended."""
         if first == last:
             self.drawing.skipped["LINE without length"] += 1
             return

@@ -57,7 +57,7 @@ def load_map(
     ======================= ==========================================================================================
     ``map-server``          YAML of the ROS map server with its image, see `StaticMap.from_map_server`
     ``geojson``             lines and rings as walls, only with ``unit="m"``: the standard means degrees
-    ``dxf``                 text DXF; LINE (those that go on where the last one ended are one wall), LWPOLYLINE,
+    ``dxf``                 text DXF; LINE (those that continue where the last one ended are one wall), LWPOLYLINE,
                             POLYLINE with bulges, ARC and CIRCLE as walls, in the unit of $INSUNITS
     ``svg``                 line, polyline, polygon, rect, circle and path as walls, with transforms; the width in mm,
                             cm or m and the viewBox give the scale, else ``meters_per_unit``; the lower left corner of

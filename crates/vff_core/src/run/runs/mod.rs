@@ -182,7 +182,7 @@ impl<W: World, R: Real> LaneState<W, R> {
         }
     }
 
-    /// A lane goes on from where the first lane of another group is, in the same scenario.
+    /// A lane continues from where the first lane of another group is, in the same scenario.
     pub fn follow(&mut self, lane: usize, leader: &mut Self) {
         for (number, own) in self.numbers().into_iter().zip(leader.numbers()) {
             number.set(lane, own.lane(0));
@@ -231,7 +231,7 @@ impl<W: World, R: Real> LaneState<W, R> {
         self.watch_walls(None, R::zero(), lanes);
     }
 
-    /// The runs of some lanes go on from where they are.
+    /// The runs of some lanes continue from where they are.
     pub fn start(&mut self, lanes: R::Mask) {
         self.running = self.running | lanes;
         self.stopped = self.stopped & !lanes;
