@@ -1,4 +1,4 @@
-"""What all parameter classes and functions share: checks of arguments and pickling by value."""
+"""Checks of arguments for parameter classes and functions, and pickling by value."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def number(name: str, value: object) -> float:
 
 
 def refuse_masked(name: str, value: object) -> None:
-    """Refuse masked values: without their mask they would be numbers that somebody has ruled out."""
+    """Refuse masked values: without their mask they would be numbers that were ruled out."""
     # Importing them takes longer than checking all arguments of a program; whoever has one has imported them.
     masked_arrays = sys.modules.get("numpy.ma")
     if masked_arrays is None or not isinstance(value, masked_arrays.MaskedArray):
@@ -298,7 +298,7 @@ def numbers(name: str, value: object, rule: str = "be a number or an array of nu
 
 
 def own(array: npt.NDArray[Scalar]) -> npt.NDArray[Scalar]:
-    """Return a copy that nobody changes: what was checked stays, though the arrays of the user are filled again."""
+    """Return a copy that cannot change: what was checked stays, though the arrays of the user are filled again."""
     kept = np.empty(array.shape, array.dtype)
     if array.nbytes <= COPIED_AT_ONCE:
         kept[...] = array

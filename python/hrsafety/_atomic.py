@@ -110,7 +110,7 @@ def replacing(path: Path, *, durable: bool = False) -> Iterator[BinaryIO]:
         temporary.replace(path)
     except BaseException as error:
         temporary.unlink(missing_ok=True)
-        # A full disk fails a write, which knows no name; the temporary name helps nobody.
+        # A full disk fails a write, which knows no name; the temporary name is no help.
         if isinstance(error, OSError) and error.errno is not None and error.filename in (None, name):
             error.filename = str(path)
         raise

@@ -66,7 +66,7 @@ MOST_DRAWS = 10**6
 MOST_LAYOUTS = 10**7
 # Seeds of repeated runs, of noise in a search, of a calibration study.
 MOST_SEEDS = 10**6
-# Pairs of a robot under a law and somebody whom it may see, in all worlds together: 300 bytes each.
+# Pairs of a robot under a law and a person whom it may see, in all worlds together: 300 bytes each.
 MOST_SIGHTINGS = 10**7
 # Rows of a table of runs: about half a kilobyte each while it is made.
 MOST_TABLE_ROWS = 10**7
@@ -101,7 +101,7 @@ MOST_REFINEMENTS = 60
 MOST_LOCAL_STARTS = 1024
 # Gain sets of a global search.
 MOST_EVALUATIONS = 10**9
-# Values of a gain of which the surroundings are looked at.
+# Values of a gain of which the surroundings are examined.
 MOST_POINTS_OF_AXIS = 10**5
 
 # Rows of a design that are made as one array.

@@ -1,4 +1,4 @@
-"""Warnings that a user gives to what is made of doubtful data, and those that are found when somebody asks."""
+"""Warnings that a user gives to what is made of doubtful data, and those that are found on request."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["LateDoubts", "checked_doubts"]
 
 
 class LateDoubts(Sequence[ResultWarning]):
-    """Warnings that are found when somebody looks at them: those of a large recording take seconds.
+    """Warnings that are found when they are read: those of a large recording take seconds.
 
     Parameters
     ----------

@@ -44,7 +44,7 @@ __all__ = [
 ]
 
 MOST_QUOTED = 80
-"""Longest text that is shown whole and looked at for a number in quotes."""
+"""Longest text that is shown whole and parsed as a number in quotes."""
 
 UNKNOWN_KEY = Shown("an unknown key")
 

@@ -1,4 +1,4 @@
-"""Frozen dataclasses whose methods are generated when somebody uses them.
+"""Frozen dataclasses whose methods are generated when they are first used.
 
 The decorator of the standard library writes and compiles up to six functions for each class. Of the two hundred
 classes of this package a program uses a few; for all of them that was more than half of the time of an import.
@@ -105,7 +105,7 @@ _OPTIONS = {"__init__": "init", "__repr__": "repr", "__eq__": "eq", "__hash__": 
 
 
 class _OnFirstUse:
-    """An attribute of a class that is generated when somebody asks for it."""
+    """An attribute of a class that is generated on first use."""
 
     __slots__ = ("declared", "name")
 

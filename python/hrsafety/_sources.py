@@ -9,12 +9,12 @@ from typing import Any
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 
-__all__ = ["Source"]
+__all__ = ["Provenance"]
 
 
 @displayed
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Source:
+class Provenance:
     """Where something was read from.
 
     Attributes

@@ -212,7 +212,7 @@ class Mean:
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """That the mean is of less than ten runs, or of equal numbers, whose spread nobody has seen."""
+        """Doubt about a mean of fewer than ten runs, or of equal numbers, whose spread was not seen."""
         if type(self.runs) is not int or not self.runs:
             return ()
         if self.runs >= _FEW_RUNS:

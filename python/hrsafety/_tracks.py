@@ -13,7 +13,7 @@ from hrsafety.plausibility import RANGES, ResultWarning
 
 __all__ = [
     "Breaks",
-    "Motion",
+    "FittedMotion",
     "Ways",
     "cutoff",
     "fitted_rows",
@@ -30,7 +30,7 @@ Flags = npt.NDArray[np.bool_]
 SLOWEST_SAMPLING, FASTEST_SAMPLING = 2.0, 1e-3
 """Plausible times between two rows of a person, in s."""
 STANDING = 0.05
-"""Slower than this somebody stands, in m/s."""
+"""Slower than this a person stands, in m/s."""
 MEDIAN_SPEED, HIGH_SPEED = (0.1, 3.0), (0.3, 6.0)
 """Plausible median and 95 % quantile of the speeds of those who do not stand, in m/s."""
 STROLL = 0.7
@@ -42,7 +42,7 @@ MANY_INSTANTS = 10
 MILLISECONDS = 20.0
 """Times so far apart may be milliseconds, of a camera with at most 50 frames a second."""
 ONE_PLACE, NO_MOTION = 0.2, 1e-3
-"""Two people do not stand within the first, and nobody stands as still as the second, in m."""
+"""Two people do not stand within the first, and no person stands as still as the second, in m."""
 FAR = 0.5
 """Whoever gets so far from the first place does not stand, in m."""
 JUMP_SPEED, JUMP_LENGTH, ORDINARY_SPEED = 6.0, 0.5, 3.0
@@ -50,13 +50,13 @@ JUMP_SPEED, JUMP_LENGTH, ORDINARY_SPEED = 6.0, 0.5, 3.0
 SWITCH_RESIDUAL, SWITCH_GAIN = 0.6, 4.0
 """Deviation of two people from constant velocity in m, and how many times smaller it is with exchanged ids."""
 LONG_GAP, GAP_RATIO = 2.0, 10.0
-"""Without a row for longer than the first, in s, and than so many median steps somebody is not seen."""
+"""Without a row for longer than the first, in s, and than so many median steps a person is not seen."""
 NOISE_ACCELERATION = 3.0
 """Noise of accelerations per axis that is more than people do, in m/s^2."""
 LEAST_THIRDS = 10
 """Third differences from which a noise is estimated."""
 MOST_THIRDS = 400_000
-"""Of more rows every second, third, ... one is looked at."""
+"""Of more rows every second, third, ... one is examined."""
 MOST_PAIRS = 1_000_000
 """Pairs of people of an instant that are compared at once."""
 HINTS = {"m": (1.0, "meters"), "cm": (0.01, "centimeters"), "mm": (0.001, "millimeters")}
@@ -89,7 +89,7 @@ class Breaks(NamedTuple):
     exchanged : ndarray of bool
         Steps over which ids were exchanged.
     jumps, back : ndarray of bool
-        Steps to places that nobody can have got to, and those back from a single wrong one.
+        Steps to places that no person can have reached, and those back from a single wrong one.
     """
 
     gaps: Flags
@@ -143,7 +143,7 @@ class Ways(NamedTuple):
         return found
 
     def gaps(self, periods: Array) -> Flags:
-        """Return which steps are so long that nobody knows where somebody was, (n - 1,)."""
+        """Return which steps are so long that the position in between is unknown, (n - 1,)."""
         with np.errstate(invalid="ignore"):
             found: Flags = self.same & (np.diff(self.time) > np.maximum(LONG_GAP, GAP_RATIO * periods[1:]))
         return found
@@ -274,7 +274,7 @@ class Ways(NamedTuple):
         return float(np.ptp(self.time)) >= MANY_INSTANTS or len(np.unique(self.time)) >= MANY_INSTANTS
 
     def _farthest(self) -> float:
-        """Return how far somebody gets from the first place, in m."""
+        """Return how far a person gets from the first place, in m."""
         first = np.concatenate([[True], ~self.same])
         start = self.position[np.flatnonzero(first)[np.cumsum(first) - 1]]
         return float(np.hypot(*(self.position - start).T).max())
@@ -288,7 +288,7 @@ class Ways(NamedTuple):
         return found
 
     def _jumps(self, exchanged: Flags, lengths: Array, speeds: Array) -> tuple[Flags, Flags]:
-        """Return the steps to places that nobody can have got to, and those back from a single wrong one, (n - 1,)."""
+        """Return the steps to places out of reach, and those back from a single wrong one, (n - 1,)."""
         fast = self.same & (speeds > JUMP_SPEED) & (lengths > JUMP_LENGTH) & ~exchanged
         if not fast.any():
             return fast, fast.copy()
@@ -446,7 +446,7 @@ def smoothed_ways(ways: Ways, window: float, cuts: Flags) -> Array:
     return motion_of_ways(ways, window, cuts).position
 
 
-class Motion(NamedTuple):
+class FittedMotion(NamedTuple):
     """Local quadratic fits of ways, row by row.
 
     Attributes
@@ -464,7 +464,7 @@ class Motion(NamedTuple):
     whole: Flags
 
 
-def motion_of_ways(ways: Ways, window: float, cuts: Flags) -> Motion:
+def motion_of_ways(ways: Ways, window: float, cuts: Flags) -> FittedMotion:
     """Return positions, velocities and accelerations of local quadratic fits; see `smoothed_ways`."""
     place = ways.position.copy()
     velocity, acceleration = np.full_like(place, np.nan), np.full_like(place, np.nan)
@@ -479,7 +479,7 @@ def motion_of_ways(ways: Ways, window: float, cuts: Flags) -> Motion:
             whole[some] = (time - time[0] >= half) & (time[-1] - time >= half)
         elif end - begin > 1:
             velocity[some] = np.gradient(ways.position[some], time, axis=0)
-    return Motion(place, velocity, acceleration, whole)
+    return FittedMotion(place, velocity, acceleration, whole)
 
 
 def _fitted(time: Array, position: Array, window: float) -> Array:

@@ -91,7 +91,7 @@ def test_spring_peaks_at_its_scale(safe_distance: float, reference: float) -> No
 
 def corners(shape: Any) -> np.ndarray:
     """Return the corners of a shape, a disc as a polygon."""
-    if isinstance(shape, reactive.Disc):
+    if isinstance(shape, reactive.Cylinder):
         turn = np.linspace(0.0, 2.0 * np.pi, CORNERS, endpoint=False)
         return np.asarray(shape.center) + shape.radius * np.column_stack([np.cos(turn), np.sin(turn)])
     if isinstance(shape, reactive.Wall):
@@ -124,7 +124,7 @@ def inside(shape: Any, point: np.ndarray, margin: float) -> bool:
         along = np.subtract(shape.end, shape.start)
         share = np.clip((point - shape.start) @ along / (along @ along), 0.0, 1.0)
         return bool(np.linalg.norm(point - shape.start - share * along) < margin)
-    if isinstance(shape, reactive.Disc):
+    if isinstance(shape, reactive.Cylinder):
         return bool(np.linalg.norm(point - shape.center) < shape.radius + margin)
     c, s = math.cos(shape.angle), math.sin(shape.angle)
     own = np.array([[c, s], [-s, c]]) @ (point - shape.center)
@@ -139,7 +139,7 @@ boxes = st.builds(
     positive,
     numbers,
 )
-discs = st.builds(lambda x, y, r: reactive.Disc(center=(x, y), radius=r), numbers, numbers, positive)
+discs = st.builds(lambda x, y, r: reactive.Cylinder(center=(x, y), radius=r), numbers, numbers, positive)
 walls = st.builds(
     lambda a, b, c, d: reactive.Wall(start=(a, b), end=(c, d)), numbers, numbers, numbers, numbers
 ).filter(lambda wall: math.dist(wall.start, wall.end) > 0.05)

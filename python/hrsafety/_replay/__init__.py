@@ -1,4 +1,4 @@
-"""What happened among robots and people, as a player: one HTML file that needs nothing else.
+"""Player of recorded motion among robots and people: one HTML file that needs nothing else.
 
 Results say what they show as a `Replay`; this package knows none of them.
 """
@@ -13,7 +13,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety._replay.record import (
         Decisions as Decisions,
         Event as Event,
-        NotJudged as NotJudged,
+        UnjudgedTime as UnjudgedTime,
         PlayedRobot as PlayedRobot,
         Replay as Replay,
     )

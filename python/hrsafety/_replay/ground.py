@@ -1,4 +1,4 @@
-"""What stands, and what nobody has seen, for a player."""
+"""Standing obstacles and unseen floor for a player."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a player shows as an MCAP file, with the standard schemas that viewers of robot logs know."""
+"""Replays as MCAP files, with the standard schemas that viewers of robot logs know."""
 
 from __future__ import annotations
 
@@ -206,7 +206,7 @@ class _Log:
             self.event(each)
 
     def name(self, person: int) -> str:
-        """Return what somebody is called."""
+        """Return what a person is called."""
         return self.replay.names[person] if self.replay.names else f"person {person}"
 
     def gone(self, time: float, name: str) -> Any:
@@ -215,7 +215,7 @@ class _Log:
         return self.kinds.SceneEntityDeletion(timestamp=self.stamp(time), type=kind, id=name)
 
     def person(self, time: float, index: int, place: Any) -> Any:
-        """Return somebody as an entity by name."""
+        """Return a person as an entity by name."""
         box = (self.replay.boxes or {}).get(index)
         named = [self.kinds.KeyValuePair(key="kind", value=self.replay.kinds[index] if self.replay.kinds else "person")]
         name = self.name(index)
@@ -307,7 +307,7 @@ class _Log:
         self.on["events"].log(message, log_time=self.nanoseconds(event.time))
 
     def ground(self, time: float) -> None:
-        """Write what stands, and what nobody has seen."""
+        """Write what stands, and unobserved floor."""
         lines: list[Any] = []
         cylinders: list[Any] = []
         wall = self.color(WALL)

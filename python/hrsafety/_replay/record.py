@@ -1,4 +1,4 @@
-"""What a player shows: who was where, what a shield said, what touched, what nobody judged."""
+"""Data of a player: tracks, verdicts of a shield, contacts, times that were not judged."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["VERDICTS", "Decisions", "Event", "NotJudged", "PlayedRobot", "Replay", "Scanner"]
+__all__ = ["VERDICTS", "Decisions", "Event", "PlayedLidar", "PlayedRobot", "Replay", "UnjudgedTime"]
 
 Array = npt.NDArray[np.float64]
 
@@ -41,7 +41,7 @@ class Event(NamedTuple):
     place: tuple[float, float] | None = None
 
 
-class NotJudged(NamedTuple):
+class UnjudgedTime(NamedTuple):
     """A time over which nothing was judged.
 
     Parameters
@@ -59,7 +59,7 @@ class NotJudged(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Decisions:
-    """What the parts around a law decided, d decisions.
+    """Decisions of the parts around a law, d of them.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ class Decisions:
     reach: Array | None = None
 
 
-class Scanner(NamedTuple):
+class PlayedLidar(NamedTuple):
     """A lidar in the middle of a robot.
 
     Parameters
@@ -110,7 +110,7 @@ class PlayedRobot:
     name : str
         What it is called.
     position : ndarray, shape (n, 2)
-        In m; NaN while nobody knows.
+        In m; NaN while unknown.
     radius : float
         Of the disc that it is, or that holds its footprint, in m.
     heading : ndarray of shape (n,), or None
@@ -127,7 +127,7 @@ class PlayedRobot:
         How near to the goal it has arrived, in m.
     decisions : Decisions or None
         What the parts around its law decided.
-    scan : Scanner or None
+    scan : PlayedLidar or None
         Its lidar.
     """
 
@@ -141,12 +141,12 @@ class PlayedRobot:
     goal: tuple[float, float] | None = None
     tolerance: float = 0.0
     decisions: Decisions | None = None
-    scan: Scanner | None = None
+    scan: PlayedLidar | None = None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Replay:
-    """What happened over n instants among robots and m people.
+    """Recorded motion of robots and m people over n instants.
 
     Parameters
     ----------
@@ -157,7 +157,7 @@ class Replay:
     robots : sequence of PlayedRobot
         The robots.
     people : ndarray of shape (n, m, 2), or None
-        Positions in m, NaN while absent; ``None`` for nobody.
+        Positions in m, NaN while absent; ``None`` without people.
     radius : ndarray of shape (m,), or None
         Of the people in m.
     names : sequence of str
@@ -167,10 +167,10 @@ class Replay:
     boxes : mapping of int to (float, float, float)
         Length, width and heading, in m and rad, of those of the people who are rectangles.
     maps : sequence of StaticMap
-        What stands, with what nobody has seen.
+        What stands, with unobserved floor.
     events : sequence of Event
         What happened.
-    not_judged : sequence of NotJudged
+    not_judged : sequence of UnjudgedTime
         What was not judged, and why.
     facts : sequence of (str, str)
         What else to say, by name.
@@ -195,7 +195,7 @@ class Replay:
     boxes: Mapping[int, tuple[float, float, float]] | None = None
     maps: Sequence[Any] = ()
     events: Sequence[Event] = ()
-    not_judged: Sequence[NotJudged] = ()
+    not_judged: Sequence[UnjudgedTime] = ()
     facts: Sequence[tuple[str, str]] = ()
     warnings: Sequence[ResultWarning] = ()
 

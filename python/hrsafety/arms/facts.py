@@ -1,4 +1,4 @@
-"""What is known of an arm without a pose."""
+"""Facts about an arm that need no pose."""
 
 from __future__ import annotations
 

@@ -36,9 +36,9 @@ SAME = 4
 ROD = 0.3
 """Radius of gyration of a rod as long as an arm reaches, as a share of that: no link has a larger one."""
 WHEELS = ("wheel", "caster", "castor")
-"""What links of bases that roll are called, also where their joints are locked, steered or on springs."""
+"""Names of links of rolling bases, also where their joints are locked, steered or on springs."""
 NOTHING = 1e-4
-"""Share of the moving mass that nobody misses."""
+"""Negligible share of the moving mass."""
 _NAMES = 4
 
 
@@ -117,7 +117,7 @@ def _counted(facts: Mapping[str, Any], mass: Array) -> npt.NDArray[np.bool_]:
 
 
 def _placeholders(facts: Mapping[str, Any], names: Array, mass: Array) -> Iterator[ResultWarning]:
-    """Return signs of inertials that somebody only filled in."""
+    """Return signs of inertials that were only filled in."""
     counted = np.flatnonzero(_counted(facts, mass))
     moments = np.asarray(facts["link_moments"])
     signs: list[tuple[Any, str]] = []

@@ -1,4 +1,4 @@
-"""What is compared: a law and the parts around it, in a word such as ``field+shield+yielding``."""
+"""Entries of a comparison: a law and the parts around it, in a word such as ``field+shield+yielding``."""
 
 from __future__ import annotations
 

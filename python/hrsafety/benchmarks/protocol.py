@@ -1,4 +1,4 @@
-"""What a suite is, and what it is run in."""
+"""Suites of episodes, and the cases that they hold."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ __all__ = ["Case", "Suite", "rows_of"]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Case:
-    """What an entry is run in.
+    """Episode that an entry is run in.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ LAWS = ("field", "field+shield", "orca", "orca+shield", "velocity_obstacle", "ve
 STEP_ERROR = Motion(nav.HolonomicRobot(), 0.05, 0.05).execution_error
 """How far robots are off the motion that a shield plans, with motion steps of 0.05 s, in m: its margin here."""
 CIRCLE_ERROR = Motion(nav.HolonomicRobot(radius=0.3, max_speed=1.0), 0.25, 0.25).execution_error
-"""The same with the steps of 0.25 s of the circle crossing: no margin would leave the robot room."""
+"""Execution error with the steps of 0.25 s of the circle crossing: no margin would leave the robot room."""
 CASES = 500
 """Cases of CrowdNav."""
 MOST = 1_000_000

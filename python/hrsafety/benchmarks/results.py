@@ -43,10 +43,10 @@ class Row:
     between : int
         How many of the people touched the robot on straight lines between two instants only.
     lost : int
-        1 where somebody who was recorded may have been touched while nobody saw the person, or where the robot arrived
+        1 where a person who was recorded may have been touched while not seen, or where the robot arrived
         after the end of the recording; see `Recording.lost_near`.
     clearance : float
-        Least distance of the surfaces in m; of the adversary suite while the robot moved toward somebody.
+        Least distance of the surfaces in m; of the adversary suite while the robot moved toward a person.
     score : float
         Of BARN and DynaBARN: ``success OT / clip(AT, 2 OT, 8 OT)``, at best 0.5; NaN elsewhere.
     """

@@ -206,7 +206,7 @@ def _between(kind: Suite, rows: Mapping[str, Sequence[Row]]) -> Iterator[ResultW
 
 
 def _lost(rows: Mapping[str, Sequence[Row]]) -> Iterator[ResultWarning]:
-    """Tell where somebody may have been touched whom nobody saw."""
+    """Tell where a person may have been touched who was not seen."""
     counts = {name: sum(row.lost > 0 for row in found) for name, found in rows.items()}
     told = ", ".join(f"{name} {count} of {len(rows[name])}" for name, count in counts.items() if count)
     if told:

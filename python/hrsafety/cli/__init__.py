@@ -175,4 +175,4 @@ _COMMANDS: dict[str, str | Callable[[argparse.Namespace], None]] = {
     "zones": "zones:run_zones",
     "info": "info:print_info",
 }
-"""What each command calls: a function, or where one stands that is loaded only then."""
+"""Function of each command, or its place where it is loaded only then."""

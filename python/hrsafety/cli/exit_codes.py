@@ -23,4 +23,4 @@ MEANINGS = {
     "but one may have; everything was written",
     INTERRUPTED: "stopped by Ctrl-C",
 }
-"""What each code means, as ``hrsafety --help`` prints it."""
+"""Meaning of each code, as ``hrsafety --help`` prints it."""

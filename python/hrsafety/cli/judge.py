@@ -117,7 +117,7 @@ def _offsets(given: Sequence[str] | None) -> dict[str, float] | None:
 
 
 def _map(path: str) -> nav.StaticMap:
-    """Return the walls of a map; the robot touches nothing where nobody knows what is there."""
+    """Return the walls of a map; the robot touches nothing where the map is unknown."""
     try:
         return io.load_map(path, unknown="free")
     except InvalidParameterError as error:

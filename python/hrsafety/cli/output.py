@@ -1,4 +1,4 @@
-"""What the commands print and write: aligned tables, CSV, pictures."""
+"""Output of the commands: aligned tables, CSV, pictures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the command line understands: commands, options and their help."""
+"""Parsers of the command line: commands, options and their help."""
 
 from __future__ import annotations
 

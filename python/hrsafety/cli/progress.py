@@ -13,7 +13,7 @@ from hrsafety.cli.terminal import can_draw, console
 __all__ = ["Report", "live"]
 
 Report = Callable[[str, int, int, float | None], object]
-"""What long work calls: stage, work done, work in all, best value so far if anything is searched."""
+"""Progress callback of long work: stage, work done, work in all, best value so far if anything is searched."""
 
 SECONDS_BETWEEN_LINES = 2.0
 SECONDS_BETWEEN_FRAMES = 0.1

@@ -18,7 +18,7 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.io import read_nav2
 from hrsafety.ros.bridge import Bridge, Settings
 from hrsafety.ros.rcl import connected, stamps_by_default
-from hrsafety.ros.record import Record
+from hrsafety.ros.record import BusRecord
 from hrsafety.ros.score import report_of
 
 if TYPE_CHECKING:
@@ -127,7 +127,7 @@ def _settings(options: argparse.Namespace) -> Settings:
     )
 
 
-def _report(record: Record, settings: Settings, options: argparse.Namespace) -> None:
+def _report(record: BusRecord, settings: Settings, options: argparse.Namespace) -> None:
     """Print and write the score of a run, and leave with the code that the options ask for."""
     report = report_of(record, settings, options.world)
     print(terminal.told(report))
@@ -156,7 +156,7 @@ def _report(record: Record, settings: Settings, options: argparse.Namespace) -> 
     verdict.end(report.said, counts, report.warnings, options, 1)
 
 
-def _draw(record: Record) -> Iterator[tuple[str, Figure, str]]:
+def _draw(record: BusRecord) -> Iterator[tuple[str, Figure, str]]:
     from hrsafety import plotting
 
     for index, leg in enumerate(record.legs):

@@ -34,7 +34,7 @@ OWN = MappingProxyType(
         "pressure_limit": "pressure",
     }
 )
-"""What a limit object knows of the numbers of a contact."""
+"""Numbers of a contact that a limit object knows."""
 _EQUAL = 1e-9
 """Relative difference up to which two numbers are the same."""
 

@@ -31,7 +31,7 @@ _NO_LIMITS: Mapping[str, None] = MappingProxyType({"force": None, "pressure": No
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Support:
-    """What holds a robot or a body in its place: a spring and a damper, of a robot's drive also its stop.
+    """Support that holds a robot or a body in its place: a spring and a damper, of a robot's drive also its stop.
 
     Parameters
     ----------
@@ -202,7 +202,7 @@ class Contact:
             object such as `standards.ContactLimit`, which also knows spring, mass and class of its region. ``None``:
             those of the body.
         human_speed : float
-            Speed of the person towards the robot in m/s, not negative: nobody has to keep walking away.
+            Speed of the person towards the robot in m/s, not negative: no person has to keep walking away.
         horizon : float
             Time in s after which a simulated collision is left alone.
         tolerance : float

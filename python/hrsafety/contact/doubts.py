@@ -65,7 +65,7 @@ _WITHOUT_DRIVE = ResultWarning(
 _LINEAR_STRAIN = 0.5
 """Strain beyond which hardly any foam is linear, a choice of this project."""
 _UNTOLD_STRAIN = 0.8
-"""Strain of bottoming that nobody has stated: the default, and beyond."""
+"""Strain of bottoming that was not stated: the default, and beyond."""
 CAREFUL_ABOVE = frozenset({"robot_mass", "body_mass", "stiffness"})
 CAREFUL_BELOW = frozenset({"force_limit", "pressure_limit"})
 """Numbers of which more, or less, than was meant certainly makes an allowed speed lower or a load larger."""

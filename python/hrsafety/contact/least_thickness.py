@@ -25,7 +25,7 @@ class LeastThickness:
     Attributes
     ----------
     thickness : float or None
-        In m; ``None`` if not even 1 m suffices. Coverings of 0.1 mm and more are looked at: 0 where one of 0.1 mm is
+        In m; ``None`` if not even 1 m suffices. Coverings of 0.1 mm and more are examined: 0 where one of 0.1 mm is
         enough, also where a contact without any is not, see ``warnings``.
     status : {"found", "bare_is_enough", "none_up_to_1_m"}
         What was found: bare is enough where a covering of 0.1 mm keeps the limits; where a contact without any does

@@ -39,11 +39,11 @@ LOWEST = MappingProxyType({"thigh_knee": KNEE_HEIGHT})
 
 
 FASTEST, SETTLING, LATEST = 20.0, 1.0, 60.0
-"""Of a contact with a drive: fastest closing speed in m/s that is looked at, time in s after the base stands in which
-loads may still rise, and time in s up to which they are looked at."""
+"""Of a contact with a drive: fastest closing speed in m/s that is examined, time in s after the base stands in which
+loads may still rise, and time in s up to which they are examined."""
 
 _READ = ("region", "contact", "permitted", "force", "pressure", "spring_constant", "body_mass")
-"""What is read of a limit of contact."""
+"""Attributes that are read of a limit of contact."""
 _OF_RUN = ("time", "position", "velocity", "heading", "obstacle_position")
 
 
@@ -201,7 +201,7 @@ def _region_speed(
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class ContactMargins(Table):
-    """What a contact at each instant of a run would mean: n instants, m obstacles.
+    """Margins of a contact at each instant of a run: n instants, m obstacles.
 
     Attributes
     ----------

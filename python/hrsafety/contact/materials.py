@@ -17,7 +17,7 @@ __all__ = ["Avalle", "GibsonAshby", "Linear", "Material", "Rusch", "StressTable"
 
 
 class _Law:
-    """What all laws share: a word, and their numbers in the order of the core."""
+    """Base of the material laws: a word, and their numbers in the order of the core."""
 
     __slots__ = ()
     law: ClassVar[str]
@@ -178,7 +178,7 @@ class StressTable(_Law):
     stress: npt.ArrayLike
 
     def __post_init__(self) -> None:
-        """Take the points as arrays that nobody changes."""
+        """Take the points as arrays that cannot change."""
         for name in ("strain", "stress"):
             points: Array = np.array(vector(f"material.{name}", getattr(self, name)))
             if not np.isfinite(points).all():

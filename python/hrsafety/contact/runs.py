@@ -18,7 +18,7 @@ WINDOW = 0.5
 WAY = 0.1
 """Difference in m between both ways that counts: noise, and steps between instants."""
 SHARE = 0.5
-"""The same as a share of the longer one of both ways."""
+"""Largest difference as a share of the longer one of both ways."""
 TURNS = 6.0 * np.pi
 """Headings beyond three turns are hardly radians."""
 
@@ -74,7 +74,7 @@ def doubts_of_run(run: Any) -> Iterator[ResultWarning]:
 
 
 def gaps_of(distance: Array) -> npt.NDArray[np.bool_]:
-    """Return where somebody is not seen between two sights.
+    """Return where a person is not seen between two sights.
 
     Parameters
     ----------

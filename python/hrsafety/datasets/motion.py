@@ -32,7 +32,7 @@ class RecordedMotion(NamedTuple):
     Attributes
     ----------
     velocity : ndarray, shape (n, 2)
-        In m/s, NaN for somebody with one row.
+        In m/s, NaN for a person with one row.
     acceleration : ndarray, shape (n, 2)
         In m/s^2, NaN where there are no fits.
     velocity_from : {"stored", "fit", "differences"}

@@ -15,7 +15,7 @@ from hrsafety._doubts import checked_doubts
 from hrsafety._records import dataclass
 from hrsafety._replay.played import Played
 from hrsafety._replay.record import Replay
-from hrsafety._sources import Source
+from hrsafety._sources import Provenance
 from hrsafety._tracks import WINDOW, Breaks, Ways, smoothed_ways
 from hrsafety.datasets.flow import Flow, flow_of
 from hrsafety.datasets.motion import RecordedMotion, motion_of
@@ -65,7 +65,7 @@ class Recording(Played):
         Who says so.
     time_origin : float
         Time of the file at ``time_s = 0``, in s.
-    source : Source or None
+    source : Provenance or None
         File that the recording was read from.
     details : mapping of str to object
         What else was found in the file: counts of rows that were left out, scenes, units.
@@ -97,7 +97,7 @@ class Recording(Played):
     frame_rate: float | None = None
     frame_rate_from: str | None = None
     time_origin: float = 0.0
-    source: Source | None = None
+    source: Provenance | None = None
     details: Mapping[str, Any] = field(default_factory=dict)
     notes: tuple[ResultWarning, ...] = ()
     _order: npt.NDArray[np.intp] = field(init=False, repr=False)
@@ -163,9 +163,9 @@ class Recording(Played):
         ``implausible``: a median time between the rows of a person above 2 s or below 1 ms, or speeds (above 0.05 m/s)
         with a median outside 0.1 to 3 m/s or a 95 % quantile outside 0.3 to 6 m/s; whole numbers as times and people
         slower than 0.7 m/s. ``teleport``: a step faster than 6 m/s and longer than 0.5 m among slow ones.
-        ``identity_switch``: two people continue where the other one was. ``gap_in_track``: no row for longer than 2 s and
-        10 median steps. ``noisy_positions``: noise of differences beyond 3 m/s^2 and a quarter of a step.
-        ``single_row``: somebody has one row only. ``broken_tracks``: more than half of the ways
+        ``identity_switch``: two people continue where the other one was. ``gap_in_track``: no row for longer than 2 s
+        and 10 median steps. ``noisy_positions``: noise of differences beyond 3 m/s^2 and a quarter of a step.
+        ``single_row``: a person has one row only. ``broken_tracks``: more than half of the ways
         that end continue under another id within 1 s.
 
         Examples
@@ -274,7 +274,7 @@ class Recording(Played):
 
     @property
     def sampling_period(self) -> float:
-        """Median time between two rows of a person in s; NaN if nobody has two."""
+        """Median time between two rows of a person in s; NaN if no person has two."""
         steps = np.diff(self._ways().time)[self._ways().same]
         return float(np.median(steps)) if len(steps) else float("nan")
 
@@ -296,7 +296,7 @@ class Recording(Played):
 
     @property
     def teleports(self) -> list[tuple[Any, float, float]]:
-        """Steps to places that nobody can have got to: id, last instant before and first one after it in s."""
+        """Steps to places that no person can have reached: id, last instant before and first one after it in s."""
         return self._steps_of(self._breaks().jumps)
 
     @property
@@ -367,7 +367,7 @@ class Recording(Played):
         Raises
         ------
         InvalidParameterError
-            If nobody has this id.
+            If no person has this id.
         """
         fits = isinstance(person, str if self._ids.dtype.kind == "U" else int | np.integer)
         index = int(np.searchsorted(self._ids, person)) if fits else len(self._ids)
@@ -501,7 +501,7 @@ class Recording(Played):
     def lost_near(
         self, run: nav.Trajectory, *, start_time: float, person_radius: float = 0.4
     ) -> tuple[ResultWarning, ...]:
-        """Return doubts about people whom a robot may have touched while nobody saw them.
+        """Return doubts about people whom a robot may have touched while they were not seen.
 
         Before the first and after the last row a person is absent. Who vanishes in the middle of the scene may still be
         there: within 1.6 m/s of the last place for 2 s, and likewise before the first one.
@@ -527,7 +527,7 @@ class Recording(Played):
 
         Examples
         --------
-        Somebody vanishes 1 m beside the robot:
+        A person vanishes 1 m beside the robot:
 
         >>> from hrsafety import navigation as nav
         >>> from hrsafety.datasets import Recording
@@ -561,7 +561,7 @@ class Recording(Played):
         Raises
         ------
         InvalidParameterError
-            If nobody moves.
+            If no person moves.
 
         Examples
         --------

@@ -1,4 +1,4 @@
-"""What a player shows of recorded people."""
+"""Replays of recorded people."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array
-from hrsafety._replay.record import NotJudged, Replay
+from hrsafety._replay.record import Replay, UnjudgedTime
 
 __all__ = ["replay_of_people"]
 
@@ -66,11 +66,11 @@ def _known(asked: Array, instants: Array) -> npt.NDArray[np.bool_]:
     return found
 
 
-def _silent(people: Any) -> list[NotJudged]:
-    """Return when nobody is recorded for long: no row is no empty floor."""
+def _silent(people: Any) -> list[UnjudgedTime]:
+    """Return when no person is recorded for long: no row is no empty floor."""
     time = np.unique(people.time_s)
     steps = np.diff(time)
     if not len(steps):
         return []
     long = np.flatnonzero(steps > max(LONGEST_GAP, GAP_PERIODS * float(np.median(steps))))
-    return [NotJudged(float(time[row]), float(time[row + 1]), "nobody is recorded") for row in long.tolist()]
+    return [UnjudgedTime(float(time[row]), float(time[row + 1]), "nobody is recorded") for row in long.tolist()]

@@ -17,9 +17,9 @@ Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
 LOST = 2.0
-"""Before the first and after the last row of somebody the person may still be there for this long, in s."""
+"""Before the first and after the last row of a person the person may still be there for this long, in s."""
 REACH = 1.6
-"""Greatest speed of people while nobody sees them, in m/s."""
+"""Greatest speed of people while they are not seen, in m/s."""
 SOON, MANY_PERIODS = 1.0, 3.0
 """A way continues under another id within so many seconds, or median steps."""
 NEAR, ALIKE = 0.6, 1.0
@@ -108,7 +108,7 @@ def track_ends(ways: Ways) -> TrackEnds:
 def ends_doubts(ends: TrackEnds, named: Callable[[int], str], *, units: bool) -> tuple[ResultWarning, ...]:
     """Return doubts about ids that change on the way: people with one row, and ways that continue under another id.
 
-    ``units``: whether positions are in m and times in s, without which nobody knows who continues as whom.
+    ``units``: whether positions are in m and times in s, without which continued tracks cannot be recognized.
     """
     people = len(ends.begin)
     single = np.flatnonzero(ends.begin == ends.end)
@@ -137,9 +137,9 @@ def ends_doubts(ends: TrackEnds, named: Callable[[int], str], *, units: bool) ->
 def lost_doubts(
     ends: TrackEnds, named: Callable[[int], str], run: Moved, *, start_time: float, touch: Array | float, arrived: bool
 ) -> tuple[ResultWarning, ...]:
-    """Return doubts about people who may have been touched while nobody saw them, and about what came after the end.
+    """Return doubts about people who may have been touched while they were not seen, and about what came after the end.
 
-    Somebody is within ``1.6 m/s |t - t_k|`` of the first or last place that is known for 2 s before or after it, of
+    A person is within ``1.6 m/s |t - t_k|`` of the first or last place that is known for 2 s before or after it, of
     both where the way continues under another id.
 
     Parameters
@@ -192,13 +192,13 @@ def lost_doubts(
 
 
 def _away(time: Array, own: Array, when: float, place: Array) -> Array:
-    """Return how near somebody may be who was at a place at an instant, in m."""
+    """Return how near a person may be who was at a place at an instant, in m."""
     found: Array = np.hypot(*(own - place).T) - REACH * np.abs(time - when)
     return found
 
 
 def _keep(least: dict[int, tuple[float, float]], who: int, time: Array, gap: Array) -> None:
-    """Note when somebody may have been touched deepest."""
+    """Note when a person may have been touched deepest."""
     if len(gap) and float(gap.min()) < 0.0:
         row = int(np.argmin(gap))
         if who not in least or gap[row] < least[who][1]:

@@ -31,7 +31,7 @@ Action = npt.NDArray[np.float32]
 
 
 class _Told:
-    """What drives a robot in the worlds of the others: what its learner says, rest once its episode has ended."""
+    """Law of a robot in the worlds of the others: the action of its learner, rest once its episode has ended."""
 
     def __init__(self, robot: Robot, action: str, turn: float, acceleration: float) -> None:
         self.kind, self.fastest = action, robot.body.max_speed

@@ -1,4 +1,4 @@
-"""What Gymnasium knows by name."""
+"""Environments that Gymnasium knows by name."""
 
 from __future__ import annotations
 

@@ -68,7 +68,7 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
     -----
     An observation holds, of the robot: position of the goal from it, velocity, greatest speed, share of the time
     limit; of each person: position and velocity relative to the robot, distance of the surfaces; zeros where
-    there is nobody. Vectors are clipped to 100.
+    there is no person. Vectors are clipped to 100.
 
     The reward is that of CrowdNav: 1 for arrival, -0.25 for a contact, else -0.5 times what the least distance to
     the people within the step lacks to 0.2 m, times the step.
@@ -136,7 +136,7 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
         reward : float
             The reward.
         terminated, truncated : bool
-            Whether the robot has arrived or touched somebody; whether the time is over.
+            Whether the robot has arrived or touched a person; whether the time is over.
         info : dict
             ``outcome``, ``clearance`` in m, ``wall_rescues``: how often in the episode people were set back at a wall
             that their model would have led them through, and ``metrics`` at the end.

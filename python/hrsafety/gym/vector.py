@@ -166,7 +166,7 @@ class CrowdVectorEnv(gymnasium.vector.VectorEnv[Any, npt.NDArray[np.float32], np
         rewards : ndarray, shape (n,)
             The rewards.
         terminated, truncated : ndarray of bool, shape (n,)
-            Whether a robot has arrived or touched somebody; whether its time is over.
+            Whether a robot has arrived or touched a person; whether its time is over.
         infos : dict
             ``outcome``, ``clearance`` in m, ``wall_rescues`` of the episode, ``metrics`` of those that have ended.
         """

@@ -49,7 +49,7 @@ class FoamBoundary:
         The status of each.
     holds_below, holds_above : ndarray of bool
         Whether the limits are kept at the softest (1 N/m) and the stiffest (10 MN/m) foam that
-        was looked at.
+        was examined.
     warnings : tuple of ResultWarning
         Numbers that are hardly what was meant: of the manipulator, the head and the speed.
     """

@@ -272,7 +272,7 @@ class FoamDesign:
         Parameters
         ----------
         damping : array_like
-            C_c that are looked at, in N s/m.
+            C_c that are examined, in N s/m.
         margin : float
             Share of every limit, and of the linear range, that has to be left.
 

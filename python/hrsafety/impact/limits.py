@@ -1,4 +1,4 @@
-"""What a foam covering has to keep, and how far a foam is from it."""
+"""Limits that a foam covering has to keep, and how far a foam is from them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = ["FoamFeasibility", "FoamLimits", "FoamMargin"]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FoamLimits(Parameters):
-    """What a foam covering has to keep; ``None`` is no limit.
+    """Limits that a foam covering has to keep; ``None`` is no limit.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class FoamLimits(Parameters):
         -------
         str
             ``"exceeds"`` if a limit is exceeded; ``"within_limits"`` only if every limit is kept, the impact ended
-            within what was looked at, the foam stayed in its linear range, and no doubt about loads or limits may err
+            within what was examined, the foam stayed in its linear range, and no doubt about loads or limits may err
             on the unsafe side; else ``"not_checked"``.
 
         Raises
@@ -126,7 +126,7 @@ class _Shares(NamedTuple):
 
 @displayed
 class FoamMargin(_Shares):
-    """What is left of each limit, as a share of it; negative if it is exceeded, NaN without a limit.
+    """Margin to each limit, as a share of it; negative if it is exceeded, NaN without a limit.
 
     Attributes
     ----------

@@ -35,7 +35,7 @@ LINEAR_SHARE = 0.8
 
 
 class _Part(Parameters):
-    """A part of an impact: its numbers are looked at when it is made, so that results only pass the doubts on."""
+    """A part of an impact: its numbers are examined when it is made, so that results only pass the doubts on."""
 
     __slots__ = ()
 
@@ -413,7 +413,7 @@ class Foam(_Part):
 
 
 def default_linear_range(thickness: float) -> float:
-    """Return the compression up to which foam of a thickness is linear when nobody says."""
+    """Return the compression up to which foam of a thickness is linear when none is given."""
     return min(LINEAR_RANGE, LINEAR_SHARE * thickness)
 
 

@@ -16,6 +16,6 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.io.places.scenes import load_scene as load_scene
     from hrsafety.io.people.tracks import load_track as load_track
     from hrsafety.io.people.writers import write_people as write_people
-    from hrsafety.io.reader import Source as Source
+    from hrsafety.io.reader import Provenance as Provenance
 else:
     __all__, __getattr__, __dir__ = names_of(__name__)

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from hrsafety.errors import FileError, Shown
 from hrsafety.io.reader import Document
 
-__all__ = ["MOST_ROWS", "Cell", "Columns", "read_columns", "short"]
+__all__ = ["MOST_ROWS", "Columns", "TableColumn", "read_columns", "short"]
 
 Array = npt.NDArray[np.float64]
 Bytes = npt.NDArray[np.uint8]
@@ -22,7 +22,7 @@ Places = npt.NDArray[np.int64]
 MOST_ROWS = 30_000_000
 """Rows of a table."""
 PART = 2**20
-"""Bytes that are looked at together: they stay in the cache of the processor."""
+"""Bytes that are examined together: they stay in the cache of the processor."""
 LONGEST_WORD = 200
 """Longest name in letters."""
 LONGEST_ABSENT = 4
@@ -40,7 +40,7 @@ def short(text: str) -> str:
     return text if len(text) <= 40 else f"{text[:37]}..."
 
 
-class Cell(NamedTuple):
+class TableColumn(NamedTuple):
     """Column of a table.
 
     Attributes
@@ -83,9 +83,9 @@ def read_columns(
     document: Document,
     *,
     delimiter: str,
-    numbers: Sequence[Cell],
-    ids: Cell | None = None,
-    words: Sequence[Cell] = (),
+    numbers: Sequence[TableColumn],
+    ids: TableColumn | None = None,
+    words: Sequence[TableColumn] = (),
     skip: int = 0,
     columns: int | None = None,
     comments: bool = True,
@@ -101,9 +101,9 @@ def read_columns(
         The file.
     delimiter : str
         One letter; a blank stands for any number of blanks and tabs.
-    numbers, words : sequence of Cell
+    numbers, words : sequence of TableColumn
         Columns of numbers and of text.
-    ids : Cell or None
+    ids : TableColumn or None
         Column of ids.
     skip : int
         Lines before the first row.
@@ -143,9 +143,9 @@ class _CommaError(Exception):
 def _read(
     document: Document,
     layout: _Layout,
-    numbers: Sequence[Cell],
-    ids: Cell | None,
-    words: Sequence[Cell],
+    numbers: Sequence[TableColumn],
+    ids: TableColumn | None,
+    words: Sequence[TableColumn],
     decimal: str,
 ) -> Columns:
     values, names, texts, lines = [], [], [], []
@@ -254,7 +254,7 @@ class _Part:
         """Return a cell as text."""
         return bytes(self.buffer[self._starts[row, column] : self._ends[row, column]]).decode("utf-8", "replace")
 
-    def numbers(self, columns: Sequence[Cell], decimal: str) -> Array:
+    def numbers(self, columns: Sequence[TableColumn], decimal: str) -> Array:
         """Return columns as numbers, NaN where a cell says that there is none."""
         table = self._values(columns, decimal)
         if table is None:
@@ -262,7 +262,7 @@ class _Part:
         return table
 
     def numbers_and_ids(
-        self, columns: Sequence[Cell], ids: Cell | None, decimal: str
+        self, columns: Sequence[TableColumn], ids: TableColumn | None, decimal: str
     ) -> tuple[Array, npt.NDArray[Any]]:
         """Return columns of numbers, and ids: integers if all are written as such, words otherwise."""
         if ids is None:
@@ -277,7 +277,7 @@ class _Part:
                     return self.numbers(columns, decimal) if table is None else table[:, :-1], whole
         return self.numbers(columns, decimal), self.words(ids)
 
-    def _may_be_integers(self, ids: Cell) -> bool:
+    def _may_be_integers(self, ids: TableColumn) -> bool:
         """Return whether ids begin like numbers, without zeros before them; refuse those that are empty or too long."""
         begin, end = self._starts[:, ids.place], self._ends[:, ids.place]
         width = end - begin
@@ -290,7 +290,7 @@ class _Part:
         second = self.buffer[begin[padded] + 1]
         return bool(_NUMERIC[first].all() and not (_NUMERIC[second] & (second != ord("."))).any())
 
-    def _values(self, columns: Sequence[Cell], decimal: str) -> Array | None:
+    def _values(self, columns: Sequence[TableColumn], decimal: str) -> Array | None:
         """Return columns as numbers, or none if a cell is no finite one."""
         index, order = self._order(columns)
         begin, end = self._starts[:, index].ravel(), self._ends[:, index].ravel()
@@ -309,13 +309,13 @@ class _Part:
         return table
 
     @staticmethod
-    def _order(columns: Sequence[Cell]) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+    def _order(columns: Sequence[TableColumn]) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
         """Return the places of columns from left to right, and which of the columns each of them is."""
         place = np.array([each.place for each in columns], dtype=np.intp)
         order = np.argsort(place, kind="stable")
         return place[order], order
 
-    def words(self, column: Cell) -> npt.NDArray[np.str_]:
+    def words(self, column: TableColumn) -> npt.NDArray[np.str_]:
         """Return a column as text."""
         begin, end = self._starts[:, column.place], self._ends[:, column.place]
         width = np.minimum(end - begin, LONGEST_WORD)
@@ -365,7 +365,7 @@ class _Part:
                 return None
         return found if len(found) == len(begin) else None
 
-    def _unreadable(self, columns: Sequence[Cell], decimal: str) -> Exception:
+    def _unreadable(self, columns: Sequence[TableColumn], decimal: str) -> Exception:
         """Return the error about the first cell that is no number, or what says that decimals may have commas."""
         index, order = self._order(columns)
         begin, end = self._starts[:, index].ravel(), self._ends[:, index].ravel()

@@ -24,7 +24,7 @@ __all__ = [
 ]
 
 DELIMITERS = {"\t": "tab", ";": ";", ",": ",", " ": "blank"}
-"""What divides cells, in the order in which it is looked for, and its name."""
+"""Delimiters of cells, in the order in which they are tried, and their names."""
 LENGTHS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0}
 TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9}
 _WORDS = {
@@ -55,7 +55,7 @@ Roles = Mapping[str, Sequence[str]]
 
 
 class Meaning(NamedTuple):
-    """What the name of a column says.
+    """Meaning of the name of a column.
 
     Attributes
     ----------

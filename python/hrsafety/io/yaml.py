@@ -22,14 +22,14 @@ from hrsafety.io.yaml_nodes import Key, Node, Path, YamlText, key_path, resolved
 from hrsafety.io.yaml_syntax import parsed
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["Section", "YamlDocument", "read_yaml"]
+__all__ = ["YamlDocument", "YamlSection", "read_yaml"]
 
 LARGEST = 1e300
 """Numbers are smaller: squares of larger ones are not finite."""
 _MARKS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
 
 
-class Section:
+class YamlSection:
     """Value in a YAML file that knows its keys, its file and its line.
 
     Maps are looked into with ``section["key"]``, lists with ``section[0]``; what is not there, or is of another
@@ -71,12 +71,12 @@ class Section:
 
     @property
     def is_map(self) -> bool:
-        """Whether it is a map of keys and values."""
+        """Whether the value is a map of keys and values."""
         return isinstance(self._node.value, dict)
 
     @property
     def is_list(self) -> bool:
-        """Whether it is a list."""
+        """Whether the value is a list."""
         return isinstance(self._node.value, list)
 
     @property
@@ -84,9 +84,9 @@ class Section:
         """Its value in dicts, lists, numbers, truth values, text and None."""
         value = self._node.value
         if isinstance(value, dict):
-            return {key: Section(each).plain for key, each in value.items()}
+            return {key: YamlSection(each).plain for key, each in value.items()}
         if isinstance(value, list):
-            return [Section(each).plain for each in value]
+            return [YamlSection(each).plain for each in value]
         return value
 
     def error(self, requirement: str, remedy: str | None = None, *, code: str = "unreadable") -> FileError:
@@ -117,20 +117,20 @@ class Section:
 
     # ---- maps and lists --------------------------------------------------------------------------
 
-    def get(self, key: Key) -> Section | None:
+    def get(self, key: Key) -> YamlSection | None:
         """Return what stands under a key or index, ``None`` if nothing does; what is no map has no keys."""
         value = self._node.value
         if isinstance(value, dict) and key in value:
-            return Section(value[str(key)])
+            return YamlSection(value[str(key)])
         if isinstance(value, list) and isinstance(key, int) and 0 <= key < len(value):
-            return Section(value[key])
+            return YamlSection(value[key])
         return None
 
     def __contains__(self, key: Key) -> bool:
         """Return whether something stands under a key."""
         return self.get(key) is not None
 
-    def __getitem__(self, key: Key) -> Section:
+    def __getitem__(self, key: Key) -> YamlSection:
         """Return what stands under a key or index, which has to be there."""
         found = self.get(key)
         if found is None:
@@ -155,22 +155,22 @@ class Section:
         """Return the keys of a map one after the other."""
         return iter(self.keys())
 
-    def values(self) -> list[Section]:
+    def values(self) -> list[YamlSection]:
         """Return the values of a list, which it has to be."""
         if not isinstance(self._node.value, list):
             raise self.error("be a list")
-        return [Section(each) for each in self._node.value]
+        return [YamlSection(each) for each in self._node.value]
 
     # ---- scalars ---------------------------------------------------------------------------------
 
-    def unquoted(self) -> Section:
+    def unquoted(self) -> YamlSection:
         """Return a scalar as if it stood there without its quotes, which some readers of YAML do not look at."""
         node = self._node
         if not node.quoted or isinstance(node.value, (dict, list)):
             return self
         other = Node(node.source, node.path, node.start)
         other.text, other.value = node.text, resolved(node.text)
-        return Section(other)
+        return YamlSection(other)
 
     def number(self) -> float:
         """Return a finite number."""
@@ -230,7 +230,7 @@ class YamlDocument:
 
     Attributes
     ----------
-    root : Section
+    root : YamlSection
         What the document holds.
     warnings : tuple of ResultWarning
         As given.
@@ -261,7 +261,7 @@ class YamlDocument:
         self._source = YamlText(name, text)
         self._encoding, self._mark = "utf-8", b""
         self.warnings = tuple(warnings)
-        self.root = Section(parsed(self._source))
+        self.root = YamlSection(parsed(self._source))
 
     @property
     def text(self) -> str:
@@ -273,7 +273,7 @@ class YamlDocument:
         """The file's bytes, in the encoding in which it was read."""
         return self._mark + self.text.encode(self._encoding)
 
-    def at(self, path: Iterable[Key]) -> Section:
+    def at(self, path: Iterable[Key]) -> YamlSection:
         """Return what stands under keys below each other, which have to be there."""
         found = self.root
         for key in path:
@@ -391,7 +391,7 @@ def read_yaml(path: str | PathLike[str]) -> YamlDocument:
 # ---- changes ---------------------------------------------------------------------------------------
 
 
-def _replacements(old: Section, value: Any) -> list[tuple[int, int, str]]:
+def _replacements(old: YamlSection, value: Any) -> list[tuple[int, int, str]]:
     """Return edits of the text that give a value its new content."""
     node = _own(old)._node
     value = _simple(old.place, value)
@@ -409,14 +409,14 @@ def _replacements(old: Section, value: Any) -> list[tuple[int, int, str]]:
     return [(node.start, node.stop, new)]
 
 
-def _own(section: Section) -> Section:
+def _own(section: YamlSection) -> YamlSection:
     """Return a value that stands where it was looked for."""
     if section._node.alias:
         raise section.error("stand here, not under the name of an anchor", "change it there")
     return section
 
 
-def _addition(above: Section, key: Key, value: Any) -> tuple[int, int, str]:
+def _addition(above: YamlSection, key: Key, value: Any) -> tuple[int, int, str]:
     """Return the edit that adds a key to a map."""
     node = above._node
     if not isinstance(node.value, dict) or not isinstance(key, str):

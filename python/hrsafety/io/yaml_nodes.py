@@ -110,7 +110,7 @@ class Node:
 
     @property
     def flow(self) -> bool:
-        """Whether it is a map or list in brackets."""
+        """Whether the node is a map or list in brackets."""
         return self.source.text[self.start : self.start + 1] in ("{", "[") and not isinstance(self.value, str)
 
     def children(self) -> Iterator[Node]:

@@ -95,7 +95,7 @@ class _Parser:
         return self.at - self.source.line_start(self.at)
 
     def skip(self) -> bool:
-        """Go on to the next content; returns whether it stands in another line."""
+        """Advance to the next content; returns whether it stands in another line."""
         before = self.at
         if match := _GAP.match(self.text, self.at):
             self.at = match.end()
@@ -192,7 +192,7 @@ class _Parser:
         found.value = values
 
     def goes_on(self, column: int) -> bool:
-        """Go on to the next content; returns whether it stands in the column of a block, and not left of it."""
+        """Advance to the next content; returns whether it stands in the column of a block, and not left of it."""
         before = self.at
         crossed = self.skip()
         if self.at >= len(self.text) or (crossed and self.column() < column):

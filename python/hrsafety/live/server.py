@@ -26,7 +26,7 @@ HOST = "127.0.0.1"
 MOST_BYTES = 10_000
 """Of a wish."""
 GRACE = 3.0
-"""A world ends when no page has looked at it for so many seconds, in which one may be loaded again."""
+"""A world ends when no page has asked for it for so many seconds, in which one may be loaded again."""
 PATIENCE = 120.0
 """Seconds until the first page must look."""
 WRONG = "only the page that this program named may ask"

@@ -1,4 +1,4 @@
-"""What can be set while a world runs: law and parts around it, speeds, what the robot sees."""
+"""Settings of a running world: law and parts around it, speeds, sensing of the robot."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def laws() -> list[str]:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class LiveSettings:
-    """What a running world is set to.
+    """Settings of a running world.
 
     Parameters
     ----------

@@ -209,7 +209,7 @@ class LiveWorld:
         raise InvalidParameterError("kind", "be person, goal, setting, pause or restart", kind)
 
     def _drag(self, number: Any, place: Any) -> bool:
-        """Put somebody to a place, or let go of somebody."""
+        """Put a person to a place, or let go of a person."""
         walker = self._walkers.get(number) if type(number) is int else None
         if walker is None:
             raise InvalidParameterError("number", "be that of a person of the world who is no guest", number)
@@ -342,7 +342,7 @@ class LiveWorld:
             clocks.sleep(left)
 
     def _note(self, crowd: Crowd) -> None:
-        """Take who is there, by numbers that stay with somebody through all changes."""
+        """Take who is there, by numbers that stay with a person through all changes."""
         found = {}
         for number, place, velocity, radius in zip(
             crowd.number.tolist(), crowd.position, crowd.velocity, crowd.radius.tolist(), strict=True
@@ -516,7 +516,7 @@ class LiveWorld:
 
 
 def _at_start(person: Person) -> Pair:
-    """Return where somebody is at the start of a world, far away while absent."""
+    """Return where a person is at the start of a world, far away while absent."""
     if person.recording is None:
         return person.start
     times, places = person.recording
@@ -536,14 +536,14 @@ def _told_ways(world: World) -> dict[int, dict[str, Any]]:
     for column, index in enumerate(chosen):
         there = np.flatnonzero(np.isfinite(run.obstacle_position[:, column, 0]))
         times, places = run.time[there].tolist(), run.obstacle_position[there, column].tolist()
-        if there[-1] == len(run.time) - 1 and times[-1] < LONGEST:  # who stands in the end continues standing
+        if there[-1] == len(run.time) - 1 and times[-1] < LONGEST:  # who stands in the end keeps standing
             times, places = [*times, LONGEST], [*places, places[-1]]
         found[index] = {"recording": (times, places), "mover": None}
     return found
 
 
 def _guest(source: Any, place: Array, radius: float) -> Any:
-    """Return somebody who came from a source as a person of the world."""
+    """Return a person who came from a source as a person of the world."""
     given = {name: getattr(source, name) for name in ("route", "model", "at_end", "arrival_radius", "awareness")}
     return Person(start=(float(place[0]), float(place[1])), radius=radius, desired_speed=source.desired_speed, **given)
 

@@ -33,13 +33,13 @@ __all__ = ["Comparison", "Metric", "Standing", "compare", "step_cost"]
 Metric = Literal["arrival_time", "min_clearance", "energy", "path_length", "performance_total"]
 METRICS: tuple[str, ...] = get_args(Metric)
 _OF_SUCCESS = ("arrival_time", "energy", "path_length")
-"""What a run that ended otherwise has no fair value of."""
+"""Metrics without a fair value in a run that did not arrive."""
 
 
 @displayed
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Standing:
-    """What one law did over all episodes.
+    """Results of one law over all episodes.
 
     Attributes
     ----------

@@ -41,16 +41,16 @@ class Controller:
     Told the same at the same instants, it commands the same as a run, bit for bit. It keeps what it was
     told: whoever is not measured again stays where he was, with an age that grows, and the shield reckons
     with wherever he can be by then; so it does with the points of a scan. What is told without its instant
-    can be as old as the ``latency`` of the shield when it is told. Somebody is forgotten when ``gone`` names
+    can be as old as the ``latency`` of the shield when it is told. A person is forgotten when ``gone`` names
     him, or after 2 s if a scan sees his place to be empty, or after ``age_limit``. Measurements older than what is
-    known of somebody count for nothing.
+    known of a person count for nothing.
 
-    Names are those of a tracker that keeps them. Somebody with a new one is somebody more. Where three updates in a row
-    have no name in common, or there is no room, who is new counts as the nearest of those who were not measured and can
-    have got there (``renamed``): people are then judged by their places only.
+    Names are those of a tracker that keeps them. A new name is one more person. Where three updates in a row have no
+    name in common, or there is no room, who is new counts as the nearest of those who were not measured and can have
+    got there (``renamed``): people are then judged by their places only.
 
-    Give the times of a clock that nobody sets. After one that was set back the robot executes the plan that it has, and
-    rests. It continues when the clock shows a later time again, or has run for as long as the plan lasts; whoever is not
+    Give the times of a monotonic clock. After one that was set back the robot executes the plan that it has, and rests.
+    It moves again when the clock shows a later time, or has run for as long as the plan lasts; a person who is not
     measured then may be anywhere.
 
     Parameters
@@ -79,7 +79,7 @@ class Controller:
     arrival_tolerance : float
         The robot has arrived this close to the goal, in m.
     age_limit : float or None
-        After so many seconds without a measurement somebody is lost for good: he counts no more, and commands name him
+        After so many seconds without a measurement a person is lost for good: he counts no more, and commands name him
         in ``lost``. ``None``: never, and the robot may stand for all time.
     seed : int
         Of laws that draw.
@@ -152,7 +152,7 @@ class Controller:
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """What the shield of the law does not cover; empty without a shield."""
+        """Gaps in the cover of the law's shield; empty without a shield."""
         shield = _shield(self._law)
         if shield is None:
             return ()
@@ -295,7 +295,7 @@ class Controller:
         return {name: self._sighting(name, given) for name, given in people.items()}
 
     def _sighting(self, name: Hashable, given: Sequence[float | None]) -> Told:
-        """Return place, velocity and instant of somebody who was measured."""
+        """Return place, velocity and instant of a person who was measured."""
         label = f"people[{name!r}]"
         if isinstance(given, (str, Mapping)) or not (hasattr(given, "__len__") and hasattr(given, "__getitem__")):
             rule = "be a Sighting or (x, y, vx, vy), with the instant as a fifth number"
@@ -320,7 +320,7 @@ class Controller:
         return None
 
     def _left(self, gone: Iterable[Hashable], told: Mapping[Hashable, Told]) -> list[Hashable]:
-        """Return the names of those who left; nobody can have left who is measured in the same update."""
+        """Return the names of those who left; no person can have left who is measured in the same update."""
         names = sequence("gone", "be names in a list, a tuple or a set", gone)
         for name in names:
             try:
@@ -357,7 +357,7 @@ _NOTHING: Mapping[str, Any] = {
     "clock_set_back": None,
     "unknown_beams": 0,
 }
-"""What a robot is told that does not know yet where it is."""
+"""Fields of the command of a robot that does not know its position yet."""
 
 
 _OF_PEOPLE = ("faster", "accelerated", "velocity_off")
@@ -381,7 +381,7 @@ def _ranges(scan: npt.ArrayLike) -> Array:
 
 
 def _standing(obstacles: Sequence[Obstacle]) -> list[Obstacle]:
-    """Return obstacles that stand: where another one is, nobody would ever tell."""
+    """Return obstacles that stand: where another one is, it would never be noticed."""
     found: list[Obstacle] = sequence("obstacles", "be a sequence of obstacles", obstacles)
     for index, obstacle in enumerate(found):
         if not stands(instance(f"obstacles[{index}]", obstacle, Obstacle)):

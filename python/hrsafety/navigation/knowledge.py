@@ -1,4 +1,4 @@
-"""What the sensors of a robot told a law, and whether they could tell enough."""
+"""Knowledge of a law from the sensors of its robot, and whether they could tell enough."""
 
 from __future__ import annotations
 

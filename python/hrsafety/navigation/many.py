@@ -177,7 +177,7 @@ def simulate_many(
 
 @dataclass(frozen=True, slots=True)
 class _Study:
-    """What runs where."""
+    """Runs of a study: laws, scenarios and seeds."""
 
     scenarios: Mapping[str, Scenario]
     laws: Mapping[str, Law]

@@ -17,12 +17,12 @@ MOST_KEPT = 64
 LEAST_KEPT = 0.5
 """Velocities that no bound is assumed of are compared with places over at least this time, in s."""
 SLACK = 0.3
-"""They are wrong if they differ from how somebody moves by more than this, in m/s."""
+"""They are wrong if they differ from how a person moves by more than this, in m/s."""
 ROUNDING = 1e-9
 
 
 class _Measured(NamedTuple):
-    """Where somebody was, and between which instants in s."""
+    """Where a person was, and between which instants in s."""
 
     first: float
     last: float
@@ -53,7 +53,7 @@ class MeasuredPeople:
             self._people.pop(name, None)
 
     def rename(self, name: Hashable, former: Hashable) -> None:
-        """Take somebody who was known under another name for the same."""
+        """Take a person who was known under another name for the same."""
         if former in self._people:
             self._people[name] = self._people.pop(former)
 
@@ -97,7 +97,7 @@ class MeasuredPeople:
         return found
 
     def _moves_otherwise(self, measured: deque[_Measured]) -> bool:
-        """Return whether the velocities that were told lead elsewhere than where somebody is now."""
+        """Return whether the velocities that were told lead elsewhere than where a person is now."""
         first, last = measured[0], measured[-1]
         lasted = last.last - first.last
         if lasted < LEAST_KEPT:

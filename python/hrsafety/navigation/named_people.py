@@ -17,7 +17,7 @@ ROUNDING = 1e-9
 
 
 class Told(NamedTuple):
-    """What an update tells of somebody: where, how fast (``None``: not known), and when (``None``: now or before)."""
+    """Report of a person in an update: where, how fast (``None``: not known), and when (``None``: now or before)."""
 
     position: Pair
     velocity: Pair | None
@@ -25,7 +25,7 @@ class Told(NamedTuple):
 
 
 class _Known(NamedTuple):
-    """Where somebody has his place in the core, and where and when he was measured last."""
+    """Where a person has his place in the core, and where and when he was measured last."""
 
     slot: int
     position: Pair
@@ -44,7 +44,7 @@ class NamedPeople:
     latency, position_error : float
         Largest age of what is told without its instant in s, and largest error of a position in m.
     age_limit : float or None
-        After so many seconds without a measurement somebody is lost for good.
+        After so many seconds without a measurement a person is lost for good.
     """
 
     __slots__ = ("_age_limit", "_capacity", "_error", "_known", "_latency", "_speed", "_streak", "lost")
@@ -92,9 +92,9 @@ class NamedPeople:
         return [self._known[name].slot for name in names if name in self._known]
 
     def place(self, now: float, told: Mapping[Hashable, Told], present: list[bool]) -> dict[Hashable, Hashable]:
-        """Give everybody who is told of a place; return the former names of those who took over somebody else's.
+        """Give every person of an update a place; return the former names of those who took over another person's.
 
-        Names count as they are given, and somebody with a new one is somebody more. Where no name of the update
+        Names count as they are given, and a person with a new one is one more person. Where no name of the update
         before comes again several times in a row, or there is no place left, who is new counts as the nearest of those
         who were not measured and can have got there.
         """
@@ -136,7 +136,7 @@ class NamedPeople:
         return found
 
     def _index(self, name: Hashable, told: Mapping[Hashable, Told], present: list[bool]) -> int:
-        """Return the place of somebody in the core, a free one for who is new.
+        """Return the place of a person in the core, a free one for who is new.
 
         Who is told of in the same update keeps his place, though the core does not know of him yet.
         """

@@ -16,4 +16,4 @@ Outcome = Literal["arrived", "collided", "timed_out", "stopped", "diverged"]
 OUTCOMES: Mapping[str, str] = MappingProxyType(
     dict(_hrsafety.run_outcomes()) | {"diverged": "a state of the world was no longer finite"}
 )
-"""What each outcome says, by its word, in the order of the core; a world that diverges ends, a scenario fails."""
+"""Meaning of each outcome, by its word, in the order of the core; a world that diverges ends, a scenario fails."""

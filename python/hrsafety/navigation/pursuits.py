@@ -37,7 +37,7 @@ FAR = 1e4
 """Where the person stands in the scenario before the episodes place him, in m."""
 COUNTS = ("contacts_toward", "contacts_away", "contacts_standing", "wall_contacts")
 COLUMNS = ("margin", "min_clearance", "arrival_time", "end_time", *COUNTS)
-"""What is kept of every episode."""
+"""Columns that are kept of every episode."""
 ROOM = 0.3
 """Least distance of the surfaces at the start, in m."""
 
@@ -55,7 +55,7 @@ class Pursuit(Table):
     person_position : ndarray, shape (n, 2)
         True position of the person in m.
     least_toward : float
-        Least distance of the surfaces while the robot moved toward somebody, faster than 0.05 m/s, up to the first
+        Least distance of the surfaces while the robot moved toward a person, faster than 0.05 m/s, up to the first
         overlap with them by 0.1 m, in m; infinite if it never did. Not above zero: it touched him at fault.
     min_clearance : float
         Least distance of the surfaces in m.
@@ -106,7 +106,7 @@ class Pursuit(Table):
 @displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Falsification:
-    """What a search for a broken property found.
+    """Result of a search for a broken property.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def falsify(
     law : law
         What drives it.
     property : {"at_fault", "clearance", "arrival", "speed"} or callable
-        What is to hold: the robot never moves toward somebody whom it touches, from the first touch until the bodies
+        What is to hold: the robot never moves toward a person whom it touches, from the first touch until the bodies
         first overlap by 0.1 m, and touches no map; surfaces never come
         nearer than ``least``; the robot arrives within the time limit; it is never faster than
         ``most``. Or a function of a `Pursuit` that returns a margin, negative where your property is

@@ -65,7 +65,7 @@ def region_radii(
     robot : HolonomicRobot or DifferentialDriveRobot
         Its limits.
     obstacle : Obstacle
-        Radii that the obstacle has already are not looked at.
+        Radii that the obstacle has already are not examined.
     control_period : float
         Control period T_s in s.
     faced_side : float or None

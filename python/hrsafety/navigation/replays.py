@@ -1,4 +1,4 @@
-"""What a player shows of runs, and of recorded decisions.
+"""Replays of runs, and of recorded decisions.
 
 The classes of results import these functions, which know them by their fields only.
 """
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from hrsafety._arguments import Array
-from hrsafety._replay.record import Decisions, Event, PlayedRobot, Replay, Scanner
+from hrsafety._replay.record import Decisions, Event, PlayedLidar, PlayedRobot, Replay
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.obstacles.moving_rectangle import Box, Mobile
@@ -208,7 +208,7 @@ def _robot(
     )
 
 
-def _scanner(run: Run, bodies: Bodies) -> Scanner | None:
+def _scanner(run: Run, bodies: Bodies) -> PlayedLidar | None:
     """Return the lidar of a robot, whose ranges are told without its noise."""
     lidar = next((each for each in (() if run.built is None else run.built.sensors) if isinstance(each, Lidar)), None)
     if lidar is None or run.obstacle_position is None:
@@ -222,11 +222,11 @@ def _scanner(run: Run, bodies: Bodies) -> Scanner | None:
         there = [each for each in discs if math.isfinite(each[0])] if lidar.sees_obstacles else []
         return np.asarray(exact.scan(run.position[row], float(run.heading[row]), people=there))
 
-    return Scanner(-half, last, ranges)
+    return PlayedLidar(-half, last, ranges)
 
 
 def _clearance(run: Run, maps: Iterable[StaticMap], bodies: Bodies, radius: float) -> Array | None:
-    """Return how far the robot is from what is nearest, in m, NaN where nobody knows; ``None`` without distances."""
+    """Return how far the robot is from what is nearest, in m, NaN where unknown; ``None`` without distances."""
     if run.distance is None:
         return None
     found = np.full(len(run.time), np.inf)

@@ -1,4 +1,4 @@
-"""What a controller is told of people, and what it commands."""
+"""Measured people and commands of a controller."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["Command", "Sighting"]
 
 
 class Sighting(NamedTuple):
-    """Where somebody was measured to be.
+    """Where a person was measured to be.
 
     Attributes
     ----------
@@ -37,7 +37,7 @@ class Sighting(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Command:
-    """What a robot is to do until the next update.
+    """Command of a robot until the next update.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class Command:
     arrived : bool
         Whether the robot is within the arrival tolerance of the goal.
     oldest : float
-        Age of the oldest measurement of somebody that counts, in s; infinite where it is not known, since the clock
+        Age of the oldest measurement of a person that counts, in s; infinite where it is not known, since the clock
         may have been set back: the robot then stays where it is until he is measured again, or is gone.
     clock_set_back : float or None
         By how much the clock was seen to be set back, at least, in s. The plan that the robot executes, and what the
@@ -95,7 +95,7 @@ class Command:
         with wherever they could be, now they count no more. They may be anywhere, until they are measured again or
         ``gone`` names them.
     renamed : tuple of hashable
-        Names of those who were taken for others, who had other names and were not measured any more, since nobody
+        Names of those who were taken for others, who had other names and were not measured any more, since no person
         keeps his name or there is no room for more: so many are there as before, but who is who is not known.
     unknown_beams : int
         How many beams of the last scan read NaN: there may be something in their directions. What was seen there

@@ -145,7 +145,7 @@ class Run:
 
     @property
     def trace(self) -> SafetyTrace | None:
-        """What the parts around the law did in the last control period; ``None`` without parts."""
+        """Decisions of the parts around the law in the last control period; ``None`` without parts."""
         found = self._native.trace
         if found is None:
             return None

@@ -1,4 +1,4 @@
-"""What calls with many runs are given: scenarios and laws by name, seeds, gain sets."""
+"""Arguments of calls with many runs: scenarios and laws by name, seeds, gain sets."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the parts around a law decided in every control period of a run, and the plans behind the decisions."""
+"""Decisions of the parts around a law in every control period of a run, and the plans behind them."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class SafetyDecision:
         Path of the guide through the map alone from here, in m; empty without a guide. Around people who
         stand the guide makes another plan in the run, which is not recorded.
     local_goal : (float, float) or None
-        Local goal on that path, in m: where the guide sends the law while nobody stands.
+        Local goal on that path, in m: where the guide sends the law while no person stands.
     """
 
     time: Annotated[float, "s"]

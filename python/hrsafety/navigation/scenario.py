@@ -147,7 +147,7 @@ class Scenario(Parameters):
 
     @property
     def unit_doubts(self) -> tuple[ResultWarning, ...]:
-        """Those of the warnings that are about numbers which are hardly meant in their unit."""
+        """Warnings about numbers that are hardly meant in their unit."""
         if self._units is None:
             self._set(_units=scenario_warnings.of_units(self))
         return self._units  # type: ignore[return-value]  # just set
@@ -212,7 +212,7 @@ _SLOT: Any = Scenario.obstacles  # type: ignore[misc]  # a slot is found by its 
 class _FilledIn:
     """The obstacles of a scenario, a tuple with the radii that the core has found.
 
-    They are filled in when somebody looks at them: a study that constructs scenarios to run them would
+    They are filled in when they are read: a study that constructs scenarios to run them would
     copy every obstacle for nothing.
     """
 

@@ -215,7 +215,7 @@ class Scenarios(Sequence[Scenario]):
         return self[0].robot
 
     def doubtful(self) -> Sequence[int]:
-        """Return the rows that may have warnings: the others need not be looked at one by one."""
+        """Return the rows that may have warnings: the others need not be examined one by one."""
         if self._doubt is None:
             return range(len(self))
         found: list[int] = np.flatnonzero(self._doubt()[list(self._rows)]).tolist()
@@ -228,7 +228,7 @@ class Scenarios(Sequence[Scenario]):
 
 
 class Numbers(Sequence[str]):
-    """The names of scenarios that are numbered, made when somebody reads them.
+    """The names of scenarios that are numbered, made when they are read.
 
     Parameters
     ----------

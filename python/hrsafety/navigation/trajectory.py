@@ -31,7 +31,7 @@ Integrator = Literal["semi_implicit_euler", "rk4"]
 CONTACT_SPEED = _hrsafety.CONTACT_SPEED
 """Speed in m/s above which a robot counts as moving in a contact."""
 DECIDED_OVERLAP = _hrsafety.DECIDED_OVERLAP
-"""Overlap of two bodies in m from which on nobody is at fault any more: what walks on through a robot is ahead of it
+"""Overlap of two bodies in m from which on neither is at fault any more: what walks on through a robot is ahead of it
 at last, whoever came."""
 OPTIONAL_COLUMNS = ("force", "stabilizing", "lyapunov", "wheel_current", "obstacle_position", "distance")
 """Columns that a run may leave out, see ``record`` of `simulate`."""
@@ -58,7 +58,7 @@ class Divergence:
 
 
 class Followed(Protocol):
-    """What a run may follow; the references of `tracking`, which know this module."""
+    """Reference that a run may follow: one of `tracking`, which knows this module."""
 
     def at(self, time: npt.ArrayLike) -> Any:
         """Return positions and velocities at some instants."""
@@ -118,8 +118,8 @@ class Trajectory(Played, Table):
     person_arrival_position : ndarray of shape (m, 2), or None
         Where that was, in m. Who leaves at the end is absent from that instant on.
     wall_rescues : int
-        How often somebody of a world was set back who would have passed a wall or come nearer to it than a tenth of
-        the radius: nobody does, whatever a model decides.
+        How often a person of a world was set back who would have passed a wall or come nearer to it than a tenth of
+        the radius: no person does, whatever a model decides.
     max_person_speed : float
         Largest speed of the people of a world who decide, in m/s, also between instants and before walls take of it.
     diverged : Divergence or None

@@ -94,7 +94,7 @@ class Section(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Report:
-    """What a command found.
+    """Report of a command: facts, verdict, tables, pictures, warnings.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What the pictures accept: checks of results and labels, instants and view limits."""
+"""Checks of the inputs of pictures: results and labels, instants and view limits."""
 
 from __future__ import annotations
 

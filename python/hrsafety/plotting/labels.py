@@ -28,7 +28,7 @@ _NEAR = (5.0, 9.0, 14.0)  # pt between anchor and label
 _FAR = (22.0, 32.0, 44.0, 58.0, 74.0, 92.0)  # pt; with a line to the anchor
 _DIRECTIONS = (0, 180, 90, 270, 30, 150, 330, 210, 60, 120, 300, 240)  # degrees, preferred ones first
 _POINTS_PER_INCH = 72.0
-_SAMPLE = 2.0  # px between points of a curve that are looked at
+_SAMPLE = 2.0  # px between points of a curve that are examined
 _CLEAR = 2.0  # px around a label
 _MOST_SAMPLES = 200_000
 

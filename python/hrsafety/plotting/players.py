@@ -20,7 +20,7 @@ __all__ = ["mcap", "player"]
 def player(run: Any, path: str | os.PathLike[str] | None = None, *, title: str | None = None) -> PlayerPage:
     """Return a run as an HTML file that plays it: no network, no library, nothing beside it.
 
-    Shown are robots with footprint, heading and way, people, what stands and what nobody has seen, goals, the
+    Shown are robots with footprint, heading and way, people, what stands and unobserved floor, goals, the
     verdict of a shield with the area that it verified and where people can be by then, the guide's path, contacts, a
     clock, speeds and clearances, and what was not judged. Everything can be reached by keyboard (``?`` lists the
     keys), and stands in tables, too. An address that ends in ``#t=12.4`` opens the file at that instant.

@@ -32,7 +32,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.reactive.skirt.study import SmallestSkirt as SmallestSkirt, smallest_skirt as smallest_skirt
     from hrsafety.reactive.sonar.echoes import (
         Box as Box,
-        Disc as Disc,
+        Cylinder as Cylinder,
         Sonar as Sonar,
         SonarMounts as SonarMounts,
         Wall as Wall,

@@ -1,4 +1,4 @@
-"""What a robot with sound and sonar decides by at a sample."""
+"""Percept of a robot with sound and sonar at a sample."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = ["Percept", "percept_of"]
 @displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Percept:
-    """What a robot with sound and sonar decides by at a sample.
+    """Percept of a robot with sound and sonar at a sample.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What runs of reactive robots have in common that are advanced from outside."""
+"""Base of runs of reactive robots that are advanced from outside."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from hrsafety._arguments import Array, readable, sequence, word
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import FileError, Shown
-from hrsafety.io.reader import Document, Source
+from hrsafety.io.reader import Document, Provenance
 from hrsafety.plausibility import ResultWarning
 from hrsafety.records.accelerations import AccelerationRecord, acceleration
 from hrsafety.records.forces import ForceDevice, ForceRecord, force
@@ -48,7 +48,7 @@ class Record:
         Between cells; ``None`` for blanks.
     decimal : str
         Decimal sign.
-    source : Source
+    source : Provenance
         File, format and digest.
     warnings : tuple of ResultWarning
         What was assumed.
@@ -61,7 +61,7 @@ class Record:
     header: tuple[str, ...]
     delimiter: str | None
     decimal: str
-    source: Source
+    source: Provenance
     warnings: tuple[ResultWarning, ...] = ()
 
     @property
@@ -240,7 +240,7 @@ def load(path: str | PathLike[str], *, time: str | None = None) -> Record:
         header=tuple(table.header),
         delimiter=table.delimiter,
         decimal=table.decimal,
-        source=Source(path=str(path), format="table", sha256=document.sha256),
+        source=Provenance(path=str(path), format="table", sha256=document.sha256),
         warnings=tuple(document.warnings),
     )
 
@@ -309,5 +309,5 @@ def _of_channels(path: Path, time: str | None, document: Document | None = None)
         header=tuple(f"{key}: {value}" for key, value in first.header.items()),
         delimiter=None,
         decimal=".",
-        source=Source(path=str(path), format="iso_mme", sha256=sha256),
+        source=Provenance(path=str(path), format="iso_mme", sha256=sha256),
     )

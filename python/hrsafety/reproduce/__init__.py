@@ -21,7 +21,7 @@ from hrsafety.reproduce.published import published_tables
 __all__ = ["PARTS", "PrintedValue", "published_tables", "run"]
 
 PARTS = tuple(parts.PARTS)
-"""What `run` can make, in the order in which it is made."""
+"""Parts that `run` can make, in the order in which they are made."""
 
 
 def run(

@@ -68,7 +68,7 @@ class MeasuredRun:
 
     @property
     def outcome(self) -> str:
-        """What happened, in the words of the published outcomes."""
+        """Outcome in the words of the published tables."""
         if self.contact:
             return "contact"
         return "arrival, no contact" if self.arrived else "no arrival, no contact"

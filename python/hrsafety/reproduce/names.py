@@ -16,7 +16,7 @@ _NAMES = data.table("names")
 GAIN_LABELS: Mapping[str, str] = _NAMES["gains"]
 """Gain sets; the star marks the optimized ones, as in the source."""
 TABLE_TITLES: Mapping[str, str] = _NAMES["tables"]
-"""What each published table is about, in HTML."""
+"""Subject of each published table, in HTML."""
 
 
 def row_label(row: str) -> str:

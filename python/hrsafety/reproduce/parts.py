@@ -21,14 +21,14 @@ from hrsafety.reproduce.laws import figures as laws_figures
 from hrsafety.reproduce.laws import study as laws_study
 from hrsafety.reproduce.reactive import part as reactive_part
 
-__all__ = ["PARTS", "Made", "Part"]
+__all__ = ["PARTS", "Made", "ReproducedPart"]
 
 Say = Callable[[str], object]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Made:
-    """What came of a part.
+    """Result of a part.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class Made:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Part:
+class ReproducedPart:
     """A part of the reproduction.
 
     Attributes
@@ -120,7 +120,7 @@ _MAKERS: Mapping[str, Callable[[Say], Made]] = {
     "wheels": lambda _: Made(cells=wheels_tables.cells(), pictures=wheels_figures.make()),
     "camera": lambda _: Made(cells=camera_tables.cells(), pictures=camera_figures.make()),
 }
-PARTS: Mapping[str, Part] = {
-    name: Part(name=name, make=_MAKERS[name], **words) for name, words in data.table("parts").items()
+PARTS: Mapping[str, ReproducedPart] = {
+    name: ReproducedPart(name=name, make=_MAKERS[name], **words) for name, words in data.table("parts").items()
 }
 """All parts by name, in the order in which they are made."""

@@ -1,4 +1,4 @@
-"""What each section of the page shows: its tables with their pictures, and what its template needs besides."""
+"""Sections of the page: their tables with their pictures, and what their templates need besides."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from hrsafety.reproduce.impact.tables import COLUMNS, ImpactRow, experiments
 from hrsafety.reproduce.laws.compared import COMPARED, FORCES, LIKE_SOURCE
 from hrsafety.reproduce.laws.study import LawsStudy, compared_contacts
 from hrsafety.reproduce.names import GAIN_LABELS, beside_none, column_label
-from hrsafety.reproduce.parts import PARTS, Made, Part
+from hrsafety.reproduce.parts import PARTS, Made, ReproducedPart
 from hrsafety.reproduce.ranking import BASELINE
 from hrsafety.reproduce.study import SIDES, Aggregate, LawComparisons
 from hrsafety.reproduce.views import by_table, counted, view
@@ -29,7 +29,7 @@ _ORDER = (
 _DIGITS = {"a_h_max": 3, "impact_period": 4, "compression_max": 5}
 
 
-def shown_parts(made: Mapping[str, Made], cells: Sequence[PrintedValue]) -> list[Part]:
+def shown_parts(made: Mapping[str, Made], cells: Sequence[PrintedValue]) -> list[ReproducedPart]:
     """Return the parts that have a section, in the order of the page."""
     tables = list(by_table(cells))
     return [
@@ -39,7 +39,7 @@ def shown_parts(made: Mapping[str, Made], cells: Sequence[PrintedValue]) -> list
     ]
 
 
-def section_of(part: Part, made: Mapping[str, Made], cells: Sequence[PrintedValue]) -> dict[str, Any]:
+def section_of(part: ReproducedPart, made: Mapping[str, Made], cells: Sequence[PrintedValue]) -> dict[str, Any]:
     """Return what the template of a section shows."""
     own = made[part.name]
     pictures = [picture for name, each in made.items() if PARTS[name].placed for picture in each.pictures]

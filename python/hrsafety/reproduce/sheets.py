@@ -121,7 +121,7 @@ class _Filled:
 
     @property
     def printed(self) -> Any:
-        """What the file gives, or the figure of the published text that it names."""
+        """Printed value of the file, or the figure of the published text that it names."""
         if "figure" in self._entry:
             return printed_figure(*self["figure"].split("/"))
         given = self._entry.get("printed")

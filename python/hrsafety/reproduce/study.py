@@ -41,7 +41,7 @@ CROWD_SIZES = (3, 12)
 
 
 class Key(NamedTuple):
-    """What was run: experiment, rule for the side, gain set, mode."""
+    """Key of a run: experiment, rule for the side, gain set, mode."""
 
     experiment: str
     side: str
@@ -59,7 +59,7 @@ class _Experiment(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Aggregate:
-    """What one mode did in one experiment.
+    """Results of one mode in one experiment.
 
     Attributes
     ----------

@@ -10,6 +10,6 @@ from hrsafety._namespace import names_of
 if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.ros.bridge import Bridge as Bridge, Settings as Settings
     from hrsafety.ros.bus import Bus as Bus, Publisher as Publisher, Quality as Quality
-    from hrsafety.ros.record import Leg as Leg, Record as Record
+    from hrsafety.ros.record import Leg as Leg, BusRecord as BusRecord
 else:
     __all__, __getattr__, __dir__ = names_of(__name__)

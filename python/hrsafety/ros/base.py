@@ -8,10 +8,10 @@ from typing import NamedTuple
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.ros.messages import Pose
 
-__all__ = ["STANDING", "Limits", "MovingBase", "Twist", "limits_of"]
+__all__ = ["STANDING", "Limits", "MovingBase", "PlanarTwist", "limits_of"]
 
 
-class Twist(NamedTuple):
+class PlanarTwist(NamedTuple):
     """Speeds ahead and to the left in m/s, turn rate in rad/s."""
 
     ahead: float
@@ -19,7 +19,7 @@ class Twist(NamedTuple):
     rate: float
 
 
-STANDING = Twist(0.0, 0.0, 0.0)
+STANDING = PlanarTwist(0.0, 0.0, 0.0)
 _ROUNDING = 1e-6
 """Share by which a command may exceed a limit before it counts, for messages are rounded on their way."""
 
@@ -34,7 +34,7 @@ class Limits(NamedTuple):
     turn_acceleration: float
     sideways: bool
 
-    def within(self, twist: Twist) -> tuple[Twist, bool]:
+    def within(self, twist: PlanarTwist) -> tuple[PlanarTwist, bool]:
         """Return a command within the limits, in the same direction, and whether it was beyond them."""
         ahead, left, rate = twist
         if not self.sideways:
@@ -43,7 +43,7 @@ class Limits(NamedTuple):
         share = min(1.0, self.speed / speed) if speed > 0.0 else 1.0
         turned = min(max(rate, -self.rate), self.rate)
         beyond = speed > self.speed * (1.0 + _ROUNDING) or abs(rate) > self.rate * (1.0 + _ROUNDING)
-        return Twist(share * ahead, share * left, turned), beyond or left != twist.left
+        return PlanarTwist(share * ahead, share * left, turned), beyond or left != twist.left
 
 
 def limits_of(robot: HolonomicRobot | DifferentialDriveRobot) -> Limits:
@@ -90,7 +90,7 @@ class MovingBase:
         share = min(1.0, most / size) if size > 0.0 else 0.0
         turn = limits.turn_acceleration * duration
         rate = self.twist.rate + min(max(self.wanted.rate - self.twist.rate, -turn), turn)
-        self.twist = Twist(self.twist.ahead + share * change[0], self.twist.left + share * change[1], rate)
+        self.twist = PlanarTwist(self.twist.ahead + share * change[0], self.twist.left + share * change[1], rate)
         self.pose = self.pose @ _arc(self.twist, duration)
 
     @property
@@ -101,7 +101,7 @@ class MovingBase:
         return cos * ahead - sin * left, sin * ahead + cos * left
 
 
-def _arc(twist: Twist, duration: float) -> Pose:
+def _arc(twist: PlanarTwist, duration: float) -> Pose:
     """Return the motion of a base that keeps its twist for a time."""
     turn = twist.rate * duration
     if abs(turn) < 1e-6:

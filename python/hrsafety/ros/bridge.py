@@ -22,7 +22,7 @@ from hrsafety.ros.bus import EVENTS, LATCHED, SENSOR, Bus, Quality
 from hrsafety.ros.commands import Commands
 from hrsafety.ros.floor import Crowd, largest_step, walk
 from hrsafety.ros.messages import Pose, Seen
-from hrsafety.ros.record import Record
+from hrsafety.ros.record import BusRecord
 from hrsafety.ros.scanner import Scanner
 from hrsafety.ros.steering import Steering
 
@@ -129,7 +129,7 @@ class Bridge:
     Parameters
     ----------
     world : World
-        One robot, whose law drives nothing, its goal, walls, people. Somebody who reacts to robots reacts to it.
+        One robot, whose law drives nothing, its goal, walls, people. A person who reacts to robots reacts to it.
     bus : Bus
         Where topics are published.
     settings : Settings or None
@@ -164,7 +164,7 @@ class Bridge:
         self._part = largest_step(world, self._step, at_most=_SCAN)
         # What is scored has the step of the bridge, and is under no law.
         scored = replace(world, step=self._part, robots=[replace(robot, law=None, control_period=None)])
-        self.record = Record(scored, self._map)
+        self.record = BusRecord(scored, self._map)
         self._time, self._offset = 0.0, 0.0
         self._origin = Pose(0.0, 0.0, 0.0)
         self._due = dict.fromkeys(("odometry", "people", "verdict"), 0.0)
@@ -224,7 +224,7 @@ class Bridge:
         self._answered |= self._commands.received(twist, own, self._time)
 
     def _place(self, message: Any) -> None:
-        """Put the robot to another place at the next instant, unless somebody or something is there."""
+        """Put the robot to another place at the next instant, unless a person or an obstacle is there."""
         self._wishes.append(("initialpose", messages.pose_in(message.pose.pose), message.header.frame_id))
 
     def _aim(self, message: Any) -> None:
@@ -270,12 +270,12 @@ class Bridge:
 
     # ---- the run --------------------------------------------------------------------------------
 
-    def run(self) -> Record:
+    def run(self) -> BusRecord:
         """Run the world to its end: its time limit, or a rest at the goal.
 
         Returns
         -------
-        Record
+        BusRecord
             What happened; also in `record` if Ctrl-C ends the run.
         """
         self._steering.look()

@@ -35,7 +35,7 @@ SENSOR = Quality(5, reliable=False)
 
 
 class Publisher(NamedTuple):
-    """Somebody who publishes on a topic.
+    """Publisher on a topic.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class Publisher(NamedTuple):
 
 
 class Bus(Protocol):
-    """What a bridge needs of ROS 2; `hrsafety.ros.rcl` has it from rclpy, tests have one in memory."""
+    """Bus that a bridge needs of ROS 2; `hrsafety.ros.rcl` has it from rclpy, tests have one in memory."""
 
     def has(self, type: str) -> bool:
         """Return whether messages of a type can be sent and received here."""
@@ -65,7 +65,7 @@ class Bus(Protocol):
         """Return who publishes on a topic by now."""
 
     def wall(self) -> float:
-        """Return the time of a clock that nobody sets, in s."""
+        """Return the time of a monotonic clock, in s."""
 
     def spin(self, timeout: float) -> None:
         """Hand over messages that have come, and wait for one for at most so many seconds if none has."""

@@ -6,7 +6,7 @@ import math
 from collections import Counter, deque
 from collections.abc import Callable
 
-from hrsafety.ros.base import STANDING, Limits, Twist
+from hrsafety.ros.base import STANDING, Limits, PlanarTwist
 
 __all__ = ["LATE", "SILENT", "Commands"]
 
@@ -55,7 +55,7 @@ class Commands:
 
     def forget(self) -> None:
         """Forget all commands: the base is to stand until the next one."""
-        self._coming: deque[tuple[float, Twist]] = deque()
+        self._coming: deque[tuple[float, PlanarTwist]] = deque()
         self._twist = STANDING
         self._heard: float | None = None
         self._stamp = -math.inf
@@ -96,7 +96,7 @@ class Commands:
             self._stamp = stamp
             if now - stamp > LATE + _ROUNDING:
                 self._count("command_late")
-        twist, beyond = self._limits.within(Twist(*given))
+        twist, beyond = self._limits.within(PlanarTwist(*given))
         if beyond:
             self._count("command_clipped")
         self.counts["commands"] += 1
@@ -110,7 +110,7 @@ class Commands:
         silent = math.inf if self._heard is None or self._silent else self._heard + SILENT
         return min(coming, silent)
 
-    def at(self, now: float) -> Twist:
+    def at(self, now: float) -> PlanarTwist:
         """Return the twist to execute from an instant on, in s: none after a silence."""
         while self._coming and self._coming[0][0] <= now + _ROUNDING:
             self._twist = self._coming.popleft()[1]

@@ -15,7 +15,7 @@ from hrsafety.navigation.controller import Controller
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.robot_command import Command, Sighting
 from hrsafety.navigation.sensing.lidar import Lidar
-from hrsafety.ros.base import STANDING, Twist
+from hrsafety.ros.base import STANDING, PlanarTwist
 from hrsafety.ros.bridge import map_of
 from hrsafety.ros.bus import EVENTS, SENSOR, Bus, Message, Quality
 from hrsafety.ros.messages import Pose, pose_in, seconds, stamp, twist_in
@@ -40,8 +40,8 @@ class _Known(NamedTuple):
 class Drive:
     """A law on a robot that is seen and told over a bus.
 
-    It starts when it has heard of the robot and of people once, for nobody who was not seen is away, and commands at
-    every odometry that comes a control period after the last one.
+    It starts when it has received the robot and people once, for a person who was not seen is not away, and commands
+    at every odometry that comes a control period after the last one.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Drive:
     topic : str
         Where they go.
     complete : bool
-        Whether everybody who is there is in every message: whoever is in it no more has left. Else somebody who is not
+        Whether everybody who is there is in every message: whoever is in it no more has left. Else a person who is not
         seen any more may be anywhere, as of `Controller`.
     age_limit : float or None
         As of `Controller`.
@@ -119,7 +119,7 @@ class Drive:
         walls = map_of(self._world)
         sizes = [*(each.radius for each in self._world.people), *(each.radius for each in self._world.sources)]
         return Controller(
-            robot.law,  # type: ignore[arg-type]  # looked at when this was made
+            robot.law,  # type: ignore[arg-type]  # checked at construction
             robot.body,
             self._goal,
             walls if walls.bounds is not None else None,
@@ -168,7 +168,7 @@ class Drive:
         self._try()
 
     def _hear_scan(self, message: Any) -> None:
-        """Keep a scan, which tells that somebody has left, and what else stands there."""
+        """Keep a scan, which tells that a person has left, and what else stands there."""
         ranges = np.asarray(message.ranges, dtype=np.float64)
         if self._lidar is None and not self._learn(message, len(ranges)):
             return
@@ -193,7 +193,7 @@ class Drive:
             self._lidar = None
             self._count("scan_refused", f"scans are not used: {error}")
             return False
-        self._seen_at = -math.inf  # the new controller knows nobody yet
+        self._seen_at = -math.inf  # the new controller knows no person yet
         return True
 
     def _hear_transforms(self, message: Any) -> None:
@@ -236,7 +236,7 @@ class Drive:
             self._goal = before
             self._count("goal_pose_refused", f"/goal_pose is refused: {error}")
             return
-        self._seen_at = -math.inf  # the new one knows nobody yet
+        self._seen_at = -math.inf  # the new one knows no person yet
 
     def _count(self, code: str, text: str) -> None:
         self.counts[code] += 1
@@ -322,7 +322,7 @@ class Drive:
         self._gone.clear()
         self._tell(now, _twist(self.last, known.pose.yaw))
 
-    def _tell(self, time: float, twist: Twist) -> None:
+    def _tell(self, time: float, twist: PlanarTwist) -> None:
         fields = {
             "linear": {"x": twist.ahead, "y": twist.left, "z": 0.0},
             "angular": {"x": 0.0, "y": 0.0, "z": twist.rate},
@@ -332,9 +332,9 @@ class Drive:
         self._send(self._answer)
 
 
-def _twist(command: Command, yaw: float) -> Twist:
+def _twist(command: Command, yaw: float) -> PlanarTwist:
     """Return what a base is told: of two wheels speed and turn rate, else the velocity in its own frame."""
     if command.speed is not None and command.turn_rate is not None:
-        return Twist(command.speed, 0.0, command.turn_rate)
+        return PlanarTwist(command.speed, 0.0, command.turn_rate)
     (x, y), sin, cos = command.velocity, math.sin(yaw), math.cos(yaw)
-    return Twist(cos * x + sin * y, cos * y - sin * x, 0.0)
+    return PlanarTwist(cos * x + sin * y, cos * y - sin * x, 0.0)

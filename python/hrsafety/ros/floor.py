@@ -1,4 +1,4 @@
-"""People of a world around a robot that somebody else moves."""
+"""People of a world around a robot that is driven from outside."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ _FASTEST = 1e6
 """Its limits in m/s and m/s^2 let it be wherever it is put."""
 _SIGHT = 1e5
 _STRIDE = 6.0
-"""Nobody who comes from a source is faster, in m/s: who is farther away than that is somebody else."""
+"""No person who comes from a source is faster, in m/s: who is farther away than that is another person."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Crowd:
-    """Those who are there at an instant: n people.
+    """People at an instant, n of them.
 
     Attributes
     ----------
     number : ndarray of int, shape (n,)
-        Who; numbers stay with somebody and are not used again.
+        Who; numbers stay with a person and are not used again.
     position, velocity : ndarray, shape (n, 2)
         In m and m/s.
     radius : ndarray, shape (n,)
@@ -116,7 +116,7 @@ class _Put:
         self._walls = sum(len(wall) - 1 if isinstance(wall, tuple) else 1 for wall in told)
         self._next = self._people
         self._guests = (np.empty(0, dtype=np.int64), np.empty((0, 2)))
-        """Numbers and places of those who came from sources, by their places in the list; below 0 where nobody is."""
+        """Numbers and places of those who came from sources, by their places in the list; below 0 for nothing."""
 
     def velocity(self, situation: Situation) -> Pair:
         """Return the velocity that brings the robot where it is to be."""
@@ -138,7 +138,7 @@ class _Put:
         return Crowd(number, position, velocity, situation.obstacle_radius[there])
 
     def _named(self, slot: npt.NDArray[np.intp], position: Array, slots: int) -> npt.NDArray[np.int64]:
-        """Return numbers of those who came from sources, by their places in the list, which somebody else may take."""
+        """Return numbers of those who came from sources, by their places in the list, which another person may take."""
         numbers, places = self._guests
         found = np.full(len(slot), -1, dtype=np.int64)
         if len(numbers) == slots:

@@ -57,7 +57,7 @@ class Pose(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """Somebody at an instant: name, place in m, velocity in m/s, radius in m."""
+    """A person at an instant: name, place in m, velocity in m/s, radius in m."""
 
     name: str
     x: float
@@ -139,7 +139,7 @@ def scan(time: float, lidar: Lidar, ranges: Array, period: float) -> Message:
 
 
 def people(time: float, seen: Iterable[Seen]) -> Message:
-    """Return people_msgs/People; names are numbers that stay with somebody."""
+    """Return people_msgs/People; names are numbers that stay with a person."""
     return {
         "header": _header("map", time),
         "people": [

@@ -1,4 +1,4 @@
-"""What happened to a robot on a bus, leg by leg, and its score."""
+"""Record of a robot on a bus, leg by leg, and its score."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from hrsafety.plausibility import ResultWarning
 from hrsafety.ros.base import MovingBase
 from hrsafety.ros.floor import Crowd
 
-__all__ = ["Leg", "Record"]
+__all__ = ["BusRecord", "Leg"]
 
 _SAME = 0.01
 """A goal that is as near as that to the one before is the same, in m."""
@@ -33,7 +33,7 @@ _MOVED = 0.05
 
 
 class Leg:
-    """A part of a run with one goal, in which nobody carried the robot.
+    """A part of a run with one goal, in which the robot was not carried.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ class Leg:
 
     @property
     def outcome(self) -> str:
-        """What became of the robot: ``"superseded"`` where another goal or place came before it arrived."""
+        """Outcome of the leg: ``"superseded"`` where another goal or place came before the robot arrived."""
         touched = sum((self.contacts.moving, self.contacts.standing, self.contacts.apart, self.metrics.wall_contacts))
         if touched:
             return "collided"
@@ -142,8 +142,8 @@ class Leg:
         return "superseded" if self.superseded else "timed_out"
 
 
-class Record:
-    """What happened to a robot on a bus.
+class BusRecord:
+    """Record of a robot on a bus.
 
     A leg ends where the robot is put elsewhere, or gets another goal; contacts count in all of them.
 

@@ -12,7 +12,7 @@ from hrsafety.pages import DASH
 from hrsafety.pages.report import Report, ReportTable, Section
 from hrsafety.ros.base import limits_of
 from hrsafety.ros.bridge import Settings
-from hrsafety.ros.record import Leg, Record
+from hrsafety.ros.record import BusRecord, Leg
 
 __all__ = ["report_of"]
 
@@ -31,15 +31,15 @@ _COUNTED = {
     "initialpose": "places taken",
     "initialpose_refused": "places refused",
 }
-"""What each count means."""
+"""Meaning of each count."""
 
 
-def report_of(record: Record, settings: Settings, source: str) -> Report:
+def report_of(record: BusRecord, settings: Settings, source: str) -> Report:
     """Return what came of a run.
 
     Parameters
     ----------
-    record : Record
+    record : BusRecord
         What happened.
     settings : Settings
         How the bridge ran.
@@ -78,7 +78,7 @@ def report_of(record: Record, settings: Settings, source: str) -> Report:
     )
 
 
-def _said(record: Record, walls: int) -> str:
+def _said(record: BusRecord, walls: int) -> str:
     """Return the verdict in a sentence."""
     last, contacts = record.legs[-1], record.contacts
     parts = [
@@ -113,7 +113,7 @@ def _settings(settings: Settings) -> dict[str, Any]:
     return {**{name: getattr(settings, name) for name in names}, "lidar": lidar}
 
 
-def _facts(record: Record, settings: Settings, source: str) -> Iterator[tuple[str, str]]:
+def _facts(record: BusRecord, settings: Settings, source: str) -> Iterator[tuple[str, str]]:
     world, lidar = record.world, settings.lidar
     time = sum(float(leg.trajectory.time[-1]) for leg in record.legs)
     delay = f", commands executed {settings.delay:g} s later" if settings.delay else ""
@@ -148,7 +148,7 @@ def _leg(leg: Leg) -> dict[str, Any]:
     }
 
 
-def _legs(record: Record) -> ReportTable:
+def _legs(record: BusRecord) -> ReportTable:
     names = (
         "leg",
         "begins with",
@@ -182,14 +182,14 @@ def _legs(record: Record) -> ReportTable:
     return ReportTable(headers=(names, units), rows=rows, left=(1, 2, 3), printed=True)
 
 
-def _metrics(record: Record) -> ReportTable:
+def _metrics(record: BusRecord) -> ReportTable:
     legs = [f"leg {index}" for index in range(len(record.legs))]
     values = [leg.metrics.to_dict() for leg in record.legs]
     rows = [(metric.name, *(_number(each[metric.name]) for each in values), metric.unit) for metric in METRICS.values()]
     return ReportTable(headers=(("metric", *legs, "unit"),), rows=rows, left=(0,), summary="all of them")
 
 
-def _counts(record: Record) -> ReportTable:
+def _counts(record: BusRecord) -> ReportTable:
     rows = [(record.counts[name], words) for name, words in _COUNTED.items() if record.counts[name]]
     return ReportTable(headers=(("count", "what"),), rows=rows, left=(1,), printed=bool(rows))
 

@@ -24,12 +24,12 @@ ACTIVE_RADIUS = 2.1
 SLOWEST, FASTEST = 0.5, 1.4
 """Walking speeds in m/s."""
 LATEST_ENTRY = 8.0
-"""Last instant at which somebody reaches the border of the area, in s."""
+"""Last instant at which a person reaches the border of the area, in s."""
 STOPPING_SHARE = 0.2
 TIME_LIMIT = 60.0
 """In s; also the time that the robot may rest."""
 INNER_MARGIN = 1.0
-"""Distance from the border within which nobody's way is aimed, in m."""
+"""Distance from the border within which no person's way is aimed, in m."""
 
 
 def random_crowd(

@@ -24,7 +24,7 @@ __all__ = ["TOP", "ScenarioFile", "load", "read_scenario"]
 
 @displayed
 class ScenarioFile(NamedTuple):
-    """What a scenario file describes.
+    """Contents of a scenario file.
 
     Attributes
     ----------

@@ -23,7 +23,7 @@ MOST_PEOPLE = 100_000
 RADIUS = 0.25
 """Radius of a person in m."""
 FAR = 1e6
-"""Distance in m of goals that nobody reaches; no world that is drawn is larger."""
+"""Distance in m of goals that no person reaches; no world that is drawn is larger."""
 MOST_CELLS_EACH = 1000
 """Most cells of a lattice for each person: thinner rectangles have no room for the others."""
 

@@ -29,7 +29,7 @@ START_GRID = 0.4
 LONGEST_RECORDING = 1e5
 """More than a day in s; start instants are listed before any is chosen."""
 LONGEST_STAY = 3600.0
-"""In s. Each instant of a stay is looked at."""
+"""In s. Each instant of a stay is examined."""
 """Start instants lie on this grid in s: the annotation step of the usual recordings."""
 DEFAULT_SPACING = 4.0
 """Least time between two start instants in s."""
@@ -38,7 +38,7 @@ PERSON_RADIUS, CRITICAL_RADIUS, ACTIVE_RADIUS = 0.4, 0.8, 2.1
 NOMINAL_SHARE = 0.7
 """Mean speed of a robot that people hold up, as a share of its largest speed."""
 _SIGHTING_STEP = 0.2
-"""Step in s at which people are looked at to count the traffic."""
+"""Step in s at which people are examined to count the traffic."""
 
 
 @displayed
@@ -100,7 +100,7 @@ def crossings(
 
     The robot goes straight across `Recording.main_flow`, from right to left of its direction
     and through its center. Start instants lie on a grid of 0.4 s, one crossing at 0.7 of the
-    largest speed or more before the end of the recording, and never where somebody touches the
+    largest speed or more before the end of the recording, and never where a person touches the
     start. They are chosen by the traffic alone, never by how a run ends:
 
     - ``"busiest"``: instants at least ``spacing`` apart are taken in the order of their
@@ -108,12 +108,12 @@ def crossings(
       straight at 0.7 of its largest speed, about the mean speed of one that people hold up;
       the earlier one first among equals. In ordinary recordings most instants meet few people,
       so evenly spaced ones test little.
-    - ``"even"``: instants are spaced evenly over the recording; one at which somebody touches
+    - ``"even"``: instants are spaced evenly over the recording; one at which a person touches
       the start is moved to the next free instant.
 
     Every person who is in view for some time within ``time_limit`` from the start becomes an
     obstacle that follows the recording and does not react to the robot; after the end of the
-    recording nobody is there. Buildings and parked cars are not in the recording and so not in
+    recording no person is there. Buildings and parked cars are not in the recording and so not in
     the scenario. The robot may rest as long as the time limit: waiting is not giving up.
 
     Parameters
@@ -146,7 +146,7 @@ def crossings(
     Raises
     ------
     InvalidParameterError
-        If a number is out of range, nobody moves, or the recording is too short or too crowded
+        If a number is out of range, no person moves, or the recording is too short or too crowded
         for so many runs.
 
     Examples
@@ -259,7 +259,7 @@ def _candidates(recording: Recording, route: _Route) -> Array:
 
 
 def _nobody_near(recording: Recording, instants: Array, place: Array, distance: float) -> npt.NDArray[np.bool_]:
-    """Return at which of the instants nobody is within a distance of a place."""
+    """Return at which of the instants no person is within a distance of a place."""
     free = np.ones(len(instants), dtype=bool)
     for _, time, position in recording.tracks():
         seen = slice(*np.searchsorted(instants, (time[0], np.nextafter(time[-1], np.inf))))

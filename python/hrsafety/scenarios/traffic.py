@@ -39,7 +39,7 @@ def random_traffic(obstacles: int, *, seed: int, robot: nav.HolonomicRobot | Non
     from 2 to 8 m, on a course uniform over all directions that differ by at least 20 degrees
     from the way, at an instant uniform within 4 s of the one at which a robot at full speed
     would be there. Drawn again are obstacles that start so near to the robot that it is inside
-    their critical region. Nobody gives way; the regions are the computed ones.
+    their critical region. No person gives way; the regions are the computed ones.
 
     The robot may rest as long as the time limit: waiting is not giving up.
 

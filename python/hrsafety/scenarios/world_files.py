@@ -68,7 +68,7 @@ def load_world(path: str | PathLike[str]) -> nav.World:
     r"""Read a scenario file as a world in which people react to the robot.
 
     Every file of `load` is one: what stands becomes walls, what moves becomes people who walk as the file says and
-    react to nobody. Beside its keys a file may have:
+    react to no person. Beside its keys a file may have:
 
     - ``[[people]]``, each with the fields of `Person` but ``recording``; ``model`` is a word such as
       ``"collision_free_speed"``;

@@ -59,7 +59,7 @@ class _Words(NamedTuple):
 
 @displayed
 class Verdict(_Words):
-    """What a force and a pressure mean for a limit.
+    """Verdict on a force and a pressure against a limit.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class Verdict(_Words):
 @displayed
 @dataclass(frozen=True, slots=True)
 class ContactLimit:
-    """What a region of the body may bear in one class of contact.
+    """Limits of a region of the body in one class of contact.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ class ContactLimit:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What has to be said beside the numbers: the edition, every certainty below certain, what is missing."""
+        """Notes beside the numbers: the edition, every certainty below certain, missing values."""
         lines = [f"{self.title}, edition {self.edition}"]
         lines += [f"{name}: {word}" for name, word in self.certainty.items() if word != "certain"]
         if not self.permitted:

@@ -20,7 +20,7 @@ __all__ = ["SpeedCurve", "StoppingData", "separation_distance", "separation_spee
 WALKING_SPEED = 1.6
 """Speed of a person in m/s whose speed is not measured."""
 STANDING = 0.1
-"""Below this speed, in m/s, somebody stands rather than walks."""
+"""Below this speed, in m/s, a person stands rather than walks."""
 
 _QUANTITIES = {
     "distance": "person_distance",

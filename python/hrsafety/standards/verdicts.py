@@ -1,4 +1,4 @@
-"""What loads and speeds mean for limits: the words of verdicts, their order and how they are shown."""
+"""Verdicts on loads and speeds against limits: their words, their order and how they are shown."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ VERDICT_WORDS = MappingProxyType(
 """Verdicts as pages and tables show them; only the last one is good."""
 
 VERDICTS = tuple(VERDICT_WORDS)
-"""What a load means for a limit: of several the first one counts."""
+"""Verdicts on a load against a limit: of several the first one counts."""
 
 
 def strictest(words: Iterable[str]) -> str:

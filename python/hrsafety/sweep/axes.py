@@ -1,4 +1,4 @@
-"""What is varied and what is found: axes and columns, each with its unit."""
+"""Varied axes and result columns of a sweep, each with its unit."""
 
 from __future__ import annotations
 

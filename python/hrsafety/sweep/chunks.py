@@ -27,7 +27,7 @@ CHUNK_BYTES = 1 << 22
 
 @dataclass(frozen=True, slots=True)
 class WorkerTask:
-    """Everything that a worker needs to compute any chunk.
+    """Task of a worker, enough to compute any chunk.
 
     Attributes
     ----------

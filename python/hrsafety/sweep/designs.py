@@ -21,7 +21,7 @@ from hrsafety.sweep.axes import Axis
 __all__ = ["Design", "Grid", "checked_design"]
 
 MOST_ROWS = 2**53
-# Rows that are looked at for warnings before a sweep runs.
+# Rows that are examined for warnings before a sweep runs.
 MOST_LOOKED_AT = 64
 
 
@@ -67,7 +67,7 @@ class Design(ABC):
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """What a reader of the results should know of the design; empty when there is nothing."""
+        """Doubts about the design that a reader of the results should know; empty when there is nothing."""
         return ()
 
     def rows(self, start: int = 0, stop: int | None = None) -> Array:

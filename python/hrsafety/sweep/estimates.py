@@ -1,4 +1,4 @@
-"""What a sweep will take, from some of its rows: size of its files and time."""
+"""Cost of a sweep, from some of its rows: size of its files and time."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _MARK_LENGTH = 36
 @displayed
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SweepEstimate:
-    """What a sweep will take.
+    """Cost of a sweep.
 
     Attributes
     ----------

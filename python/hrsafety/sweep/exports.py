@@ -30,7 +30,7 @@ PARQUET_KEY = "hrsafety"
 
 
 class Stored(Protocol):
-    """What is written; a `SweepResult`, which knows this module."""
+    """Result that is written: a `SweepResult`, which knows this module."""
 
     @property
     def design(self) -> Design: ...
@@ -181,7 +181,7 @@ def to_xarray(result: Stored, columns: Sequence[Column], *, lazy: bool = False) 
 
 
 def _arrays(result: Stored, columns: Sequence[Column], shape: tuple[int, ...], lazy: bool) -> dict[str, Any]:
-    """Return columns in a shape, read at once or by Dask when they are looked at."""
+    """Return columns in a shape, read at once or by Dask when they are used."""
     if lazy:
         return {column.name: dask_array(result.lazy(column, shape)) for column in columns}
     found = result.to_numpy([column.name for column in columns])

@@ -1,4 +1,4 @@
-"""What makes two sweeps the same: settings as plain data, their fingerprint, their differences."""
+"""Identity of sweeps: settings as plain data, their fingerprint, their differences."""
 
 from __future__ import annotations
 

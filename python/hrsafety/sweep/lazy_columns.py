@@ -1,4 +1,4 @@
-"""Columns of a sweep that look like arrays and are read where they are looked at."""
+"""Columns of a sweep that look like arrays and are read where they are used."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ _OF_SCENARIOS = ("entered_active", "force_evaluations")
 _OF_SCENES = ("rest_time", "obstacle_speed")
 """Columns and axes that only scenarios have."""
 ROWS_NOT_LOOKED_AT = "rows_not_looked_at"
-"""Code of scenes that were not looked at for doubts."""
+"""Code of scenes that were not examined for doubts."""
 _FIRST = (
     Column(name="outcome", kind="word", words=tuple(OUTCOMES)),
     Column(name="end_time", unit="s"),
@@ -299,7 +299,7 @@ class NavigationStudy(Study):
     def judged(self, design: Design) -> tuple[ResultWarning, ...]:
         """Return the doubts of a design before it runs, see `Study.judged`.
 
-        A function makes any scene of a row: of few rows all are looked at, of more some, and a doubt says so.
+        A function makes any scene of a row: of few rows all are examined, of more some, and a doubt says so.
         """
         if self.scenario is None:
             return self.doubts(design.looked_at())

@@ -69,7 +69,7 @@ class SweepResult:
 
     @property
     def axes(self) -> tuple[Axis, ...]:
-        """What was varied, with units."""
+        """Varied axes, with units."""
         return self._design.axes
 
     @property
@@ -252,7 +252,7 @@ class SweepResult:
         return exports.to_polars(self, self.selected(names))
 
     def lazy(self, column: Column, shape: tuple[int, ...]) -> LazyColumn:
-        """Return a column that is read where it is looked at, in the shape of its dimensions."""
+        """Return a column that is read where it is used, in the shape of its dimensions."""
         return LazyColumn(self._store, column, shape, self._chunk_rows * max(len(self.cases), 1))
 
     def to_xarray(self, names: Iterable[str] | None = None, *, lazy: bool = False) -> xarray.Dataset:

@@ -222,7 +222,7 @@ def _missing(wanted: range, store: Folder | Memory) -> list[int]:
 
 
 class _Report:
-    """What is finished, and who is told."""
+    """Progress of a sweep: finished rows, and the callback that is notified."""
 
     def __init__(self, plan: SweepPlan, wanted: range, missing: Iterable[int], progress: Progress | None) -> None:
         self._plan, self._progress = plan, progress

@@ -167,7 +167,7 @@ class Sobol(_Sampled):
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """That the sequence is not balanced, if its length is not a power of two."""
+        """Doubt that the sequence is not balanced, if its length is not a power of two."""
         below = 1 << (self.size.bit_length() - 1)
         if below == self.size:
             return ()

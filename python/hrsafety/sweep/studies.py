@@ -1,4 +1,4 @@
-"""What is computed for each row of a design: what all studies share."""
+"""Studies: what is computed for each row of a design."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Attacks on zones: persons and commands that try to make the robot touch somebody while it moves toward the person."""
+"""Attacks on zones: persons and commands that try to make the robot touch a person while it moves toward the person."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class _Attack(NamedTuple):
 
 @displayed
 class Attacked(NamedTuple):
-    """What attacks came to.
+    """Outcome of attacks.
 
     Attributes
     ----------

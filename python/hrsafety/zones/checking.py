@@ -89,7 +89,7 @@ class ZoneCheck:
     Attributes
     ----------
     verdict : str
-        ``"broken"``: an attack made the robot touch somebody while it moved toward the person; ``"not_covered"``: none
+        ``"broken"``: an attack made the robot touch a person while it moved toward the person; ``"not_covered"``: none
         did, but commands are without a zone, or a needed zone lies beyond sight; ``"holds"``: no attack of so many did.
     shapes : tuple of ShapeCheck
         Shapes that stop.

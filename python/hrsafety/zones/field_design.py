@@ -184,7 +184,7 @@ def design(
     min_points : int
         Points in a zone that stop the robot. Fewer let the scanner see legs farther away; more ignore dust.
     faults_only : bool
-        Whether only faces that move outward must stay clear, so that the robot touches nobody; ``False``: nobody
+        Whether only faces that move outward must stay clear, so that the robot touches no person; ``False``: no person
         reaches the robot from any side before it stands.
 
     Returns

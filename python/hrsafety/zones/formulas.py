@@ -1,6 +1,6 @@
-"""Closed forms of protective zones: how far a zone must reach for a robot that brakes when somebody enters it.
+"""Closed forms of protective zones: how far a zone must reach for a robot that brakes when a person enters it.
 
-A robot of speed v begins to brake T after somebody enters the zone, the deceleration builds up linearly within t_b and
+A robot of speed v begins to brake T after a person enters the zone, the deceleration builds up linearly within t_b and
 is d from then on. It stops after the travel s and the time t_s; a person walks u t_s meanwhile.
 """
 
@@ -40,7 +40,7 @@ MOST_DELAYS = 2000
 
 @displayed
 class StoppingTravel(NamedTuple):
-    """Way and time from the instant at which somebody enters a zone until the robot stands.
+    """Way and time from the instant at which a person enters a zone until the robot stands.
 
     Attributes
     ----------

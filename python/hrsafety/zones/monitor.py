@@ -295,7 +295,7 @@ class MonitoredVelocity(NamedTuple):
 class CollisionMonitor:
     """Nav2's collision monitor: zones in their order, and the sources it listens to.
 
-    Each command is looked at once, with the points of the latest scans in the base frame. ``base_shift_correction`` is
+    Each command is examined once, with the points of the latest scans in the base frame. ``base_shift_correction`` is
     not credited: points stand where the scan saw them.
 
     Parameters

@@ -13,7 +13,7 @@ import numpy as np
 from hrsafety._arguments import Array
 from hrsafety._words import meant
 from hrsafety.errors import FileError, InvalidParameterError, Shown
-from hrsafety.io.yaml import Section, YamlDocument, read_yaml
+from hrsafety.io.yaml import YamlDocument, YamlSection, read_yaml
 from hrsafety.plausibility import ResultWarning
 from hrsafety.zones.monitor import ACTIONS, MOST_STEPS, TYPES, CollisionMonitor, MonitorPolygon, VelocityRange
 from hrsafety.zones.polygons import checked
@@ -45,7 +45,7 @@ def corners_of_text(text: str) -> Array | None:
     return np.array([[float(x), float(y)] for x, y in _POINT.findall(text)])
 
 
-def _word(keys: Section, key: str, words: Sequence[str], default: str | None = None) -> str:
+def _word(keys: YamlSection, key: str, words: Sequence[str], default: str | None = None) -> str:
     """Return one of the words that are allowed."""
     if default is not None and key not in keys:
         return default
@@ -56,7 +56,7 @@ def _word(keys: Section, key: str, words: Sequence[str], default: str | None = N
 
 
 def _number(
-    keys: Section, key: str, default: float | None = None, *, least: float = -math.inf, above: bool = False
+    keys: YamlSection, key: str, default: float | None = None, *, least: float = -math.inf, above: bool = False
 ) -> float:
     """Return a number of at least a bound, or above it."""
     if default is not None and key not in keys:
@@ -67,7 +67,7 @@ def _number(
     return found
 
 
-def _whole(keys: Section, key: str, default: int, least: int = 1) -> int:
+def _whole(keys: YamlSection, key: str, default: int, least: int = 1) -> int:
     """Return a whole number of at least a bound."""
     if key not in keys:
         return default
@@ -77,11 +77,11 @@ def _whole(keys: Section, key: str, default: int, least: int = 1) -> int:
     return found
 
 
-def _flag(keys: Section, key: str, default: bool) -> bool:
+def _flag(keys: YamlSection, key: str, default: bool) -> bool:
     return keys[key].flag() if key in keys else default
 
 
-def _names(keys: Section, key: str) -> tuple[str, ...]:
+def _names(keys: YamlSection, key: str) -> tuple[str, ...]:
     """Return a list of different names."""
     found = keys[key].texts()
     if len(set(found)) < len(found):
@@ -89,7 +89,7 @@ def _names(keys: Section, key: str) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _corners(keys: Section, key: str = "points") -> Array:
+def _corners(keys: YamlSection, key: str = "points") -> Array:
     """Return a polygon from text such as ``"[[0.3, 0.2], ...]"``, a flat list or a list of pairs."""
     rule = 'be corners as "[[x, y], [x, y], ...]" or a flat list x, y, x, y, ...'
     value = keys[key].plain
@@ -153,7 +153,7 @@ def load_monitor(path: object, *, footprint: object = None) -> CollisionMonitor:
     return replace(found, source=str(path))
 
 
-def node_of(root: Section) -> Section:
+def node_of(root: YamlSection) -> YamlSection:
     """Return the parameters of the node: those under its name, or of the only node that has polygons."""
     found = [each for each in _nodes(root, 0) if {"polygons", "observation_sources"} & set(each.keys())]
     named = [each for each in found if len(each.path) > 1 and str(each.path[-2]).endswith("collision_monitor")]
@@ -165,7 +165,7 @@ def node_of(root: Section) -> Section:
     return chosen[0]
 
 
-def _nodes(section: Section, depth: int) -> list[Section]:
+def _nodes(section: YamlSection, depth: int) -> list[YamlSection]:
     """Return every ``ros__parameters`` in a file."""
     found = []
     if isinstance(section.plain, dict) and depth < DEEPEST:
@@ -220,12 +220,12 @@ def monitor_of(document: YamlDocument, *, footprint: object = None) -> Collision
     )
 
 
-def _told(section: Section, words: str) -> tuple[str, str]:
+def _told(section: YamlSection, words: str) -> tuple[str, str]:
     """Return subject and message of a doubt about a key."""
     return ".".join(map(str, section.path)), f"{section.place}: {words}"
 
 
-def _sources(node: Section, doubts: list[ResultWarning]) -> tuple[str, ...]:
+def _sources(node: YamlSection, doubts: list[ResultWarning]) -> tuple[str, ...]:
     """Return the names of the sources that are enabled; each stands in the file."""
     found = []
     for name in _names(node, "observation_sources"):
@@ -242,7 +242,7 @@ def _sources(node: Section, doubts: list[ResultWarning]) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _timeout(node: Section, sources: Sequence[str]) -> float:
+def _timeout(node: YamlSection, sources: Sequence[str]) -> float:
     """Return the longest silence that a source may have; 0 if one may be silent for good."""
     shared = _number(node, "source_timeout", 2.0, least=0.0)
     own = [_number(node[name], "source_timeout", shared, least=0.0) for name in sources]
@@ -250,7 +250,7 @@ def _timeout(node: Section, sources: Sequence[str]) -> float:
 
 
 def _polygon(
-    keys: Section, name: str, sources: tuple[str, ...], footprint: object, doubts: list[ResultWarning]
+    keys: YamlSection, name: str, sources: tuple[str, ...], footprint: object, doubts: list[ResultWarning]
 ) -> MonitorPolygon:
     """Return one zone."""
     kind, action = _word(keys, "type", TYPES), _word(keys, "action_type", ACTIONS)
@@ -294,7 +294,7 @@ def _polygon(
     return MonitorPolygon(**given)
 
 
-def _shapeless(section: Section, doubts: list[ResultWarning]) -> Array | None:
+def _shapeless(section: YamlSection, doubts: list[ResultWarning]) -> Array | None:
     """Doubt a zone whose shape a topic brings, and return none."""
     doubts.append(
         ResultWarning("shape_unknown", *_told(section, "a topic brings the shape: the zone is taken not to act"))
@@ -311,7 +311,7 @@ def _body_corners(footprint: object) -> Array:
     return body.rounding * np.stack([np.cos(angles), np.sin(angles)], axis=1)
 
 
-def _range(keys: Section, name: str, holonomic: bool, doubts: list[ResultWarning]) -> VelocityRange:
+def _range(keys: YamlSection, name: str, holonomic: bool, doubts: list[ResultWarning]) -> VelocityRange:
     """Return one range of a velocity polygon."""
     given = {each: _number(keys, each) for each in _RANGE[:4]}
     if holonomic:
@@ -324,7 +324,7 @@ def _range(keys: Section, name: str, holonomic: bool, doubts: list[ResultWarning
     return VelocityRange(name=name, corners=_corners(keys), **given)
 
 
-def _doubt_unknown(keys: Section, known: Sequence[str], doubts: list[ResultWarning]) -> None:
+def _doubt_unknown(keys: YamlSection, known: Sequence[str], doubts: list[ResultWarning]) -> None:
     for key in keys.keys():  # noqa: SIM118  # of YAML
         if key not in known:
             near = meant(key, known)

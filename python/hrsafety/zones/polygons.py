@@ -85,7 +85,7 @@ def area(corners: Array) -> float:
 def inside(corners: Array, x: Array, y: Array, among: npt.NDArray[np.bool_] | None = None) -> npt.NDArray[np.bool_]:
     """Return which points a polygon holds: those from which a ray along x crosses its edges an odd number of times.
 
-    Only points among those that are wanted are looked at, and of them those in the box around the polygon.
+    Only points among those that are wanted are examined, and of them those in the box around the polygon.
     """
     low, high = corners.min(axis=0), corners.max(axis=0)
     near = (x >= low[0]) & (x <= high[0]) & (y >= low[1]) & (y <= high[1])

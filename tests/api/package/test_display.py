@@ -28,11 +28,11 @@ NO_RESULTS = {
     nav.sensing.RobotSensor: "the base of sensors",
     sweep.Design: "the base of designs",
     Table: "the base of tables",
-    nav.maps.Wall: "a kind of wall, for type checkers",
+    nav.maps.PolylineWall: "a kind of wall, for type checkers",
     plausibility.Range: "a row of the table of ranges",
     ResultWarning: "a line of the results that carry it",
     ros.Bridge: "a node",
-    **dict.fromkeys((ros.Publisher, ros.Quality, ros.Leg, ros.Record), "parts of a node"),
+    **dict.fromkeys((ros.Publisher, ros.Quality, ros.Leg, ros.BusRecord), "parts of a node"),
 }
 
 

@@ -163,7 +163,7 @@ def test_runs_of_one_period_and_runs_that_end_at_once(tmp_path: Path) -> None:
         drawn(lambda: make(short))  # noqa: B023  # called at once
     plotting.animate(short, tmp_path / "short.gif", frames_per_second=2)
     leader = reactive.SoundLeader(start=(0.9, 0.0))
-    inside = [reactive.Disc(center=(0.1, 0.0), radius=0.2)]
+    inside = [reactive.Cylinder(center=(0.1, 0.0), radius=0.2)]
     touched = reactive.follow(reactive.FollowerScene(leader=leader, obstacles=inside, duration=1.0))
     with pytest.raises(InvalidParameterError, match=r"^runs\['a'\] must have a row"):
         plotting.reactive.follower_runs({"a": touched})

@@ -18,7 +18,9 @@ def stepped(step: float) -> reactive.Follower:
     return reactive.Follower(step=step, fix_noise=False, body_radius=BODY)
 
 
-def passing(shape: reactive.Disc | reactive.Box, velocity: tuple[float, float], step: float) -> reactive.FollowerRun:
+def passing(
+    shape: reactive.Cylinder | reactive.Box, velocity: tuple[float, float], step: float
+) -> reactive.FollowerRun:
     """Return the run in which something passes the standing robot."""
     scene = reactive.FollowerScene(
         leader=reactive.SoundLeader(start=(0.9, 0.0)),
@@ -30,7 +32,7 @@ def passing(shape: reactive.Disc | reactive.Box, velocity: tuple[float, float], 
 
 def test_a_small_disc_that_is_never_seen_in_the_body_has_touched_it() -> None:
     # At instants it is 1.5 m to the left and to the right.
-    run = passing(reactive.Disc(center=(-0.1, 4.5), radius=SMALL), (0.0, -30.0), 0.1)
+    run = passing(reactive.Cylinder(center=(-0.1, 4.5), radius=SMALL), (0.0, -30.0), 0.1)
     assert run.contact_obstacle == 0
     assert run.time[-1] == pytest.approx(0.2)
     # Touched where it comes in: on the left, behind.
@@ -56,11 +58,11 @@ def test_a_touch_depends_on_the_way_alone(offset: float, speed: float, start: fl
     reach = BODY + SMALL
     assume(abs(-offset - reach) > 1e-3)
     assume(start + 1.0 < 2.5 * speed)
-    disc = reactive.Disc(center=(offset, side * start), radius=SMALL)
+    disc = reactive.Cylinder(center=(offset, side * start), radius=SMALL)
     run = passing(disc, (0.0, -side * speed), step)
     assert (run.contact_obstacle == 0) == (-offset < reach)
 
 
 def test_what_is_passed_without_a_touch_is_no_contact() -> None:
-    run = passing(reactive.Disc(center=(-0.28, 4.5), radius=SMALL), (0.0, -30.0), 0.1)
+    run = passing(reactive.Cylinder(center=(-0.28, 4.5), radius=SMALL), (0.0, -30.0), 0.1)
     assert run.contact_obstacle is None

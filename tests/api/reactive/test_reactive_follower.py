@@ -190,7 +190,7 @@ def test_scene_of_shapes_of_every_kind() -> None:
     scene = reactive.FollowerScene(
         leader=reactive.SoundLeader(start=(4.0, 0.0)),
         obstacles=[
-            reactive.Disc(center=(2.0, 0.5), radius=0.2),
+            reactive.Cylinder(center=(2.0, 0.5), radius=0.2),
             reactive.Wall(start=(0.0, -1.0), end=(4.0, -1.0)),
             reactive.MovingObstacle(shape=reactive.Box(center=(3.0, 2.0), size=(0.4, 0.4)), velocity=(0.0, -0.2)),
         ],
@@ -207,12 +207,12 @@ def test_scene_of_shapes_of_every_kind() -> None:
 
 INSTANCES: list[Any] = [
     reactive.Box(center=(1.0, 2.0), size=(0.5, 0.25), angle=0.3),
-    reactive.Disc(center=(1.0, 2.0), radius=0.5),
+    reactive.Cylinder(center=(1.0, 2.0), radius=0.5),
     reactive.Wall(start=(0.0, 0.0), end=(1.0, 0.0)),
     reactive.Sonar(rear=True, firing="in_turn"),
     reactive.VirtualImpedance(form="conventional", stiffness=80.0),
     reactive.Follower(standoff=1.2),
-    reactive.MovingObstacle(shape=reactive.Disc(center=(1.0, 2.0), radius=0.5), velocity=(0.1, 0.0), stop=3.0),
+    reactive.MovingObstacle(shape=reactive.Cylinder(center=(1.0, 2.0), radius=0.5), velocity=(0.1, 0.0), stop=3.0),
     reactive.SoundLeader(start=(1.0, 0.0), end=(2.0, 0.0)),
     reactive.FollowerScene(leader=reactive.SoundLeader(start=(1.0, 0.0))),
     reactive.FollowerLayouts(kind="static"),
@@ -229,7 +229,7 @@ def test_parameters_are_values(value: Any) -> None:
 BAD: list[tuple[Callable[[], object], str]] = [
     (lambda: reactive.Box(center=(0.0, 0.0), size=(0.0, 1.0)), "size"),
     (lambda: reactive.Box(center=(math.nan, 0.0), size=(1.0, 1.0)), "center"),
-    (lambda: reactive.Disc(center=(0.0, 0.0), radius=-1.0), "radius"),
+    (lambda: reactive.Cylinder(center=(0.0, 0.0), radius=-1.0), "radius"),
     (lambda: reactive.Wall(start=(math.inf, 0.0), end=(0.0, 0.0)), "start"),
     (lambda: reactive.Sonar(rays=0), "rays"),
     (lambda: reactive.Sonar(beam_width=4.0), "beam_width"),

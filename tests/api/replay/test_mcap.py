@@ -124,7 +124,7 @@ def test_who_is_lost_has_no_pose_and_what_is_not_judged_says_why(tmp_path: Path)
     place = np.stack([time, 0.0 * time], axis=1)
     place[10:20] = np.nan
     robot = replay.PlayedRobot(name="robot", position=place, radius=0.3, clearance=np.full(30, 0.5))
-    lost = replay.NotJudged(0.0, 1.0, "no pose")
+    lost = replay.UnjudgedTime(0.0, 1.0, "no pose")
     shown = replay.Replay(title="x", time=time, robots=[robot], not_judged=[lost])
     _, found = read(plotting.mcap(shown, tmp_path / "x.mcap"))
     assert len(found["/robot"]) == 20

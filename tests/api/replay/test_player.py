@@ -290,7 +290,7 @@ def test_every_key_does_what_it_says(browser: Tab, tmp_path: Path) -> None:
         replay.Event(3.0, "contact", "contact with person 1", (1.5, 15.0)),
         replay.Event(7.0, "arrival", "arrived"),
     ]
-    away = [replay.NotJudged(5.0, 6.0, "person lost nearby")]
+    away = [replay.UnjudgedTime(5.0, 6.0, "person lost nearby")]
     browser.open(page_of(walkers(100, 5, events=events, not_judged=away), tmp_path))
     steps = [
         *(("ArrowRight", False, "0.100"), ("ArrowRight", True, "1.100"), ("ArrowLeft", False, "1.000")),

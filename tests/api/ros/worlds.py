@@ -8,7 +8,7 @@ from typing import Any
 
 from api.ros.fake_bus import FakeBus, stamped, told
 from hrsafety import navigation as nav
-from hrsafety.ros import Bridge, Record, Settings
+from hrsafety.ros import Bridge, BusRecord, Settings
 from hrsafety.ros.drive import Drive
 
 ROBOT = nav.DifferentialDriveRobot(radius=0.25, max_speed=0.8, max_acceleration=2.0, max_turn_rate=1.5)
@@ -35,7 +35,7 @@ def empty(**given: Any) -> nav.World:
 
 def served(
     world: nav.World, answer: Callable[[FakeBus], None] | None, *, bus: FakeBus | None = None, **settings: Any
-) -> tuple[Record, FakeBus]:
+) -> tuple[BusRecord, FakeBus]:
     """Run a world in lock-step, unless told otherwise, with somebody who answers."""
     own = FakeBus() if bus is None else bus
     own.answer = answer

@@ -64,7 +64,7 @@ _FOAM: Keys = MappingProxyType(
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FoamDesignFile:
-    """What a foam design file describes.
+    """Contents of a foam design file.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ class FoamDesignFile:
     sought : Foam
         Thickness and linear range of the foam that is looked for.
     damping : ndarray, shape (n,)
-        Foam damping that is looked at, in N s/m.
+        Foam damping that is examined, in N s/m.
     foams : dict of str to Foam
         Foams to judge, by name.
     """

@@ -1,4 +1,4 @@
-"""What `hrsafety foam` found: the foams of a file with their checks, and the boundaries."""
+"""Findings of `hrsafety foam`: the foams of a file with their checks, and the boundaries."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ class CheckedFoam:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FoundFoams:
-    """Everything that was found of a design.
+    """Findings about a design.
 
     Attributes
     ----------

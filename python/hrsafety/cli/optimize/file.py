@@ -81,7 +81,7 @@ _COMPARE: Keys = MappingProxyType({"name": kind.word, **dict.fromkeys(GAIN_NAMES
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GainStudy:
-    """What a gain study file describes.
+    """Contents of a gain study file.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a search for gains found: gain sets with their scores, flatness, sensitivity, the front."""
+"""Findings of a gain study: gain sets with their scores, flatness, sensitivity, the front."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ METRIC_UNITS = {
 MOST_PATHS = 8
 """Scenarios whose paths are drawn."""
 NOT_EVERYWHERE = "they touch an obstacle or do not arrive somewhere, which the study allows (require_arrival = false)"
-"""What is wrong with best gains that need not arrive everywhere."""
+"""Shortcoming of best gains that need not arrive everywhere."""
 MOST_COLUMNS = 6
 """Scenarios that have a column of their own in the table of gain sets."""
 
@@ -55,7 +55,7 @@ class Scored:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FoundGains:
-    """Everything that was found.
+    """Findings of a gain study.
 
     Attributes
     ----------

@@ -91,7 +91,7 @@ _SHOWN = frozenset(
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SweepFile:
-    """What a sweep file describes.
+    """Contents of a sweep file.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a sweep found, in few numbers: read once, chunk by chunk."""
+"""Summary of a sweep in few numbers: read once, chunk by chunk."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class Words:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Summary:
-    """What a sweep found.
+    """Summary of a sweep.
 
     Attributes
     ----------

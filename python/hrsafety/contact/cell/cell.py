@@ -32,7 +32,7 @@ FASTEST_PLANNED = 20.0
 ALLOWED_CHANCE = 0.01
 """Chance of being too fast that is still within limits, unless the cell gives another one."""
 NEVER_CONFIRMED = ("beyond_data", "invalid_numbers", "not_checked", "region_unknown", "unfinished")
-"""Doubts that nobody can confirm away: nothing is known there."""
+"""Doubts that no confirmation removes: nothing is known there."""
 NO_COVERING = "none"
 """Word for a bare contact where a file has a covering for all others."""
 
@@ -113,7 +113,7 @@ class Cell:
     allowed_chance : float
         Chance of being too fast that is still within limits.
     confirmed : dict of str to str
-        Doubts by code that somebody has confirmed not to hold here, with reason and name.
+        Doubts by code that were confirmed not to hold here, with reason and name.
     title : str
         Heading of the page.
     given : dict

@@ -17,7 +17,7 @@ from hrsafety.plausibility import ResultWarning
 __all__ = ["chance_doubts", "chance_of", "spread"]
 
 CERTAIN = ("covering", "draws", "human_speed", "limits", "progress", "region", "seed", "speed", "threads")
-"""What no distribution is for."""
+"""Numbers that cannot be uncertain."""
 OF_REGIONS = ("body_mass", "stiffness", "force_limit", "pressure_limit")
 """Numbers that differ from region to region: one distribution for all of them would be wrong for most."""
 

@@ -18,7 +18,7 @@ from hrsafety.plausibility import ResultWarning, implausible
 __all__ = ["Driven", "drive_doubts", "drive_fields", "driven_of"]
 
 STIFFNESSES = np.concatenate([[0.0], np.geomspace(1e-2, 1e2, 25)])
-"""Stiffnesses of the drive beside that of the region; a rigid drive is looked at, too."""
+"""Stiffnesses of the drive beside that of the region; a rigid drive is examined, too."""
 SETTLING = 1.0
 """Time in s after the robot stands in which loads may still rise."""
 HALVINGS = 30
@@ -166,7 +166,7 @@ def _words(cell: Cell) -> str:
 
 
 def drive_doubts(cell: Cell, planned: PlannedContact, driven: Driven | None) -> tuple[ResultWarning, ...]:
-    """Return the doubts about a clamped contact: kept only without the drive, which nobody gave, or an odd stop."""
+    """Return the doubts about a clamped contact: kept only without the drive, which was not given, or an odd stop."""
     if driven is None:
         # A robot that cannot yield has no allowed speed anyway.
         return () if cell.separation is not None or math.isinf(cell.robot.mass) else (UNKNOWN,)

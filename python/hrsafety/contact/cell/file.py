@@ -35,7 +35,7 @@ __all__ = ["BASE_REGIONS", "load_cell"]
 _PLAIN = ("title", "human_speed", "separation", "uncertain", "draws", "seed", "allowed_chance", "confirmed")
 """Keys that are arguments of a cell as they are."""
 BASE_REGIONS = ("lower_leg", "thigh_knee")
-"""What a mobile base meets, unless the file names regions."""
+"""Regions that a mobile base meets, unless the file names others."""
 
 _TOP: Keys = MappingProxyType(
     {

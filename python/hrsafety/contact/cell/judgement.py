@@ -15,7 +15,7 @@ from hrsafety.standards.verdicts import speed_verdict
 __all__ = ["FASTEST", "Judged", "decided", "governing", "judged_of", "known", "reasons_of"]
 
 FASTEST = 20.0
-"""Up to this speed, in m/s, contacts are looked at."""
+"""Up to this speed, in m/s, contacts are examined."""
 NOT_PERMITTED = ResultWarning("not_permitted", "limits", "the limit set does not permit this contact")
 REGION_UNKNOWN = ResultWarning(
     "region_unknown", "limits", "the limit set has no spring constant or no mass of the region"

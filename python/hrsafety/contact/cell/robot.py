@@ -103,7 +103,7 @@ class ContactRobot:
     position, direction : tuple of float or None
         The point in it and the direction of the mass.
     poses : int
-        How many were looked at.
+        How many were examined.
     file, sha256, name : str or None
         The URDF.
     warnings : tuple of ResultWarning

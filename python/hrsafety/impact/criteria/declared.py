@@ -17,7 +17,7 @@ C = TypeVar("C", bound=type)
 
 
 class Criterion(NamedTuple):
-    """What is known about a criterion.
+    """Declaration of a criterion: label, unit, symbol.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class Criterion(NamedTuple):
 
 
 CRITERIA: Mapping[str, Criterion] = MappingProxyType({row[0]: Criterion(*row) for row in _hrsafety.impact_criteria()})
-"""What the native core declares about each criterion, in the order of rows."""
+"""Declaration of each criterion by the native core, in the order of rows."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

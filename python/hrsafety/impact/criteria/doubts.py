@@ -1,4 +1,4 @@
-"""What a sampled signal says against its own measurement: sign, rest, flat tops, sampling."""
+"""Doubts about the measurement of a sampled signal: sign, rest, flat tops, sampling."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from hrsafety.plausibility import ResultWarning, issue, unsafe_doubts
 __all__ = ["SignalShape", "cut_off", "issued", "measurement_doubts", "mirrored_doubt"]
 
 REST = 0.01
-"""Time over which an acceleration is looked at for its rest, in s."""
+"""Time over which an acceleration is examined for its rest, in s."""
 FORCE_REST = 0.02
 """Time over which a force is, in s."""
 

@@ -201,7 +201,7 @@ def metrics(
         v_r in m/s; the closing speed when ``None``, so that the head is at rest. It matters
         for the power of the manipulator only.
     horizon : float or None
-        Longest time that is looked at, in s; 0.2 when ``None``, 0.05 for a constrained head.
+        Longest time that is examined, in s; 0.2 when ``None``, 0.05 for a constrained head.
 
     Returns
     -------

@@ -16,7 +16,7 @@ from hrsafety.io.logs.clocks import Clocks
 from hrsafety.io.logs.decoding import Decoder, Transform
 from hrsafety.io.logs.frames import Edge, Poses, Tree, unit_quaternions, yaw_of
 from hrsafety.io.logs.grids import map_of
-from hrsafety.io.logs.people_topics import Layout, Sighting, layout_of, sightings
+from hrsafety.io.logs.people_topics import Layout, PersonMessage, layout_of, sightings
 from hrsafety.io.logs.robot_log import Scan
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.plausibility import ResultWarning
@@ -36,7 +36,7 @@ _COMMANDS = ("cmd_vel", "cmd_vel_stamped", "cmd_vel_safe", "cmd_vel_smoothed", "
 
 
 class BagLog:
-    """What is taken from a bag, all in ns and in the order in which it was recorded.
+    """Contents of a bag that a log is made of, all in ns and in the order in which they were recorded.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ class BagLog:
         self.transforms: dict[tuple[str, str, str], list[tuple[int, int, tuple[float, ...]]]] = {}
         self.twists: dict[str, list[tuple[int, int, tuple[float, float, float]]]] = {}
         self.odometry_frames: dict[str, tuple[str, str]] = {}
-        self.seen: list[tuple[int, Sighting]] = []
+        self.seen: list[tuple[int, PersonMessage]] = []
         self.reports: list[tuple[int, int]] = []
         self.scans: list[Scan] = []
         self.keep_scans = scans

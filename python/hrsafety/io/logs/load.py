@@ -23,7 +23,7 @@ from hrsafety.io.logs.jumps import jump_doubt, pose_jumps
 from hrsafety.io.logs.robot_log import RobotLog
 from hrsafety.io.logs.tables import form_of, read_poses
 from hrsafety.io.people.loading import load_people
-from hrsafety.io.reader import Document, Reader, Source, reader_of
+from hrsafety.io.reader import Document, Provenance, Reader, reader_of
 from hrsafety.plausibility import ResultWarning, implausible
 
 __all__ = ["load_log"]
@@ -106,10 +106,10 @@ def load_log(
     given = {name: value for name, value in arguments.items() if value is not None}
     if isinstance(place, Path) and place.is_dir():
         digest = _digest_of_folder(place)
-        return _from_bag(place, Source(path=str(path), format="", sha256=digest, arguments=given), offsets, scans)
+        return _from_bag(place, Provenance(path=str(path), format="", sha256=digest, arguments=given), offsets, scans)
     document = Document(path)
     reader = reader_of("log", document)
-    source = Source(path=str(path), format=reader.name, sha256=document.sha256, arguments=given)
+    source = Provenance(path=str(path), format=reader.name, sha256=document.sha256, arguments=given)
     found: RobotLog = reader.read(document, source, offsets, scans)
     return found
 
@@ -133,7 +133,7 @@ def _digest_of_folder(place: Path) -> str:
 # ---- bags -----------------------------------------------------------------------------------------------
 
 
-def _from_bag(place: Path, source: Source, offsets: dict[str, float], scans: bool) -> RobotLog:
+def _from_bag(place: Path, source: Provenance, offsets: dict[str, float], scans: bool) -> RobotLog:
     given = source.arguments
     people = given.get("people")
     topic = people if isinstance(people, str) and ("[]" in people or not Path(people).exists()) else None
@@ -170,7 +170,7 @@ def _from_bag(place: Path, source: Source, offsets: dict[str, float], scans: boo
     commands = [((stamp - origin) / 1e9, *twist) for stamp, twist in found.commands()]
     return _finished(
         (time, position, heading, twist),
-        source=Source(path=source.path, format=form, sha256=source.sha256, arguments=given),
+        source=Provenance(path=source.path, format=form, sha256=source.sha256, arguments=given),
         frame=frame,
         told=told,
         beside=(people, beside) if beside else None,
@@ -231,7 +231,7 @@ def _ids(names: Sequence[str]) -> npt.NDArray[Any]:
 # ---- tables ---------------------------------------------------------------------------------------------
 
 
-def _from_table(document: Document, source: Source, offsets: dict[str, float], scans: bool) -> RobotLog:
+def _from_table(document: Document, source: Provenance, offsets: dict[str, float], scans: bool) -> RobotLog:
     for name, given in (("robot", source.arguments.get("robot")), ("scans", scans or None)):
         if given is not None:
             raise InvalidParameterError(name, "be left out for a log that is no bag", given)
@@ -284,7 +284,7 @@ def _different(document: Document, table: Any, rows: npt.NDArray[np.intp]) -> tu
 def _finished(
     poses: tuple[Array, Array, Array, Array],
     *,
-    source: Source,
+    source: Provenance,
     frame: str,
     told: Sequence[ResultWarning],
     beside: tuple[Any, Mapping[str, float]] | None,

@@ -11,11 +11,11 @@ from hrsafety._records import dataclass
 from hrsafety.errors import FileError, InvalidParameterError, Shown
 from hrsafety.io.logs.bags import Bag, Topic
 
-__all__ = ["Layout", "Sighting", "layout_of", "sightings"]
+__all__ = ["Layout", "PersonMessage", "layout_of", "sightings"]
 
 
-class Sighting(NamedTuple):
-    """Somebody at an instant.
+class PersonMessage(NamedTuple):
+    """A person at an instant.
 
     Attributes
     ----------
@@ -28,7 +28,7 @@ class Sighting(NamedTuple):
     position, velocity : tuple of float
         x, y, z in m and m/s; NaN where unknown.
     predicted : bool
-        Whether nobody was seen and a tracker says where the person may be.
+        Whether no person was seen and a tracker says where the person may be.
     """
 
     stamp: int
@@ -57,7 +57,7 @@ class Layout:
     present : callable
         Whether an element is a person that is there.
     predicted : str
-        Path to a flag of elements that nobody sees.
+        Path to a flag of hidden elements.
     """
 
     people: str
@@ -128,7 +128,7 @@ def _described(match: re.Match[str], people: str) -> Layout:
     return Layout(match["people"], (fields["id"],), fields["position"], fields.get("velocity", ""))
 
 
-def sightings(message: Any, layout: Layout, name: str) -> Iterator[Sighting]:
+def sightings(message: Any, layout: Layout, name: str) -> Iterator[PersonMessage]:
     """Yield the people of a message.
 
     Parameters
@@ -151,7 +151,7 @@ def sightings(message: Any, layout: Layout, name: str) -> Iterator[Sighting]:
         velocity = _three(_at(person, layout.velocity, name)) if layout.velocity else _NOWHERE
         predicted = bool(_at(person, layout.predicted, name)) if layout.predicted else False
         identity = _identity(person, layout.identity, name)
-        yield Sighting(stamp, frame, identity, _three(_at(person, layout.position, name)), velocity, predicted)
+        yield PersonMessage(stamp, frame, identity, _three(_at(person, layout.position, name)), velocity, predicted)
 
 
 def _identity(person: Any, paths: Sequence[str], name: str) -> str:

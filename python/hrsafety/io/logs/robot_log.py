@@ -14,7 +14,7 @@ from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.datasets.recording import Recording
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.io.reader import Source
+from hrsafety.io.reader import Provenance
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.plausibility import ResultWarning
 
@@ -99,7 +99,7 @@ class RobotLog:
     people_topic : str
         Where people were reported; empty for those of another file.
     people_time : ndarray, shape (q,)
-        Instants in s at which people were reported, with nobody in it, too.
+        Instants in s at which people were reported, with no person in it, too.
     commands : ndarray, shape (c, 4)
         Time (s), velocity forward and to the left (m/s) and turn rate (rad/s) that were asked for.
     delay : mapping of str to Delay
@@ -116,7 +116,7 @@ class RobotLog:
         Laser scans, empty unless `load_log` is asked for them.
     map : StaticMap or None
         Walls of the last occupancy grid on a topic called ``map`` of a bag, in the same frame.
-    source : Source
+    source : Provenance
         Format, digest and arguments.
     warnings : tuple of ResultWarning
         What is doubtful.
@@ -128,7 +128,7 @@ class RobotLog:
     twist: Array
     frame: str
     people: Recording | None
-    source: Source
+    source: Provenance
     people_topic: str = ""
     people_time: Annotated[Array, "s"] = field(default_factory=lambda: np.empty(0))
     commands: Array = field(default_factory=lambda: np.empty((0, 4)))

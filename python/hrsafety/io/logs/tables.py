@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from hrsafety._arguments import Array
 from hrsafety.errors import Shown
-from hrsafety.io.cells import Cell, read_columns
+from hrsafety.io.cells import TableColumn, read_columns
 from hrsafety.io.headers import cells_of, delimiter_of, first_row, is_number
 from hrsafety.io.logs.frames import rotations, unit_quaternions, yaw_of
 from hrsafety.io.reader import Document
@@ -100,8 +100,8 @@ def _with_quaternions(document: Document, *, euroc: bool) -> PoseTable:
     delimiter = delimiter_of(row)
     columns = max(len(cells_of(row, delimiter)), 8)
     order = ["qw", "qx", "qy", "qz"] if euroc else ["qx", "qy", "qz", "qw"]
-    numbers = [Cell(index, name) for index, name in enumerate(["time", "x", "y", "z", *order])]
-    ids = Cell(0, "time") if euroc else None
+    numbers = [TableColumn(index, name) for index, name in enumerate(["time", "x", "y", "z", *order])]
+    ids = TableColumn(0, "time") if euroc else None
     found = read_columns(document, delimiter=delimiter, numbers=numbers, ids=ids, columns=columns)
     table, lines = found.numbers, found.lines
     if euroc:
@@ -177,7 +177,7 @@ def _odometry(document: Document) -> PoseTable:
         rule = "have columns of time, x and y (and yaw), such as t_s,x_m,y_m,yaw_rad"
         raise document.error("columns_needed", rule, Shown(", ".join(titles)[:200]), line=number + 1)
     names = list(found)
-    numbers = [Cell(index, title) for index, title, _ in found.values()]
+    numbers = [TableColumn(index, title) for index, title, _ in found.values()]
     read = read_columns(document, delimiter=delimiter, numbers=numbers, skip=number + 1, columns=len(titles))
     table, lines_of = read.numbers, read.lines
     if len(table) == 0:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety.errors import FileError, Shown
-from hrsafety.io.cells import Cell, read_columns
+from hrsafety.io.cells import TableColumn, read_columns
 from hrsafety.io.headers import cells_of, delimiter_of, first_row, header_of, is_number
 from hrsafety.io.people.request import Request
 from hrsafety.io.people.rows import Rows, assumed
@@ -62,8 +62,8 @@ def _numbers(
         delimiter=delimiter_of(line),
         skip=max(skip, 0),
         columns=columns,
-        numbers=[Cell(each, str(each + 1)) for each in wanted],
-        ids=Cell(ids, str(ids + 1)),
+        numbers=[TableColumn(each, str(each + 1)) for each in wanted],
+        ids=TableColumn(ids, str(ids + 1)),
     )
     return table.numbers, table.ids, table.lines
 

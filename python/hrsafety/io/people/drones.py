@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety.errors import Shown
-from hrsafety.io.cells import Cell, Columns, read_columns
+from hrsafety.io.cells import Columns, TableColumn, read_columns
 from hrsafety.io.headers import Header, first_row, header_of
 from hrsafety.io.people.request import Request
 from hrsafety.io.people.rows import Rows, assumed
@@ -42,9 +42,9 @@ def _read_sdd(document: Document, request: Request) -> Rows:
         delimiter=" ",
         skip=max(skip, 0),
         columns=10,
-        numbers=[Cell(place, _SDD[place]) for place in (5, 1, 2, 3, 4, 6)],
-        ids=Cell(0, "track"),
-        words=[Cell(9, "label")],
+        numbers=[TableColumn(place, _SDD[place]) for place in (5, 1, 2, 3, 4, 6)],
+        ids=TableColumn(0, "track"),
+        words=[TableColumn(9, "label")],
     )
     which, notes, details = of_classes(table.words[:, 0], request, document)
     lost = which & (table.numbers[:, 5] != 0.0)
@@ -92,7 +92,7 @@ def _table(document: Document, numbers: list[str], ids: str | None, words: list[
     absent = [each for each in wanted if each not in names]
     if header is None or absent:
         raise document.error("ambiguous_columns", f"have the column {', '.join(absent or wanted)}", Shown("none"))
-    place = {each: Cell(_place(document, header, each), each) for each in wanted}
+    place = {each: TableColumn(_place(document, header, each), each) for each in wanted}
     return read_columns(
         document,
         delimiter=header.delimiter,

@@ -6,7 +6,7 @@ import math
 import re
 
 from hrsafety.errors import Shown
-from hrsafety.io.cells import Cell, read_columns
+from hrsafety.io.cells import TableColumn, read_columns
 from hrsafety.io.headers import LENGTHS, cells_of, delimiter_of, first_row, is_number
 from hrsafety.io.people.request import Request
 from hrsafety.io.people.rows import Rows
@@ -84,8 +84,8 @@ def _rows(document: Document, form: str, unit: str, columns: int | None) -> Rows
         document,
         delimiter=by,
         columns=columns,
-        numbers=[Cell(place, names[place]) for place in (1, 2, 3)],
-        ids=Cell(0, "id"),
+        numbers=[TableColumn(place, names[place]) for place in (1, 2, 3)],
+        ids=TableColumn(0, "id"),
     )
     return Rows(
         clock=table.numbers[:, 0],

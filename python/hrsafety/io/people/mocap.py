@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety.errors import Shown
-from hrsafety.io.cells import Cell, Columns, read_columns, short
+from hrsafety.io.cells import Columns, TableColumn, read_columns, short
 from hrsafety.io.people.request import Request
 from hrsafety.io.people.rows import Rows, assumed
 from hrsafety.io.reader import Document, Reader
@@ -63,7 +63,7 @@ def _values(document: Document, table: _Table, names: Sequence[str]) -> Columns:
             raise document.error(
                 "ambiguous_columns", f"have one column {name}", Shown(str(table.names.count(name))), line=table.skip
             )
-        cells.append(Cell(table.names.index(name), name))
+        cells.append(TableColumn(table.names.index(name), name))
     return read_columns(document, delimiter=table.delimiter, skip=table.skip, columns=len(table.names), numbers=cells)
 
 

@@ -73,7 +73,7 @@ def frame_rate(document: Document, rows: Rows, request: Request) -> tuple[float,
     Raises
     ------
     FileError
-        If nobody says it (``frame_rate_needed``), or the caller contradicts the file (``frame_rate_contradicts_file``)
+        If it is not given (``frame_rate_needed``), or the caller contradicts the file (``frame_rate_contradicts_file``)
         or its velocities (``frame_rate_contradicts_velocity``).
     """
     given = _given(document, rows, request)

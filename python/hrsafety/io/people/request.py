@@ -1,4 +1,4 @@
-"""What a caller says about a file of recorded people."""
+"""Arguments of a caller about a file of recorded people."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from hrsafety._arguments import flag, positive, word
 from hrsafety._records import dataclass
-from hrsafety._sources import Source
+from hrsafety._sources import Provenance
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.io.headers import LENGTHS
 from hrsafety.io.reader import Document
@@ -112,7 +112,7 @@ class Request:
             raise InvalidParameterError("homography", rule, Shown("one with determinant 0"))
         return matrix
 
-    def source(self, document: Document, form: str) -> Source:
+    def source(self, document: Document, form: str) -> Provenance:
         """Return where the recording came from."""
         files = sorted([document, *self.beside], key=lambda each: each.name)
         digest = document.sha256
@@ -121,4 +121,4 @@ class Request:
         names = ("format", "fps", "step_s", "unit", "scale", "homography", "columns", "classes", "relabel")
         told = {name: getattr(self, name) for name in names}
         told = {name: value for name, value in told.items() if value is not None and value != DEFAULTS.get(name)}
-        return Source(path=self.path, format=form, sha256=digest, arguments=told)
+        return Provenance(path=self.path, format=form, sha256=digest, arguments=told)

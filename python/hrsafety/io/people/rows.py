@@ -29,7 +29,7 @@ class Rows:
     person : ndarray, shape (n,)
         Ids.
     position : ndarray, shape (n, 2)
-        In units of the file; NaN where nobody knows.
+        In units of the file; NaN where unknown.
     velocity : ndarray, shape (n, 2), or None
         In units of the file per second.
     lines : ndarray of int, shape (n,), or None

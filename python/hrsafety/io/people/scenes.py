@@ -42,7 +42,7 @@ def _unreadable(document: Document, error: Exception, line: int | None = None) -
 
 
 def _constant(word: str) -> float:
-    """Return what is no number of JSON, but is written by many: nobody knows the place then."""
+    """Return what is no number of JSON, but is written by many: the place is unknown then."""
     if word != "NaN":
         raise ValueError(word)
     return math.nan
@@ -212,7 +212,7 @@ def _people(document: Document, sequence: list[Any]) -> Iterator[tuple[int, str,
 def _column(
     document: Document, name: str, entries: list[tuple[str, Mapping[str, Any]]], *, absent: bool = False
 ) -> Array:
-    """Return a number of each object; ``absent``: NaN and null say that nobody knows it."""
+    """Return a number of each object; ``absent``: NaN and null say that it is unknown."""
     found = np.empty(len(entries))
     for place, (key, entry) in enumerate(entries):
         value = entry.get(name)

@@ -8,14 +8,14 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety.errors import FileError, Shown
-from hrsafety.io.cells import Cell, read_columns
+from hrsafety.io.cells import TableColumn, read_columns
 from hrsafety.io.headers import DELIMITERS, LENGTHS, TIMES, Header, header_of
 from hrsafety.io.people.request import Request
 from hrsafety.io.people.rows import Rows
 from hrsafety.io.reader import Document, Reader
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["READERS", "ROLES", "Table", "of_classes", "rows_of", "table_columns"]
+__all__ = ["READERS", "ROLES", "PeopleColumns", "of_classes", "rows_of", "table_columns"]
 
 Array = npt.NDArray[np.float64]
 
@@ -133,7 +133,7 @@ def _read_citr(document: Document, request: Request) -> Rows:
     return rows_of(document, request, form="citr", unit="m")
 
 
-class Table(NamedTuple):
+class PeopleColumns(NamedTuple):
     """Columns of a table by their meaning, in the units of the file.
 
     Attributes
@@ -168,7 +168,9 @@ class Table(NamedTuple):
     details: dict[str, Any]
 
 
-def table_columns(document: Document, columns: object = None, *, labeled: bool = False, single: bool = False) -> Table:
+def table_columns(
+    document: Document, columns: object = None, *, labeled: bool = False, single: bool = False
+) -> PeopleColumns:
     """Return the columns of a table by their meaning.
 
     Parameters
@@ -211,11 +213,11 @@ def table_columns(document: Document, columns: object = None, *, labeled: bool =
         skip=header.skip,
         columns=len(header.names),
         comments=header.delimiter == " ",  # elsewhere an id may begin like a comment
-        numbers=[Cell(place[each], header.names[place[each]]) for each in wanted],
-        ids=None if single else Cell(place["id"], header.names[place["id"]]),
-        words=[Cell(place["label"], "label")] if "label" in place else [],
+        numbers=[TableColumn(place[each], header.names[place[each]]) for each in wanted],
+        ids=None if single else TableColumn(place["id"], header.names[place["id"]]),
+        words=[TableColumn(place["label"], "label")] if "label" in place else [],
     )
-    return Table(
+    return PeopleColumns(
         clock=table.numbers[:, 0],
         frame=table.numbers[:, -1] if both else None,
         clock_name=header.names[place[clock]],
@@ -280,7 +282,7 @@ def _tells_classes(labels: npt.NDArray[np.str_]) -> bool:
     return bool(found & {"pedestrian", *_OTHERS})
 
 
-def _clock(document: Document, request: Request, table: Table) -> tuple[Array, bool, float | None]:
+def _clock(document: Document, request: Request, table: PeopleColumns) -> tuple[Array, bool, float | None]:
     """Return the clock of rows, whether it counts frames, and the frames per second if the file tells them."""
     clock, frame = table.clock, table.frame
     name = "fps" if request.fps is not None else "step_s" if request.step_s is not None else ""

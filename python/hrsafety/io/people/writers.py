@@ -284,7 +284,7 @@ _WRITERS: dict[str, tuple[Callable[[Recording, float | None], Any], set[str]]] =
     "trajnet++": (_trajnetpp, set()),
     "socnavdata": (_socnav, {"walls", "robot"}),
 }
-"""What writes each format, and what it holds beside places."""
+"""Writer of each format, and what its file holds beside positions."""
 _ENDINGS = {
     ".csv": "table",
     ".txt": "petrack",

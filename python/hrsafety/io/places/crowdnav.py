@@ -14,7 +14,7 @@ from hrsafety._arguments import Pair, checked_seed, instance, meant
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import FileError, InvalidParameterError, Shown
-from hrsafety.io.reader import Document, Source
+from hrsafety.io.reader import Document, Provenance
 from hrsafety.navigation.crowd.agents import Person, Robot
 from hrsafety.navigation.crowd.pedestrians import Pedestrian, ReciprocalAvoidance
 from hrsafety.navigation.crowd.world import World
@@ -61,7 +61,7 @@ class CrowdNavScene:
         Room between people where they start, in m.
     warnings : tuple of ResultWarning
         ``drawn_attributes`` if those are drawn: they are not the numbers of the file; ``assumed`` for the encoding.
-    source : Source
+    source : Provenance
         The file.
     """
 
@@ -80,7 +80,7 @@ class CrowdNavScene:
     attributes_drawn: bool
     discomfort_distance: Annotated[float, "m"]
     warnings: tuple[ResultWarning, ...]
-    source: Source
+    source: Provenance
 
     def world(self, case: int, *, law: AnyLaw | None = None, model: Pedestrian | None = None) -> World:
         """Return a case: people who cross a circle or a square, and the robot from (0, -R) to (0, R).
@@ -190,7 +190,7 @@ def read_crowdnav(document: Document) -> CrowdNavScene:
         attributes_drawn=drawn,
         discomfort_distance=settings.value("reward", "discomfort_dist", _not_negative, "not negative", default=0.2),
         warnings=tuple(doubts),
-        source=Source(path=str(document.path), format="crowdnav", sha256=document.sha256),
+        source=Provenance(path=str(document.path), format="crowdnav", sha256=document.sha256),
     )
 
 

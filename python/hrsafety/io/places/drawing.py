@@ -10,11 +10,11 @@ from hrsafety._arguments import Pair
 from hrsafety._bounds import MOST_WALL_POINTS
 from hrsafety.errors import FileError, Shown
 from hrsafety.io.reader import Document
-from hrsafety.navigation.maps.parts import Wall
+from hrsafety.navigation.maps.parts import PolylineWall
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.plausibility import ResultWarning, implausible
 
-__all__ = ["UNITS", "Drawing", "check_size"]
+__all__ = ["UNITS", "FloorPlan", "check_size"]
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254, "ft": 0.3048}
 """Meters of each unit of a plan."""
@@ -33,7 +33,7 @@ def check_size(document: Document, most: int = MOST_BYTES) -> None:
         raise document.error("too_large", f"be a plan of at most {most} bytes", found)
 
 
-class Drawing:
+class FloorPlan:
     """Walls of a floor plan as they are read, and what was left out.
 
     Parameters
@@ -47,7 +47,7 @@ class Drawing:
     def __init__(self, document: Document, radius: float) -> None:
         self.document = document
         self.radius = radius
-        self.walls: list[Wall] = []
+        self.walls: list[PolylineWall] = []
         self.skipped: Counter[str] = Counter()
         self.doubts: list[ResultWarning] = []
         self._points = 0
@@ -83,7 +83,7 @@ class Drawing:
         if len(kept) < 2:
             self.skipped[f"{kind} without length"] += 1
             return
-        self.walls.append(Wall(tuple(kept), max(self.radius, 0.5 * width)))
+        self.walls.append(PolylineWall(tuple(kept), max(self.radius, 0.5 * width)))
 
     def _within_bounds(self, points: Iterable[Pair], line: int | None, key: str | None) -> Iterator[Pair]:
         """Yield points, and turn curves of too many chords into an error about their place."""

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from hrsafety._arguments import Pair, flag, meant, not_negative, sequence, word
 from hrsafety.errors import FileError, InvalidParameterError, MissingExtraError, Shown
 from hrsafety.io.places.curves import arc_points, bulge_points
-from hrsafety.io.places.drawing import UNITS, Drawing, check_size
+from hrsafety.io.places.drawing import UNITS, FloorPlan, check_size
 from hrsafety.io.reader import Document
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.plausibility import ResultWarning
@@ -75,7 +75,7 @@ def read_dxf(
     if document.head.startswith(BINARY):
         raise document.error("unreadable", "be DXF in text", Shown("binary DXF"), "save it as DXF in text (ASCII)")
     check_size(document, MOST_STREAMED)
-    drawing = Drawing(document, thickness)
+    drawing = FloorPlan(document, thickness)
     walls = _Walls(drawing, _scale(drawing, unit))
     entities = _entities(document, _expanded(document) if expands else document.text)
     for entity in entities if layers is None else _on_layers(entities, layers):
@@ -133,7 +133,7 @@ def _groups(document: Document, text: str) -> Iterator[Group]:
     raise document.error("unreadable", "end with 0 and EOF", Shown("the end of the file"), line=number)
 
 
-def _scale(drawing: Drawing, unit: str | None) -> float:
+def _scale(drawing: FloorPlan, unit: str | None) -> float:
     """Return the meters of a unit, as told or as $INSUNITS says."""
     told = None if unit is None else word("unit", unit, tuple(UNITS))
     value, named = "0", False
@@ -194,7 +194,7 @@ def _on_layers(entities: Iterable[Entity], layers: Iterable[str]) -> Iterator[En
 class _Walls:
     """Walls of entities, one after the other."""
 
-    def __init__(self, drawing: Drawing, scale: float) -> None:
+    def __init__(self, drawing: FloorPlan, scale: float) -> None:
         self.drawing = drawing
         self.scale = scale
         self.open_polyline: tuple[Entity, list[Entity]] | None = None

@@ -7,7 +7,7 @@ from typing import Any
 
 from hrsafety._arguments import Pair, not_negative
 from hrsafety.errors import Shown
-from hrsafety.io.places.drawing import Drawing, check_size
+from hrsafety.io.places.drawing import FloorPlan, check_size
 from hrsafety.io.reader import Document
 from hrsafety.navigation.maps.static_map import StaticMap
 
@@ -40,7 +40,7 @@ def read_geojson(document: Document, *, unit: str | None = None, radius: float =
     except (ValueError, RecursionError) as error:
         line = getattr(error, "lineno", None)
         raise document.error("unreadable", "be JSON", Shown(str(error) or "nesting"), line=line) from None
-    plan = _Plan(Drawing(document, thickness))
+    plan = _Plan(FloorPlan(document, thickness))
     plan.add(found, "", 0)
     return plan.drawing.map("unit")
 
@@ -48,7 +48,7 @@ def read_geojson(document: Document, *, unit: str | None = None, radius: float =
 class _Plan:
     """Walls of objects within each other."""
 
-    def __init__(self, drawing: Drawing) -> None:
+    def __init__(self, drawing: FloorPlan) -> None:
         self.drawing = drawing
 
     def add(self, given: Any, key: str, depth: int) -> None:

@@ -8,8 +8,8 @@ from typing import Annotated, Any
 from hrsafety._arguments import Pair, instance, meant
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
-from hrsafety.io.reader import Document, Source
-from hrsafety.io.yaml import Section, YamlDocument
+from hrsafety.io.reader import Document, Provenance
+from hrsafety.io.yaml import YamlDocument, YamlSection
 from hrsafety.navigation.crowd.agents import Person
 from hrsafety.navigation.crowd.pedestrians import Moussaid, Pedestrian
 from hrsafety.navigation.crowd.world import World
@@ -76,14 +76,14 @@ class HuNavScene:
         Name of the world that the file means.
     warnings : tuple of ResultWarning
         ``behavior_not_available`` for behaviors towards the robot that are not simulated; ``assumed`` for the encoding.
-    source : Source
+    source : Provenance
         The file.
     """
 
     people: tuple[HuNavAgent, ...]
     map: str | None
     warnings: tuple[ResultWarning, ...]
-    source: Source
+    source: Provenance
 
     def world(self, *, model: Pedestrian | None = None, **given: Any) -> World:
         """Return the world of the people.
@@ -164,11 +164,11 @@ def read_hunav(document: Document) -> HuNavScene:
         people=people,
         map=None if place is None else place.text(),
         warnings=tuple(doubts),
-        source=Source(path=str(document.path), format="hunavsim", sha256=document.sha256),
+        source=Provenance(path=str(document.path), format="hunavsim", sha256=document.sha256),
     )
 
 
-def _agent(parameters: Section, name: str) -> HuNavAgent:
+def _agent(parameters: YamlSection, name: str) -> HuNavAgent:
     agent = parameters[name]
     group = agent.get("group_id")
     number = -1 if group is None else group.whole()
@@ -191,7 +191,7 @@ def _agent(parameters: Section, name: str) -> HuNavAgent:
     )
 
 
-def _goal(agent: Section, shared: Section | None, entry: Section, name: str) -> Pair:
+def _goal(agent: YamlSection, shared: YamlSection | None, entry: YamlSection, name: str) -> Pair:
     """Return the place of a goal that an agent names: one of its own, or of all."""
     found = agent.get(name)
     if found is None and shared is not None:
@@ -201,7 +201,7 @@ def _goal(agent: Section, shared: Section | None, entry: Section, name: str) -> 
     return _place(found)
 
 
-def _behavior(entry: Section) -> str:
+def _behavior(entry: YamlSection) -> str:
     """Return the name of a behavior, which is a number, or stands beside its settings as ``type``."""
     kind = entry["type"] if entry.is_map else entry
     if not 1 <= kind.whole() <= len(BEHAVIORS):
@@ -210,11 +210,11 @@ def _behavior(entry: Section) -> str:
     return BEHAVIORS[kind.whole() - 1]
 
 
-def _place(entry: Section) -> Pair:
+def _place(entry: YamlSection) -> Pair:
     return entry["x"].number(), entry["y"].number()
 
 
-def _positive(entry: Section) -> float:
+def _positive(entry: YamlSection) -> float:
     value = entry.number()
     if not value > 0.0:
         raise entry.error("be finite and positive")

@@ -12,8 +12,8 @@ from hrsafety._arguments import Pair, meant
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.io.reader import Document, Source
-from hrsafety.io.yaml import Section, YamlDocument
+from hrsafety.io.reader import Document, Provenance
+from hrsafety.io.yaml import YamlDocument, YamlSection
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.plausibility import ResultWarning, implausible
 
@@ -26,7 +26,7 @@ RADIUS = 0.1
 CORNERS = 16
 """Corners of the footprint that Nav2 makes of a radius."""
 SAME = 1e-6
-Parameters = dict[str, Section]
+Parameters = dict[str, YamlSection]
 """Parameters of a node by their names with dots."""
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _QUANTITIES = {
@@ -89,7 +89,7 @@ class Nav2Settings:
     warnings : tuple of ResultWarning
         ``two_footprints`` where local and global costmap differ, ``inflation_below_circumscribed``, ``assumed`` for
         defaults of Nav2 and the encoding, ``implausible`` numbers.
-    source : Source
+    source : Provenance
         The file.
     """
 
@@ -110,7 +110,7 @@ class Nav2Settings:
     max_turn_acceleration: Annotated[float | None, "rad/s^2"]
     drive: str
     warnings: tuple[ResultWarning, ...]
-    source: Source
+    source: Provenance
 
     def robot(self, **given: Any) -> DifferentialDriveRobot | HolonomicRobot:
         r"""Return the robot, a disc of the circumscribed radius.
@@ -232,16 +232,16 @@ def read_nav2(path: str | PathLike[str]) -> Nav2Settings:
         **({name: each for name, each in shape.items() if name != "given"} if shape else {}),
         **limits,
         warnings=tuple(doubts),
-        source=Source(path=str(path), format="nav2", sha256=document.sha256),
+        source=Provenance(path=str(path), format="nav2", sha256=document.sha256),
     )
 
 
-def _node(root: Section, *names: str) -> Parameters | None:
+def _node(root: YamlSection, *names: str) -> Parameters | None:
     """Return the parameters of a node, below its name once or twice, in a namespace or not; ``None`` without any."""
     tops = [root, *(each for key in root if (each := root[key]).is_map and key not in names)]
     for top in tops:
         for path in (names, names[:1], ("/".join(names),), ("/" + "/".join(names),)):
-            found: Section | None = top
+            found: YamlSection | None = top
             for key in (*path, "ros__parameters"):
                 found = found.get(key) if found is not None and found.is_map else None
             if found is not None and found.is_map:
@@ -254,7 +254,7 @@ def _node(root: Section, *names: str) -> Parameters | None:
     return None
 
 
-def _flat(section: Section, above: str) -> Iterator[tuple[str, Section]]:
+def _flat(section: YamlSection, above: str) -> Iterator[tuple[str, YamlSection]]:
     """Yield parameters by their names with dots, as ROS knows them: maps and dots in keys are the same to it."""
     for key in section:
         if section[key].is_map:
@@ -266,7 +266,7 @@ def _flat(section: Section, above: str) -> Iterator[tuple[str, Section]]:
 # ---- shape -----------------------------------------------------------------------------------------
 
 
-def costmap_footprint(entry: Section) -> tuple[Pair, ...]:
+def costmap_footprint(entry: YamlSection) -> tuple[Pair, ...]:
     """Return the corners of a footprint as Nav2 writes them: text of pairs in brackets; none for an empty one."""
     if entry.is_list:
         raise entry.error("be text, as the costmap reads it", "put quotes around it")
@@ -440,7 +440,7 @@ def _negated(value: float | None) -> float | None:
     return None if value is None else 0.0 - value
 
 
-def _positive(entry: Section) -> float:
+def _positive(entry: YamlSection) -> float:
     value = entry.number()
     if not value > 0.0:
         raise entry.error("be finite and positive")

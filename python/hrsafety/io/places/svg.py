@@ -9,8 +9,8 @@ from collections.abc import Iterator
 from hrsafety._arguments import Pair, not_negative, positive
 from hrsafety.errors import FileError, Shown
 from hrsafety.io.places.curves import arc_points
-from hrsafety.io.places.drawing import Drawing, check_size
-from hrsafety.io.places.svg_paths import Transform, path_points, transform_of
+from hrsafety.io.places.drawing import FloorPlan, check_size
+from hrsafety.io.places.svg_paths import AffineMap, path_points, transform_of
 from hrsafety.io.places.xml_elements import Element, root_element
 from hrsafety.io.reader import Document
 from hrsafety.navigation.maps.static_map import StaticMap
@@ -58,7 +58,7 @@ def read_svg(document: Document, *, meters_per_unit: float | None = None, radius
     root = root_element(document)
     if root.tag != "svg":
         raise document.error("unreadable", "be an svg", Shown(root.tag), line=root.line)
-    plan = _Plan(Drawing(document, thickness), root, meters_per_unit)
+    plan = _Plan(FloorPlan(document, thickness), root, meters_per_unit)
     for each in root.children:
         plan.add(each, plan.whole)
     return plan.drawing.map("meters_per_unit")
@@ -67,7 +67,7 @@ def read_svg(document: Document, *, meters_per_unit: float | None = None, radius
 class _Plan:
     """Walls of the shapes of a drawing."""
 
-    def __init__(self, drawing: Drawing, root: Element, told: float | None) -> None:
+    def __init__(self, drawing: FloorPlan, root: Element, told: float | None) -> None:
         self.drawing = drawing
         view = root.attributes.get("viewBox")
         box = [float(each) for each in re.findall(_NUMBER, view)] if view is not None else []
@@ -84,7 +84,7 @@ class _Plan:
             box = [0.0, 0.0, *(float(each[1]) for each in size if each)]
         scale = self.scale(root, box, size, told)
         # Up is down in SVG; the lower left corner of the view box is the origin.
-        self.whole = Transform(scale, 0.0, 0.0, -scale, -box[0] * scale, (box[1] + box[3]) * scale)
+        self.whole = AffineMap(scale, 0.0, 0.0, -scale, -box[0] * scale, (box[1] + box[3]) * scale)
 
     def scale(self, root: Element, box: list[float], size: list[re.Match[str] | None], told: float | None) -> float:
         """Return the meters of a unit."""
@@ -112,7 +112,7 @@ class _Plan:
             )
         return found[0]
 
-    def add(self, element: Element, above: Transform) -> None:
+    def add(self, element: Element, above: AffineMap) -> None:
         """Add the walls of an element and of those in it."""
         tag = element.tag
         if tag in _UNDRAWN:
@@ -142,7 +142,7 @@ class _Plan:
         except OverflowError as error:
             raise self.error("be of a size that walls have", str(error), element, code="too_large") from None
 
-    def outlines(self, element: Element, here: Transform) -> Iterator[list[Pair]]:
+    def outlines(self, element: Element, here: AffineMap) -> Iterator[list[Pair]]:
         """Yield the outlines of a shape in m."""
         tag = element.tag
         if tag == "path":
@@ -161,7 +161,7 @@ class _Plan:
         else:
             yield list(self.circle(element, here))
 
-    def corners(self, element: Element, here: Transform) -> list[Pair]:
+    def corners(self, element: Element, here: AffineMap) -> list[Pair]:
         """Return the corners of a polyline, or those of a polygon with the first one again."""
         words = element.attributes.get("points", "")
         rest = re.sub(_NUMBER, "", words)
@@ -171,7 +171,7 @@ class _Plan:
         found = [here.at(each) for each in zip(values[::2], values[1::2], strict=True)]
         return [*found, *found[:1]] if element.tag == "polygon" else found
 
-    def rectangle(self, element: Element, here: Transform) -> Iterator[list[Pair]]:
+    def rectangle(self, element: Element, here: AffineMap) -> Iterator[list[Pair]]:
         """Yield the outline of a rectangle, which may have round corners."""
         x, y, width, height = (self.length(element, name) for name in ("x", "y", "width", "height"))
         if width < 0.0 or height < 0.0:
@@ -197,7 +197,7 @@ class _Plan:
             data += f"H{x + rx!r}{turn}{x!r},{low - ry!r}V{y + ry!r}{turn}{x + rx!r},{y!r}Z"
         yield from path_points(data, here)
 
-    def circle(self, element: Element, here: Transform) -> Iterator[Pair]:
+    def circle(self, element: Element, here: AffineMap) -> Iterator[Pair]:
         """Yield the outline of a circle, from as many points as the widest axis of its ellipse needs."""
         x, y, radius = (self.length(element, name) for name in ("cx", "cy", "r"))
         if radius < 0.0:

@@ -11,7 +11,7 @@ from hrsafety._arguments import Pair
 from hrsafety._bounds import MOST_WALL_POINTS
 from hrsafety.io.places.curves import arc_points, bezier_points
 
-__all__ = ["Transform", "path_points", "transform_of"]
+__all__ = ["AffineMap", "path_points", "transform_of"]
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _PART = re.compile(rf"[\s,]*(?:([MmLlHhVvCcSsQqTtAaZz])|({_NUMBER}))")
@@ -20,7 +20,7 @@ _FLAG = re.compile(r"[\s,]*([01])")
 _FUNCTION = re.compile(r"[\s,]*(matrix|translate|scale|rotate|skewX|skewY)\s*\(([^()]*)\)")
 
 
-class Transform(NamedTuple):
+class AffineMap(NamedTuple):
     """Affine map (x, y) to (a x + c y + e, b x + d y + f)."""
 
     a: float
@@ -35,12 +35,12 @@ class Transform(NamedTuple):
         x, y = point
         return self.a * x + self.c * y + self.e, self.b * x + self.d * y + self.f
 
-    def after(self, other: Transform) -> Transform:
+    def after(self, other: AffineMap) -> AffineMap:
         """Return the map that does the other one first."""
         a, b = self.a * other.a + self.c * other.b, self.b * other.a + self.d * other.b
         c, d = self.a * other.c + self.c * other.d, self.b * other.c + self.d * other.d
         e, f = self.at((other.e, other.f))
-        return Transform(a, b, c, d, e, f)
+        return AffineMap(a, b, c, d, e, f)
 
     @property
     def stretch(self) -> float:
@@ -50,9 +50,9 @@ class Transform(NamedTuple):
         return math.sqrt(0.5 * (total + math.sqrt(max(total * total - 4.0 * area * area, 0.0))))
 
 
-def transform_of(words: str) -> Transform | None:
+def transform_of(words: str) -> AffineMap | None:
     """Return the map of a transform attribute, ``None`` if it is none."""
-    found, at = Transform(1.0, 0.0, 0.0, 1.0, 0.0, 0.0), 0
+    found, at = AffineMap(1.0, 0.0, 0.0, 1.0, 0.0, 0.0), 0
     while match := _FUNCTION.match(words, at):
         at = match.end()
         numbers = [float(each) for each in re.findall(_NUMBER, match[2])]
@@ -65,25 +65,25 @@ def transform_of(words: str) -> Transform | None:
     return None if words[at:].strip(" \t\r\n,") or not all(map(math.isfinite, found)) else found
 
 
-def _function(name: str, given: list[float]) -> Transform | None:
+def _function(name: str, given: list[float]) -> AffineMap | None:
     count = len(given)
     if name == "matrix" and count == 6:
-        return Transform(*given)
+        return AffineMap(*given)
     if name == "translate" and count in (1, 2):
-        return Transform(1.0, 0.0, 0.0, 1.0, given[0], given[1] if count == 2 else 0.0)
+        return AffineMap(1.0, 0.0, 0.0, 1.0, given[0], given[1] if count == 2 else 0.0)
     if name == "scale" and count in (1, 2):
-        return Transform(given[0], 0.0, 0.0, given[-1], 0.0, 0.0)
+        return AffineMap(given[0], 0.0, 0.0, given[-1], 0.0, 0.0)
     if name in ("skewX", "skewY") and count == 1:
         slope = math.tan(math.radians(given[0]))
-        return Transform(1.0, slope if name == "skewY" else 0.0, slope if name == "skewX" else 0.0, 1.0, 0.0, 0.0)
+        return AffineMap(1.0, slope if name == "skewY" else 0.0, slope if name == "skewX" else 0.0, 1.0, 0.0, 0.0)
     if name == "rotate" and count in (1, 3):
         cosine, sine = math.cos(math.radians(given[0])), math.sin(math.radians(given[0]))
         x, y = given[1:] if count == 3 else (0.0, 0.0)
-        return Transform(cosine, sine, -sine, cosine, x - cosine * x + sine * y, y - sine * x - cosine * y)
+        return AffineMap(cosine, sine, -sine, cosine, x - cosine * x + sine * y, y - sine * x - cosine * y)
     return None
 
 
-def path_points(data: str, transform: Transform) -> Iterator[list[Pair]]:
+def path_points(data: str, transform: AffineMap) -> Iterator[list[Pair]]:
     """Yield the polyline of each part of a path, transformed; a part that is closed ends with its first point.
 
     Raises
@@ -164,7 +164,7 @@ def _commands(data: str) -> Iterator[tuple[str, list[float]]]:
         yield command, values
 
 
-def _arc(start: Pair, end: Pair, values: list[float], transform: Transform) -> Iterator[Pair]:
+def _arc(start: Pair, end: Pair, values: list[float], transform: AffineMap) -> Iterator[Pair]:
     """Yield the points after the first of an elliptic arc, appendix F.6 of SVG 1.1."""
     rx, ry, turn, large, sweep = abs(values[0]), abs(values[1]), math.radians(values[2]), values[3], values[4]
     if start == end:
@@ -185,7 +185,7 @@ def _arc(start: Pair, end: Pair, values: list[float], transform: Transform) -> I
     angle = (math.atan2(-y - center[1], -x - center[0]) - begin) % (2.0 * math.pi)
     angle -= 2.0 * math.pi if not sweep else 0.0
     unit = transform.after(
-        Transform(
+        AffineMap(
             cosine * rx,
             sine * rx,
             -sine * ry,

@@ -98,7 +98,7 @@ def root_element(document: Document) -> Element:
     except expat.ExpatError as error:
         shown = Shown(expat.ErrorString(error.code))
         raise document.error("unreadable", "be well-formed XML", shown, line=error.lineno) from None
-    except (LookupError, ValueError) as error:  # encodings that nobody knows
+    except (LookupError, ValueError) as error:  # unknown encodings
         if isinstance(error, UnicodeError | LookupError) or "encoding" in str(error):
             raise document.error("unreadable", "be text of a known encoding", Shown(str(error))) from None
         raise

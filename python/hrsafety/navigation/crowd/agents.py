@@ -89,7 +89,7 @@ def _traits(owner: Person | Source) -> dict[str, Any]:
 
 
 def _told(traits: dict[str, Any]) -> dict[str, Any]:
-    """Return what people have in common as the core is told of it."""
+    """Return what people have in common as the core takes it."""
     return traits | {"route": [points_of(element) for element in traits["route"]]}
 
 
@@ -187,7 +187,7 @@ class Person(Parameters):
 
     @classmethod
     def moving(cls, obstacle: Human | MovingDisc) -> Person:
-        """Return a person who moves as an obstacle does and reacts to nobody.
+        """Return a person who moves as an obstacle does and reacts to no person.
 
         Parameters
         ----------
@@ -214,7 +214,7 @@ class Person(Parameters):
 class Source(Parameters):
     """A rectangle in which people appear while a world is under way.
 
-    A person appears only where it touches nobody, no robot and no wall, else at a later step. Numbers of
+    A person appears only where it touches no person, no robot and no wall, else at a later step. Numbers of
     people are not used again.
 
     Parameters

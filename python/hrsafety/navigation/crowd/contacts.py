@@ -26,7 +26,7 @@ __all__ = [
 ]
 
 APPEARING = 0.2
-"""A contact so soon after somebody appears in the scene is counted apart, in s."""
+"""A contact so soon after a person appears in the scene is counted apart, in s."""
 
 
 class Contacts(NamedTuple):
@@ -79,7 +79,7 @@ class Touches(NamedTuple):
 
     @property
     def counted(self) -> bool:
-        """Whether there is a touch other than by somebody who appeared where the robot was."""
+        """Whether there is a touch other than by a person who appeared where the robot was."""
         return bool(np.isfinite(self.time).any())
 
 
@@ -116,7 +116,7 @@ def touches_of(episode: Episode, arrival_time: float) -> Touches:
         with np.errstate(invalid="ignore"):
             touching = np.linalg.norm(start, axis=2) < reach
             near = (nearest < reach - PASSED) | touching[:-1] | touching[1:]
-        # Steps in which somebody comes or goes have no way.
+        # Steps in which a person comes or goes have no way.
         near &= np.isfinite(nearest)
         velocity = np.diff(own, axis=0) / episode.step
         radii = np.broadcast_to(reach, people.shape[1])
@@ -184,7 +184,7 @@ def touch_of(
         Of a step in s.
     """
     touch = FirstTouch()
-    # The step after one that ended in a contact of somebody who appeared.
+    # The step after one that ended in a contact of a person who appeared.
     lasts = -1
     for step in steps.tolist():
         start, way = paths[0][step], paths[1][step]
@@ -196,7 +196,7 @@ def touch_of(
             continue
         speed = float(np.hypot(*velocity[step]))
         if first and np.linalg.norm(start + begin * way) <= reach - DECIDED_OVERLAP:
-            speed = 0.0  # at the start they overlapped: nobody came
+            speed = 0.0  # at the start they overlapped: no person came
         moving = speed > CONTACT_SPEED
         toward = [moving and bool(velocity[step] @ (start + share * way) > 0.0) for share in (begin, end)]
         if first:

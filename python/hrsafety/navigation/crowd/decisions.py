@@ -1,4 +1,4 @@
-"""What people decide at one instant."""
+"""Decisions of people at one instant."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def decide(
     awareness : array_like of shape (n,) or None
         Share by which robots are taken into account; ``None``: 1.
     robot : array_like of bool of shape (n,) or None
-        Who is a robot; ``None``: nobody.
+        Who is a robot; ``None``: no person.
     group : sequence of int or None
         Number of the group of each, ``None`` for those who belong to none.
     heading : array_like of shape (n, 2) or None

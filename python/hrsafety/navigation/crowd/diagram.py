@@ -22,7 +22,7 @@ from hrsafety.tables import Columns, Table
 __all__ = ["FundamentalDiagram", "fundamental_diagram", "weidmann_speed"]
 
 FREE_SPEED, STEEPNESS, JAM = 1.34, 1.913, 5.4
-"""Of Weidmann (1993): speed of a person alone in m/s, 1/m^2, and the density at which nobody walks, in 1/m^2."""
+"""Of Weidmann (1993): speed of a person alone in m/s, 1/m^2, and the density at which no person walks, in 1/m^2."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -124,7 +124,7 @@ def fundamental_diagram(
     Raises
     ------
     InvalidParameterError
-        If there is no world, or one does not repeat itself along x, has nobody or has sources, has somebody
+        If there is no world, or one does not repeat itself along x, has no person or has sources, has a person
         who does not walk to +x or arrives, has walls at another distance than the width, or is denser than
         5.4 people for each square meter.
     SimulationError

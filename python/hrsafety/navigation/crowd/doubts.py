@@ -77,9 +77,9 @@ def of_people(wall_rescues: int, max_person_speed: float, desired_speed: Array) 
     Parameters
     ----------
     wall_rescues : int
-        How often somebody was set back at a wall.
+        How often a person was set back at a wall.
     max_person_speed : float
-        Largest speed of somebody, in m/s.
+        Largest speed of a person, in m/s.
     desired_speed : ndarray of shape (m,)
         Speeds that people want, in m/s.
 
@@ -141,7 +141,7 @@ def of_walls(
         With the codes ``"start_in_wall"``, ``"goal_in_wall"`` and ``"recording_in_wall"``.
     """
     acting = [(f"people[{index}]", person) for index, person in enumerate(people) if person.reacts]
-    # A center keeps a tenth of its radius off walls; on a line nobody knows on which side it is.
+    # A center keeps a tenth of its radius off walls; on a line its side is not known.
     starts = [(owner, "start", person.start, KEPT * person.radius) for owner, person in acting]
     walking: list[tuple[str, Person | Source]] = [*acting]
     walking += [(f"sources[{index}]", source) for index, source in enumerate(sources)]
@@ -367,7 +367,7 @@ def _radii(people: Iterable[Person], sources: Iterable[Source], robots: Iterable
 
 
 def _of_range(owner: str, robot: Robot, motion: Motion, shield: Shield, radius: float) -> Iterator[ResultWarning]:
-    """Warn of a range within which somebody may stand whom the robot does not see, and cannot stop for."""
+    """Warn of a range within which a person may stand whom the robot does not see, and cannot stop for."""
     if shield.person_speed is None or radius == 0.0:
         return
     plan = motion.plan_duration

@@ -1,4 +1,4 @@
-"""What the robots of a world met, and what became of them."""
+"""Episodes of the robots of a world: encounters and outcomes."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ __all__ = [
 
 
 class Pedestrian(Parameters):
-    """What all models of people share."""
+    """Base of the models of people."""
 
     __slots__ = ()
 
@@ -79,7 +79,7 @@ class SocialForce1995(Pedestrian):
     behind : float
         Weight c of forces from out of view.
     cutoff : float or None
-        Distance beyond which nobody acts, in m; ``None``: everybody does.
+        Distance beyond which no person acts, in m; ``None``: everybody does.
 
     Raises
     ------
@@ -133,7 +133,7 @@ class SocialForce2000(Pedestrian):
     wall_strength : float
         A of walls in N.
     cutoff : float or None
-        Distance beyond which nobody acts, in m; ``None``: everybody does.
+        Distance beyond which no person acts, in m; ``None``: everybody does.
 
     Raises
     ------
@@ -193,7 +193,7 @@ class Moussaid(Pedestrian):
     contact_distance : float
         Distance d0 that members of groups keep, in m.
     cutoff : float or None
-        Distance beyond which nobody acts, in m; ``None``: everybody does.
+        Distance beyond which no person acts, in m; ``None``: everybody does.
 
     Raises
     ------
@@ -245,7 +245,7 @@ class CollisionFreeSpeed(Pedestrian):
     wall_range : float
         D of walls, in m.
     cutoff : float or None
-        Distance beyond which nobody acts, in m; ``None``: everybody does.
+        Distance beyond which no person acts, in m; ``None``: everybody does.
 
     Raises
     ------
@@ -288,7 +288,7 @@ class ReciprocalAvoidance(Pedestrian):
     margin : float
         Added to each radius, in m.
     cutoff : float or None
-        Distance beyond which nobody acts, in m; ``None``: everybody does.
+        Distance beyond which no person acts, in m; ``None``: everybody does.
 
     Raises
     ------

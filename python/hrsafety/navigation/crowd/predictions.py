@@ -294,7 +294,7 @@ def prediction_errors(
     Parameters
     ----------
     model : Pedestrian, "constant_velocity" or "straight"
-        What foretells; ``"straight"``: everybody walks straight to the goal and reacts to nobody.
+        What foretells; ``"straight"``: everybody walks straight to the goal and reacts to no person.
     recording : Recording
         People at equal instants; any object with ``time_s``, ``person`` and ``position``.
     part : {"first", "second", "all"}

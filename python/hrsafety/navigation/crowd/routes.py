@@ -45,7 +45,7 @@ class Routes:
         Parameters
         ----------
         owner : Person or Source
-            Whose route; that of who follows a recording, or moves as told, is not looked at.
+            Whose route; that of who follows a recording, or moves as told, is not examined.
 
         Returns
         -------

@@ -47,7 +47,7 @@ class Job(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class WorldStudy:
-    """What runs where.
+    """Runs of a study: laws, worlds and seeds.
 
     Parameters
     ----------

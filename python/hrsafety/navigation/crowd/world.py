@@ -58,7 +58,7 @@ def _all(name: str, kind: type, given: Iterable[object]) -> tuple[Any, ...]:
 
 
 def _movers(obstacles: object) -> tuple[list[Person], list[Disc | Rectangle]]:
-    """Return the obstacles that move as people who react to nobody, and those that stand."""
+    """Return the obstacles that move as people who react to no person, and those that stand."""
     movers: list[Person] = []
     standing: list[Disc | Rectangle] = []
     kinds = Human, MovingDisc, Disc, Rectangle
@@ -91,7 +91,7 @@ class World(Parameters):
         a map: where it blocks a straight way of a route, points of the detour of a `Guide` are added to the route;
         where none leads around, results carry the warning ``"route_blocked"``.
     obstacles : sequence of Obstacle
-        What moves as it is told and reacts to nobody, `Human` and `MovingDisc`, and what stands, `Disc` and
+        What moves as it is told and reacts to no person, `Human` and `MovingDisc`, and what stands, `Disc` and
         `Rectangle`, which are walls. They are kept among people and walls, and no more here.
     sources : sequence of Source
         Where more people come from.
@@ -221,5 +221,5 @@ class World(Parameters):
 
     @property
     def unit_doubts(self) -> tuple[ResultWarning, ...]:
-        """Those of the warnings that are about numbers which are hardly meant in their unit."""
+        """Warnings about numbers that are hardly meant in their unit."""
         return tuple(each for each in self.warnings if each.code == "implausible")

@@ -165,7 +165,7 @@ class WorldRun(Trajectory):
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """Those of the world; that it diverged, that people were set back at walls, or moved faster than people do."""
+        """Warnings of the world; divergence, people who were set back at walls, or moved faster than people do."""
         # Of a world that diverged its end says more than a speed.
         speed = self.max_person_speed if self.diverged is None else 0.0
         found = (*of_people(self.wall_rescues, speed, self.desired_speed), *self.scenario.warnings)

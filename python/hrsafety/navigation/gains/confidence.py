@@ -13,7 +13,7 @@ __all__ = ["Confidence", "confidence_of", "student_quantile"]
 
 @displayed
 class Confidence(NamedTuple):
-    """What the best gain set is worth with noise that the search has not seen.
+    """Value of the best gain set with noise that the search has not seen.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a search for gains returns."""
+"""Results of searches for gains."""
 
 from __future__ import annotations
 
@@ -259,7 +259,7 @@ class GainSearch(Table):
 
     @property
     def remedy(self) -> str:
-        """What would give a `best`; empty where there is one."""
+        """Change of the search that would give a `best`; empty where there is one."""
         if self.valid:
             return ""
         if self.interrupted:

@@ -1,4 +1,4 @@
-"""What callables and seeds make of batches of gain sets."""
+"""Scores of batches of gain sets by callables and over seeds."""
 
 from __future__ import annotations
 

@@ -106,7 +106,7 @@ Constraint = GainConstraint | Judge
 @displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SearchSettings:
-    """Everything that a search for gains depends on: equal settings, equal bits.
+    """Settings of a search for gains: equal settings, equal bits.
 
     Attributes
     ----------

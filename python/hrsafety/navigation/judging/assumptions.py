@@ -29,7 +29,7 @@ LEAST_ROWS = 20
 
 @displayed
 class Assumption(NamedTuple):
-    """What a shield assumes and what was found.
+    """Assumption of a shield beside the measured value.
 
     Attributes
     ----------
@@ -118,7 +118,7 @@ def _found(
 
 def _of_people(both: Synchronized, shield: Shield) -> Iterator[Assumption]:
     speed = np.hypot(both.person_velocity[..., 0], both.person_velocity[..., 1])
-    # Across the steps that are not bridged somebody may have been fast, and nobody knows.
+    # Across the steps that are not bridged a person may have been fast without being noticed.
     instants = np.broadcast_to(both.time[:, None], speed.shape)
     flat, times = speed.ravel(), instants.ravel()
     error = SURE * both.person_noise.velocity

@@ -79,7 +79,7 @@ class Moment(NamedTuple):
 @displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Judgement(Played):
-    """What was found in a log; made by `judge`.
+    """Judgement of a log; made by `judge`.
 
     It has ``time``, ``position``, ``velocity``, ``heading`` and ``obstacle_position``, so
     `hrsafety.contact.contact_margins` takes it as a run.

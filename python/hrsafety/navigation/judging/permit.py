@@ -184,7 +184,7 @@ def _of_person(both: Synchronized, column: int, rules: PermitRules, context: _Co
     sights = np.flatnonzero(known)
     rows = np.arange(sights[0], sights[-1] + 1)
     filled = np.full(len(distance), np.inf)
-    # Where somebody is out of sight for a while: only to tell which sights are of one encounter.
+    # Where a person is out of sight for a while: only to tell which sights are of one encounter.
     filled[rows] = np.interp(rows, sights, distance[known])
     with np.errstate(invalid="ignore"):
         ahead = np.einsum("ki,ki->k", away, both.velocity) > 0.0
@@ -305,7 +305,7 @@ def _lead(time: Array, distance: Array, predicted: Array, clearance: float) -> t
 
 
 def _open(both: Synchronized, pair: _Pair, rows: slice, nearest: int, context: _Context) -> str:
-    """Return why it is not known how near both came: somebody was lost, or the log ends before the passing."""
+    """Return why it is not known how near both came: a person was lost, or the log ends before the passing."""
     if (context.bound[rows.start : rows.stop + 1, pair.column] < pair.distance[nearest]).any():
         return "person_lost_nearby" if both.known[rows].all() else "no_pose"
     if context.leaps[rows.start : rows.stop - 1, pair.column].any():

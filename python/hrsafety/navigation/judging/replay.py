@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from hrsafety._replay.record import Event, NotJudged, PlayedRobot, Replay
+from hrsafety._replay.record import Event, PlayedRobot, Replay, UnjudgedTime
 from hrsafety.navigation.judging.unjudged import REASONS
 
 __all__ = ["replay_of"]
@@ -38,7 +38,7 @@ def replay_of(judgement: Any) -> Replay:
         maps=[] if judgement.walls is None else [judgement.walls],
         events=_events(judgement),
         not_judged=[
-            NotJudged(each.begin, each.end, REASONS[each.reason])
+            UnjudgedTime(each.begin, each.end, REASONS[each.reason])
             for each in judgement.not_judged
             if each.reason not in _QUIET
         ],

@@ -80,9 +80,9 @@ class Synchronized:
     ids : ndarray of int or str, shape (n,)
         People.
     people, person_velocity : ndarray, shape (T, n, 2)
-        NaN where somebody is not seen.
+        NaN where a person is not seen.
     person_linked : ndarray of bool, shape (T - 1, n)
-        Whether somebody was seen from one instant to the next, without a jump.
+        Whether a person was seen from one instant to the next, without a jump.
     first, last : ndarray, shape (n,)
         Times of the first and last sight in s.
     period, person_period : float
@@ -131,7 +131,7 @@ class Synchronized:
 
     @property
     def leaps(self) -> Flags:
-        """Steps in which somebody is seen at both ends and cannot have walked between them, (T - 1, n)."""
+        """Steps in which a person is seen at both ends and cannot have walked between them, (T - 1, n)."""
         seen = self.seen
         return seen[:-1] & seen[1:] & ~self.person_linked & self.linked[:, None]
 

@@ -30,7 +30,7 @@ class Touch(NamedTuple):
     person : int, str or None
         Who; ``None``: a wall.
     kind : str
-        ``"toward"``, ``"away"``, ``"standing"``, ``"apart"`` (somebody appeared where the robot was), ``"wall"``, or
+        ``"toward"``, ``"away"``, ``"standing"``, ``"apart"`` (a person appeared where the robot was), ``"wall"``, or
         ``"possible_contact"``.
     at_fault : bool
         Whether the robot moved toward the person during the contact.
@@ -57,7 +57,7 @@ class Touch(NamedTuple):
 
     @property
     def certain(self) -> bool:
-        """Whether it is a contact whatever the error."""
+        """Whether the touch is a contact whatever the error."""
         return self.clearance + self.error < 0.0
 
 

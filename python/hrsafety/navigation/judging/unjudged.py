@@ -1,4 +1,4 @@
-"""What is not judged of a log, when and why: nobody who was not seen counts as safe."""
+"""Parts of a log that are not judged, when and why: a person who was not seen does not count as safe."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ REASONS = {
     "smoothing_edge": "accelerations are those of one side only",
     "outside_map": "the robot is outside the map, or where it is unknown: walls are not judged",
 }
-"""What each reason means."""
+"""Meaning of each reason."""
 
 
 @displayed
@@ -140,7 +140,7 @@ def _of_people(both: Synchronized, log: Any) -> Iterator[NotJudged]:
 
 
 def _lost(both: Synchronized, near: Flags, view: float | None) -> Iterator[NotJudged]:
-    """Yield when somebody is not seen who may touch the robot."""
+    """Yield when a person is not seen who may touch the robot."""
     bearing = np.full(near.shape, 0.0)
     if view is not None:
         away = both.people - both.position[:, None]
@@ -157,7 +157,7 @@ def _lost(both: Synchronized, near: Flags, view: float | None) -> Iterator[NotJu
 
 
 def _leaps(both: Synchronized, reach: float) -> Iterator[NotJudged]:
-    """Yield the steps in which somebody jumps past the robot."""
+    """Yield the steps in which a person jumps past the robot."""
     away = both.people - both.position[:, None]
     for step, column in zip(*np.nonzero(both.leaps), strict=True):
         start, way = away[step, column], away[step + 1, column] - away[step, column]

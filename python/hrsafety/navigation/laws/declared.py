@@ -1,4 +1,4 @@
-"""What a law declares, once: its name, and the unit, bounds, symbol and default of each of its gains.
+"""Declaration of a law, once: its name, and the unit, bounds, symbol and default of each of its gains.
 
 The list `hrsafety.navigation.laws.known.LAWS` follows from the declarations, and from the list the names in files and
 on the command line, the axes of sweeps, the bounds of searches and the colors of pictures.
@@ -22,7 +22,7 @@ L = TypeVar("L", bound="type[Law]")
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Gain:
-    """What is known about a gain besides its name and default.
+    """Declaration of a gain besides its name and default.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def gain(default: float, *, unit: str, bounds: tuple[float, float], symbol: str 
 
 
 class Law(Parameters):
-    """What all navigation laws share: numbers that a search may choose, by name.
+    """Base of the navigation laws: numbers that a search may choose, by name.
 
     Attributes
     ----------

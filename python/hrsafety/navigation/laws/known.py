@@ -1,4 +1,4 @@
-"""All laws by name. Modules are loaded when somebody needs them; who needs every law finds them loaded here."""
+"""All laws by name. Modules are loaded when they are needed; here every law is loaded."""
 
 from __future__ import annotations
 

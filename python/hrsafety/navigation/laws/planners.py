@@ -78,7 +78,7 @@ class VelocityObstacle(Law):
         """Check the values."""
         word("selection", self.selection, get_args(VelocitySelection))
         self._as_numbers(*self.GAIN_NAMES)
-        # These two are not looked at by every selection, but by every search.
+        # These two are not examined by every selection, but by every search.
         not_negative("risk_weight", self.risk_weight)
         if not 0.0 <= self.sector <= math.pi:
             raise InvalidParameterError("sector", "be an angle from 0 to pi", self.sector)
@@ -105,9 +105,9 @@ class OptimalReciprocalCollisionAvoidance(Law):
         the passage of c3; with 0.01 m and a horizon of 2 s it drives through.
     turn : float
         Angle by which the wanted velocity is turned to the left of the goal, in rad. Without it
-        a robot that meets somebody head-on would only slow down.
+        a robot that meets a person head-on would only slow down.
     reach : float
-        Obstacles whose surface is farther away are not looked at, in m.
+        Obstacles whose surface is farther away are not examined, in m.
     reciprocal : bool
         Whether others avoid the robot as it avoids them, so that each takes half of it. People
         of the scenarios do not give way: the default leaves all of it to the robot.

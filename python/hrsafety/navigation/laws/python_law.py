@@ -44,7 +44,7 @@ class VelocityLaw(Protocol):
 
 
 AnyLaw: TypeAlias = Law | ForceLaw | VelocityLaw | Callable[[Situation], npt.ArrayLike]
-"""What drives a robot: a law of the package, or one of your own."""
+"""Law that drives a robot: one of the package, or one of your own."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

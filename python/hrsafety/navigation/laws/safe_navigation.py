@@ -26,7 +26,7 @@ CRITICAL_DISTANCE = 0.02
 
 @displayed
 class SafetyTrace(NamedTuple):
-    """What the parts around a law did in a control period.
+    """Decisions of the parts around a law in a control period.
 
     Attributes
     ----------
@@ -159,7 +159,7 @@ class SafeNavigation(Law):
 
     @property
     def parts_words(self) -> str:
-        """What is around the law, in words."""
+        """Names of the parts around the law, in words."""
         parts = [
             words
             for words, part in (

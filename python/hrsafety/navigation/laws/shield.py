@@ -24,14 +24,14 @@ _HUGE = 1e150
 @displayed
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ShieldDecision:
-    """What a shield did with a wanted velocity.
+    """Decision of a shield about a wanted velocity.
 
     Parameters
     ----------
     velocity : ndarray, shape (2,)
         Velocity in m/s that is commanded.
     status : str
-        ``"kept"``, ``"changed"`` or ``"braking"``; ``"not_guaranteed"`` in place of the first two where somebody is
+        ``"kept"``, ``"changed"`` or ``"braking"``; ``"not_guaranteed"`` in place of the first two where a person is
         `faster`.
     wanted_gap, gap : float
         Least distance in m between the half disc ahead of the robot and everywhere that people can be,

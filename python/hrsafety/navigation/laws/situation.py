@@ -1,4 +1,4 @@
-"""What a controller sees at a sample: the robot, the goal and the obstacles as measured."""
+"""Situation of a controller at a sample: the robot, the goal and the obstacles as measured."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["PointMass", "Situation", "point_mass_of", "situation_of"]
 @displayed
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PointMass:
-    """What a law drives: the robot, or the point mass that a two-wheel robot follows.
+    """Point mass that a law drives: the robot, or the one that a two-wheel robot follows.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class PointMass:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Situation:
-    """What a controller sees at a sample: m obstacles, everything as measured.
+    """Situation of a controller at a sample: m obstacles, everything as measured.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Giving way to people: what is wanted, as far as it meets nobody."""
+"""Giving way to people: what is wanted, as far as it meets no person."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = ["Yielding"]
 class Yielding(Parameters):
     """Choice of a velocity that stays out of the way of people, as far as their velocities tell.
 
-    A wanted velocity that meets nobody within the horizon, everybody at his present velocity, is
+    A wanted velocity that meets no person within the horizon, everybody at his present velocity, is
     kept. Otherwise it is compared with rest and with 36 directions at three speeds, by
 
     ``|v - wanted|/V_max - k_g v.g/V_max + k_t (1/t_c - 1/H) + k_d (1 - c/c_p)^2``,
@@ -40,7 +40,7 @@ class Yielding(Parameters):
     goal_weight : float
         k_g.
     reach : float
-        People whose surface is farther away are not looked at, in m; may be infinite.
+        People whose surface is farther away are not examined, in m; may be infinite.
 
     Raises
     ------

@@ -150,7 +150,7 @@ class Guide(Parameters):
     and a goal. A link costs its length times ``1 + 2 max(0, 1 - (c - rho)/0.3)^2``, ``c`` the distance of its
     ends from the map. A path with room of the radius of the robot, the margin and 0.71 spacings is always found.
     Without a map the law has the goal itself, and does what it does alone. Only where the robot has come nearer to it
-    by less than 0.1 m in 2 s, and somebody or something stands on the straight way within the look-ahead, the guide
+    by less than 0.1 m in 2 s, and a person or an obstacle stands on the straight way within the look-ahead, the guide
     leads around, until the whole straight way is free.
 
     Parameters

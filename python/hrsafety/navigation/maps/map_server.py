@@ -11,20 +11,20 @@ import numpy.typing as npt
 
 from hrsafety._arguments import count, meant, readable, word
 from hrsafety.errors import FileError, Shown
-from hrsafety.navigation.maps.pgm import Picture
+from hrsafety.navigation.maps.pgm import GrayImage
 from hrsafety.navigation.maps.pictures import read_picture
 from hrsafety.plausibility import ResultWarning, implausible
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from hrsafety.io.yaml import Section
+    from hrsafety.io.yaml import YamlSection
 
 __all__ = ["BETWEEN", "FREE", "OCCUPIED", "UNKNOWN", "ServedMap", "cell_classes", "doubts_of_place", "read_map_server"]
 
 CELLS_AT_ONCE = 1 << 21
 FREE, UNKNOWN, OCCUPIED, BETWEEN = range(4)
-"""What a cell is: `BETWEEN` has a value from 1 to 99 of 100."""
+"""State of a cell: `BETWEEN` has a value from 1 to 99 of 100."""
 LARGEST = 1e300
 """Coordinates of a corner are smaller, so that all that is computed from them is finite."""
 SAVED_UNKNOWN = 205
@@ -49,7 +49,7 @@ class ServedMap(NamedTuple):
     occupied : ndarray of bool, shape (rows, columns)
         What cells count as; row 0 has the lowest y.
     unseen : ndarray of bool, shape (rows, columns), or None
-        Cells that count as free though nobody has seen them; ``None`` if there are none.
+        Cells that count as free though they were not observed; ``None`` if there are none.
     resolution : float
         Side of a cell in m.
     origin : tuple of float
@@ -69,7 +69,7 @@ class ServedMap(NamedTuple):
 
 
 class _Rules(NamedTuple):
-    """What a YAML file and the arguments say about gray values."""
+    """Rules of a YAML file and the arguments for gray values."""
 
     mode: str
     negate: bool
@@ -123,7 +123,7 @@ def cell_classes(path: str | PathLike[str]) -> Classes:
     return found
 
 
-def _entries(path: str | PathLike[str]) -> tuple[Section, tuple[ResultWarning, ...]]:
+def _entries(path: str | PathLike[str]) -> tuple[YamlSection, tuple[ResultWarning, ...]]:
     from hrsafety.io.yaml import read_yaml  # for those who have such a file
 
     document = read_yaml(path)
@@ -136,7 +136,7 @@ def _entries(path: str | PathLike[str]) -> tuple[Section, tuple[ResultWarning, .
     return root, document.warnings
 
 
-def _rules(entries: Section, *, letter: bool = False, occupied_from: int | None = None) -> _Rules:
+def _rules(entries: YamlSection, *, letter: bool = False, occupied_from: int | None = None) -> _Rules:
     mode = "trinary" if "mode" not in entries else entries["mode"].text()
     if mode not in _MODES:
         raise entries["mode"].error('be "trinary", "scale" or "raw"', meant(mode, _MODES), code="mode")
@@ -209,7 +209,7 @@ def _kept(classes: Classes, rules: _Rules, most: int, fills: bool) -> Classes:
     return kept
 
 
-def _histogram(picture: Picture) -> npt.NDArray[np.int64]:
+def _histogram(picture: GrayImage) -> npt.NDArray[np.int64]:
     """Return how many opaque pixels have each gray value."""
     found = np.zeros(picture.most + 1, dtype=np.int64)
     for part in _parts(picture):
@@ -219,7 +219,7 @@ def _histogram(picture: Picture) -> npt.NDArray[np.int64]:
     return found
 
 
-def _parts(picture: Picture) -> Iterator[slice]:
+def _parts(picture: GrayImage) -> Iterator[slice]:
     """Yield some rows at a time, so that Ctrl-C is answered and little memory is taken."""
     rows, columns = picture.values.shape
     step = max(CELLS_AT_ONCE // columns, 1)
@@ -227,7 +227,7 @@ def _parts(picture: Picture) -> Iterator[slice]:
         yield slice(first, min(first + step, rows))
 
 
-def _upwards(picture: Picture, chosen: Bits, *, hidden: bool) -> Bits:
+def _upwards(picture: GrayImage, chosen: Bits, *, hidden: bool) -> Bits:
     """Return which cells have one of the chosen gray values, the lowest row first."""
     rows, columns = picture.values.shape
     found = np.empty((rows, columns), dtype=np.bool_)
@@ -250,7 +250,7 @@ def doubts_of_place(resolution: float, corner: tuple[float, float], yaw: float) 
 
 
 def _doubts_of_cells(
-    picture: Picture,
+    picture: GrayImage,
     rules: _Rules,
     classes: Classes,
     freed: Bits,
@@ -332,12 +332,12 @@ def _as(fills: bool) -> str:
 # ---- keys ------------------------------------------------------------------------------------------
 
 
-def _number(entry: Section) -> float:
+def _number(entry: YamlSection) -> float:
     """Return a number, which may stand in quotes: the map server reads it all the same."""
     return entry.unquoted().number()
 
 
-def _negate(entries: Section) -> bool:
+def _negate(entries: YamlSection) -> bool:
     """Return a value of 0 or 1, or a word for it; 0 where there is none."""
     if "negate" not in entries:
         return False
@@ -348,7 +348,7 @@ def _negate(entries: Section) -> bool:
     return bool(value)
 
 
-def _origin(entry: Section) -> tuple[float, float, float]:
+def _origin(entry: YamlSection) -> tuple[float, float, float]:
     found = [each.unquoted().plain for each in entry.values()] if isinstance(entry.plain, list) else []
     if len(found) != 3 or not all(type(each) in (int, float) for each in found):
         raise entry.error("be three numbers, x, y and yaw", code="origin")
@@ -358,7 +358,7 @@ def _origin(entry: Section) -> tuple[float, float, float]:
     return x, y, yaw
 
 
-def _image(file: Path, entry: Section, *, trust_path: bool) -> Path:
+def _image(file: Path, entry: YamlSection, *, trust_path: bool) -> Path:
     """Return the image of a map, which lies in its folder unless another place is trusted."""
     folder = file.resolve().parent
     name = entry.text()

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from hrsafety._arguments import Pair
-from hrsafety.navigation.maps.parts import Wall
+from hrsafety.navigation.maps.parts import PolylineWall
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 
@@ -51,7 +51,7 @@ def outlines(place: StaticMap) -> tuple[Shape, ...]:
     return tuple(found)
 
 
-def _thick(wall: Wall) -> list[Shape]:
+def _thick(wall: PolylineWall) -> list[Shape]:
     """Return a rectangle for each segment of a thick wall."""
     found: list[Shape] = []
     for (x, y), (u, v) in zip(wall.points[:-1], wall.points[1:], strict=True):

@@ -14,14 +14,14 @@ from hrsafety._display import displayed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.obstacles.standing import Rectangle
 
-__all__ = ["Cells", "Wall"]
+__all__ = ["Cells", "PolylineWall"]
 
 _PART = 16_384  # rows of which the answers take milliseconds
 
 Outline = tuple[tuple[float, float], ...]
 
 
-class Wall(NamedTuple):
+class PolylineWall(NamedTuple):
     """A wall along a polyline.
 
     Attributes
@@ -55,7 +55,7 @@ class Cells(NamedTuple):
     limits : bool
         Whether nothing is known of what lies outside of it, and of other such grids.
     unseen_bits : bytes
-        Cells that count as free though nobody has seen them, like ``bits``; empty without any.
+        Cells that count as free though they were not observed, like ``bits``; empty without any.
     """
 
     bits: bytes
@@ -73,11 +73,11 @@ class Cells(NamedTuple):
 
     @property
     def unseen(self) -> npt.NDArray[np.bool_]:
-        """Which cells count as free though nobody has seen them, (rows, columns)."""
+        """Which cells count as free though they were not observed, (rows, columns)."""
         return _unpacked(self.unseen_bits, self.shape) if self.unseen_bits else np.zeros(self.shape, dtype=np.bool_)
 
     def unseen_at(self, point: Array) -> npt.NDArray[np.bool_]:
-        """Return whether points (n, 2) lie in cells that count as free though nobody has seen them."""
+        """Return whether points (n, 2) lie in cells that count as free though they were not observed."""
         rows, columns = self.shape
         found = np.zeros(len(point), dtype=np.bool_)
         if not self.unseen_bits:

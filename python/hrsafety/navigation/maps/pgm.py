@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from io import BufferedReader
     from pathlib import Path
 
-__all__ = ["Picture", "check_size", "read_pgm"]
+__all__ = ["GrayImage", "check_size", "read_pgm"]
 
 HEAD_BYTES = 1 << 16
 PIECE = 1 << 24  # bytes that are read at once
@@ -26,7 +26,7 @@ _GAP = rb"(?:\s|#[^\n\r]*[\n\r])+"
 _HEAD = rb"(P[25])" + _GAP + rb"(\d{1,10})" + _GAP + rb"(\d{1,10})" + _GAP + rb"(\d{1,6})(?:\r\n|\s|(?=#))"
 
 
-class Picture(NamedTuple):
+class GrayImage(NamedTuple):
     """Gray values as they stand in a file.
 
     Attributes
@@ -56,7 +56,7 @@ def check_size(path: Path, rows: int, columns: int) -> None:
         raise InvalidParameterError("image", f"have at most {MOST_CELLS} pixels", shown)
 
 
-def read_pgm(path: Path) -> Picture:
+def read_pgm(path: Path) -> GrayImage:
     """Return the gray values of a picture; one byte each, or two, the higher one first, above 255."""
     with path.open("rb") as file:
         head = re.match(_HEAD, file.read(HEAD_BYTES))
@@ -89,7 +89,7 @@ def read_pgm(path: Path) -> Picture:
     if int(values.max()) > most:
         shown = Shown(f"{int(values.max())} in {path.name}")
         raise InvalidParameterError("image", f"have gray values up to its maxval, {most}", shown)
-    return Picture(values.reshape(rows, columns), most, spare=spare)
+    return GrayImage(values.reshape(rows, columns), most, spare=spare)
 
 
 def _rest(file: BufferedReader, size: int) -> memoryview:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hrsafety.errors import InvalidParameterError, MissingExtraError, Shown
-from hrsafety.navigation.maps.pgm import Picture, check_size, read_pgm
+from hrsafety.navigation.maps.pgm import GrayImage, check_size, read_pgm
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -19,7 +19,7 @@ PNG = b"\x89PNG\r\n\x1a\n"
 OTHERS = {b"\xff\xd8": "JPEG", b"BM": "BMP", b"GI": "GIF", b"P1": "PBM", b"P3": "PPM", b"P4": "PBM", b"P6": "PPM"}
 
 
-def read_picture(path: Path) -> Picture:
+def read_picture(path: Path) -> GrayImage:
     """Return the gray values of a picture."""
     try:
         with path.open("rb") as file:
@@ -36,7 +36,7 @@ def read_picture(path: Path) -> Picture:
     raise InvalidParameterError("image", "be a PGM picture, P2 or P5, or a PNG picture", Shown(found), remedy)
 
 
-def _read_png(path: Path) -> Picture:
+def _read_png(path: Path) -> GrayImage:
     """Return the gray values of a PNG: as they are, of colors the mean."""
     try:
         from PIL import Image
@@ -62,7 +62,7 @@ def _read_png(path: Path) -> Picture:
     except Exception:  # whatever a broken file makes of Pillow
         raise broken from None
     if values.ndim == 2:
-        return Picture(values, 65535 if values.dtype.itemsize > 1 else 255)
+        return GrayImage(values, 65535 if values.dtype.itemsize > 1 else 255)
     hidden = values[..., -1] < 255 if values.shape[2] in (2, 4) else None
     colors = values.shape[2] - (hidden is not None)
-    return Picture(values[..., :colors].sum(axis=2, dtype=np.uint16), 255 * colors, hidden)
+    return GrayImage(values[..., :colors].sum(axis=2, dtype=np.uint16), 255 * colors, hidden)

@@ -20,7 +20,7 @@ from hrsafety.navigation.maps.distances import occupied_cells
 from hrsafety.navigation.maps.map_server import doubts_of_place, read_map_server
 from hrsafety.navigation.maps.parts import (
     Cells,
-    Wall,
+    PolylineWall,
     checked_finite,
     checked_place,
     checked_points,
@@ -39,14 +39,14 @@ __all__ = ["StaticMap"]
 
 @dataclass(frozen=True, kw_only=True, slots=True, repr=False)
 class StaticMap(Parameters):
-    """What stands still: walls, filled polygons, filled discs, occupancy grids.
+    """Map of standing obstacles: walls, filled polygons, filled discs, occupancy grids.
 
     Everything becomes segments with a radius, and filled interiors. Distances are exact, and zero
     inside; an index makes them fast. Maps are added with ``+``.
 
     Parameters
     ----------
-    walls : sequence of Wall or (points, radius)
+    walls : sequence of PolylineWall or (points, radius)
         Polylines with a radius in m.
     polygons : sequence of array_like, shape (n, 2)
         Corners of filled polygons in m; the first one is not repeated at the end.
@@ -72,7 +72,7 @@ class StaticMap(Parameters):
     array([0.5, 0. ])
     """
 
-    walls: Sequence[Wall] = ()
+    walls: Sequence[PolylineWall] = ()
     polygons: Sequence[npt.ArrayLike] = ()
     discs: npt.ArrayLike = ()
     grids: Sequence[Cells] = ()
@@ -91,7 +91,7 @@ class StaticMap(Parameters):
         grids = [instance(f"grids[{i}]", each, Cells) for i, each in enumerate(items("grids", self.grids))]
         self._set(
             warnings=checked_doubts("warnings", self.warnings),
-            walls=tuple(Wall(outline(corners), radius) for corners, radius in walls),
+            walls=tuple(PolylineWall(outline(corners), radius) for corners, radius in walls),
             polygons=tuple(outline(corners) for corners in polygons),
             discs=tuple((float(x), float(y), float(radius)) for x, y, radius in discs),
             grids=tuple(grids),
@@ -135,7 +135,7 @@ class StaticMap(Parameters):
         thickness = not_negative("radius", radius)
         each = items("polylines", polylines)
         lines = [points(f"polylines[{i}]", line) for i, line in enumerate(each)]
-        return cls(walls=[Wall(outline(line), thickness) for line in lines])
+        return cls(walls=[PolylineWall(outline(line), thickness) for line in lines])
 
     @classmethod
     def from_polygons(cls, polygons: Iterable[npt.ArrayLike]) -> Self:
@@ -464,7 +464,7 @@ class StaticMap(Parameters):
         return self._native.boundary_points(place, not_negative("reach", reach), number("kappa", kappa))
 
     def unseen(self, point: npt.ArrayLike) -> Any:
-        """Return whether nobody has seen what stands at points: unknown cells, and what lies outside of the image.
+        """Return whether points are unobserved: unknown cells, and what lies outside of the image.
 
         Parameters
         ----------

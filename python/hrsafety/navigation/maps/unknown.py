@@ -1,4 +1,4 @@
-"""Ways over ground that nobody has seen."""
+"""Ways over ground that was not observed."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from hrsafety.plausibility import ResultWarning
 __all__ = ["over_unknown"]
 
 PIECE = 0.02
-"""A way is looked at every so many m."""
+"""A way is examined every so many m."""
 MOST_PIECES = 1_000_000
 
 

@@ -83,7 +83,7 @@ def paths_of(episode: Episode, own: Array, people: Array) -> tuple[Array, Array,
     tuple of ndarray
         Offsets of the people from the robot at every instant, shape (n, p, 2), the ways from there in every step,
         shape (n - 1, p, 2), and the least distances of the centers in every step, shape (n - 1, p), all in m; NaN
-        where somebody is absent at either end.
+        where a person is absent at either end.
     """
     start = wrapped(people - own[:, None], episode.period)
     way = wrapped(np.diff(start, axis=0), episode.period)
@@ -103,7 +103,7 @@ def touched_between(episode: Episode, arrival_time: float, time_to_collision: fl
     arrival_time : float
         When the robot arrived, in s; NaN if it did not.
     time_to_collision : float
-        The metric ``min_time_to_collision`` of the episode, in s: nobody is touched within a step that is shorter.
+        The metric ``min_time_to_collision`` of the episode, in s: no person is touched within a step that is shorter.
 
     Returns
     -------

@@ -19,7 +19,7 @@ C = TypeVar("C", bound=type)
 
 @displayed
 class Metric(NamedTuple):
-    """What is known about a metric.
+    """Declaration of a metric.
 
     Attributes
     ----------
@@ -41,9 +41,9 @@ class Metric(NamedTuple):
 
 _ROBOT, _WORLD = ({row[0]: Metric._make(row) for row in rows} for rows in _hrsafety.crowd_metric_names())
 METRICS: Mapping[str, Metric] = MappingProxyType(_ROBOT)
-"""What the native core declares about each metric of a robot, in the order of tables."""
+"""Declaration of each metric of a robot by the native core, in the order of tables."""
 WORLD_METRICS: Mapping[str, Metric] = MappingProxyType(_WORLD)
-"""What the native core declares about each metric of a world."""
+"""Declaration of each metric of a world by the native core."""
 
 OF_GOAL = (
     *("arrived", "arrival_time", "final_goal_distance", "success", "path_length_ratio", "spl"),

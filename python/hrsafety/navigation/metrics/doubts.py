@@ -1,4 +1,4 @@
-"""Doubts about episodes that are scored; of many episodes only those are looked at that may have some."""
+"""Doubts about episodes that are scored; of many episodes only those are examined that may have some."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ ENDS = ("arrival_time", "min_time_to_collision", "wall_clearance")
 """Metrics that `doubts_between` needs."""
 
 SLACK = 1e-9
-"""What rounding may change of a number, relative to it: far more than it does."""
+"""Largest relative change of a number by rounding: far more than it is."""
 
 
 def implausible_numbers(episode: Episode, max_speed: float) -> tuple[ResultWarning, ...]:

@@ -1,4 +1,4 @@
-"""What is scored: positions over time, with the sizes and rules that they are measured by."""
+"""Scored episodes: positions over time, with the sizes and rules that they are measured by."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class Episode(Parameters):
     person_radius : float or array_like, shape (n,)
         Radii of the people in m.
     groups : array_like of int, shape (n,)
-        Who belongs together; below 0: to nobody. Empty: there are no groups.
+        Who belongs together; below 0: to no person. Empty: there are no groups.
     walls : StaticMap, or sequence of Disc, Rectangle, or array_like, shape (k, 2)
         What stands still; arrays are polylines. A map is kept as its outlines.
     people_without : array_like, shape (U + 1, n, 2), or None
@@ -107,14 +107,14 @@ class Episode(Parameters):
 
     Notes
     -----
-    Absence is not clearance. Somebody last seen at ``x_a`` and next at ``x_b`` is, within the speed ``v``, in both
+    Absence is not clearance. A person last seen at ``x_a`` and next at ``x_b`` is, within the speed ``v``, in both
     discs around them with radii ``v (t - t_a)`` and ``v (t_b - t)``; ``v`` is `person_speed`, or
     ``|x_b - x_a|/(t_b - t_a)`` if that is larger. The surfaces of robot and person are then at least::
 
         g(t) = max(|p - x_a| - v (t - t_a), |p - x_b| - v (t_b - t)) - R - rho
 
     apart, with the term that is known where only one is. A contact is possible where ``g < 0``: `success` is false
-    then. Every metric that could be different with somebody at ``g`` is NaN (``min_clearance`` where ``g`` is below it,
+    then. Every metric that could be different with a person at ``g`` is NaN (``min_clearance`` where ``g`` is below it,
     ``personal_share`` where ``g + rho`` is below 1.2 m, times to collision by ``g/(v + |V|)`` ...), and a warning
     ``not_scored`` names person, times and metrics. Numbers of contacts count what is seen.
 
@@ -340,7 +340,7 @@ class Episode(Parameters):
         Raises
         ------
         InvalidParameterError
-            If nobody has this id, or a value is out of range.
+            If no person has this id, or a value is out of range.
 
         Examples
         --------
@@ -386,7 +386,7 @@ def _rows(array: Array) -> Array:
 
 
 def _over_time(name: str, value: npt.ArrayLike) -> Array:
-    """Return positions (instants, people, 2); nobody for an empty array."""
+    """Return positions (instants, people, 2); no person for an empty array."""
     array = numbers(name, value)
     if array.size == 0:
         return np.empty((0, array.shape[1] if array.ndim == 3 else 0, 2))

@@ -374,7 +374,7 @@ def evaluate_world(
     period : tuple of float
         Lengths in m after which the world repeats along x and y; 0: it does not.
     simulated : bool
-        Whether the positions come from a simulation: nothing is measured, and nobody is missing.
+        Whether the positions come from a simulation: nothing is measured, and no person is missing.
 
     Returns
     -------

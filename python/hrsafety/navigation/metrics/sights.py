@@ -12,16 +12,16 @@ __all__ = ["LOST", "last_sight", "next_sight", "seen_instants", "track_ends", "u
 Flags = npt.NDArray[np.bool_]
 
 LOST = 2.0
-"""Before the first and after the last sight of somebody the person may still be there for this long, in s."""
+"""Before the first and after the last sight of a person the person may still be there for this long, in s."""
 
 
 def unseen_instants(people: Array) -> Flags:
-    """Return when somebody is not seen and is taken to be there: between two sights, and who is never seen.
+    """Return when a person is not seen and is taken to be there: between two sights, and who is never seen.
 
     Parameters
     ----------
     people : ndarray, shape (T + 1, n, 2)
-        Positions in m, NaN where nobody was seen.
+        Positions in m, NaN where no person was seen.
 
     Returns
     -------
@@ -35,12 +35,12 @@ def unseen_instants(people: Array) -> Flags:
 
 
 def track_ends(people: Array, step: float) -> Flags:
-    """Return when somebody may be there unseen for 2 s before the first and after the last sight.
+    """Return when a person may be there unseen for 2 s before the first and after the last sight.
 
     Parameters
     ----------
     people : ndarray, shape (T + 1, n, 2)
-        Positions in m, NaN where nobody was seen.
+        Positions in m, NaN where no person was seen.
     step : float
         Time between two instants in s.
 

@@ -27,7 +27,7 @@ __all__ = ["at_instants", "doubts_of_run", "fields_in", "steps_of_run", "track_d
 # Instants of a run that differ by less are the same, relative to the step.
 _ROUNDING = 1e-9
 MOST_STEPS = 3.0
-"""Between rows that are more than so many median steps apart somebody is not seen."""
+"""Between rows that are more than so many median steps apart a person is not seen."""
 
 
 def steps_of_run(run: Trajectory) -> dict[str, Any]:
@@ -95,7 +95,7 @@ def fields_in(world: World, robot: int, places: tuple[Array, Array, Array]) -> d
 
 
 def doubts_of_run(run: Trajectory, *, walls: bool, people: bool) -> Iterator[ResultWarning]:
-    """Yield warnings of what an episode from a run leaves out: maps, and what moves and is nobody.
+    """Yield warnings of what an episode from a run leaves out: maps, and what moves and is no person.
 
     ``walls`` and ``people``: whether those of the episode are those of the scenario.
     """

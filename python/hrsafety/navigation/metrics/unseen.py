@@ -19,7 +19,7 @@ __all__ = ["unscored"]
 Flags = npt.NDArray[np.bool_]
 
 ZONES = {"intimate_share": 0.45, "personal_share": 1.2, "social_share": 3.6}
-"""Beyond these distances from the surface of the robot, in m, somebody changes no share."""
+"""Beyond these distances from the surface of the robot, in m, a person changes no share."""
 COMFORT, DISCOMFORT = 0.5, 0.2
 LOW_TIME = 2.0
 FORCE_REACH = 10.0
@@ -31,7 +31,7 @@ FORCES = ("force_on_people", "force_on_robot", "social_work")
 def _least_gaps(episode: Episode, own: Array, unseen: Flags) -> tuple[Array, Array]:
     """Return how near unseen people may be to the robot and how fast they may be, both (instants, people).
 
-    Within a speed ``v`` somebody last seen at ``x_a`` and next at ``x_b`` is in both discs around them, of radii
+    Within a speed ``v`` a person last seen at ``x_a`` and next at ``x_b`` is in both discs around them, of radii
     ``v (t - t_a)`` and ``v (t_b - t)``: the surfaces are at least ``max(|p - x_a| - v (t - t_a), |p - x_b| -
     v (t_b - t)) - R - rho`` apart. Infinite where people are seen, or away.
     """
@@ -67,7 +67,7 @@ def unscored(episode: Episode, values: Mapping[str, Any]) -> tuple[dict[str, Any
     episode : Episode
         The robot and the people.
     values : mapping of str to float, int or bool
-        All metrics as if nobody was where nobody was seen.
+        All metrics as if the floor were free where no person was seen.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What all obstacles share: an active and a critical region."""
+"""Base of the obstacles: an active and a critical region."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Limits = tuple[float | None, float | None, float | None]
 
 
 class Obstacle(Parameters):
-    """What all obstacles share: an active and a critical region.
+    """Base of the obstacles: an active and a critical region.
 
     A region is given by its radius as in the source, from the center of a disc and from the contour
     of a rectangle to the center of the robot, or by its clearance, between the surfaces of obstacle

@@ -1,4 +1,4 @@
-"""The wheels of the robots of the thesis, which are made when somebody asks for them."""
+"""The wheels of the robots of the thesis, which are made when they are first used."""
 
 from __future__ import annotations
 

@@ -189,7 +189,7 @@ Tracking = FullSpeedTracking | NonlinearTracking | ExponentialTracking
 
 @displayed
 class Twist(NamedTuple):
-    """What two wheels can give.
+    """Velocity that two wheels can give.
 
     Attributes
     ----------

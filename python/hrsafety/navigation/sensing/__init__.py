@@ -1,4 +1,4 @@
-"""What robots know: noise and latency, cameras, sonar, estimators, calibration."""
+"""Sensing of robots: noise and latency, cameras, sonar, estimators, calibration."""
 
 from typing import TYPE_CHECKING
 

@@ -1,4 +1,4 @@
-"""What all sensors that ride on a robot share."""
+"""Base of the sensors that ride on a robot."""
 
 from __future__ import annotations
 

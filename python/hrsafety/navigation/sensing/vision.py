@@ -171,7 +171,7 @@ class Vision(Parameters):
 
 @displayed
 class Observation(NamedTuple):
-    """What a camera measures of a body on a known path, and what is known of it when.
+    """Measurements by a camera of a body on a known path, and what is known of it when.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What tables of runs have in common: rows of laws in scenarios or worlds, with their gains."""
+"""Rows of tables of runs: laws in scenarios or worlds, with their gains."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ class ReferenceMotion(NamedTuple):
 
 
 class _Motion(Parameters):
-    """What all references can do."""
+    """Base of the references."""
 
     __slots__ = ()
     _native: _hrsafety.ReferencePath

@@ -1,1 +1,1 @@
-"""What is to be said beside a result: of runs, scenarios and shields."""
+"""Warnings beside results: of runs, scenarios and shields."""

@@ -75,13 +75,13 @@ def _late(scenario: Scenario, built: AsBuilt, by_regions: bool) -> Iterator[Resu
 
 
 def of_way(law: Law, position: Array) -> Iterator[ResultWarning]:
-    """Warn of a run that leads over ground that nobody has seen, of all maps that its law knows."""
+    """Warn of a run that leads over ground that was not observed, of all maps that its law knows."""
     for map in maps_of(law):
         yield from over_unknown(map, position, "the run")
 
 
 def _straight_way(scenario: Scenario, law: Law) -> Iterator[ResultWarning]:
-    """Warn of a straight way over ground that nobody has seen: a table has no positions to look at.
+    """Warn of a straight way over ground that was not observed: a table has no positions to look at.
 
     A guide keeps to what is known, so only the ends count under one.
     """

@@ -31,7 +31,7 @@ IMPLAUSIBLE = "implausible"
 
 
 class Described(Protocol):
-    """What the warnings look at; a `Scenario` has it, and knows this module."""
+    """Scene that the warnings examine; a `Scenario` is one, and knows this module."""
 
     @property
     def robot(self) -> HolonomicRobot | DifferentialDriveRobot: ...
@@ -61,7 +61,7 @@ def found(scenario: Described) -> tuple[ResultWarning, ...]:
     Parameters
     ----------
     scenario : Scenario
-        What is looked at.
+        What is examined.
 
     Returns
     -------

@@ -76,7 +76,7 @@ class Motion:
 
 @dataclass(frozen=True, slots=True)
 class Mover:
-    """How somebody moves.
+    """How a person moves.
 
     Attributes
     ----------

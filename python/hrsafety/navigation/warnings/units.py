@@ -10,7 +10,7 @@ from hrsafety.plausibility import ResultWarning
 __all__ = ["of_scenarios"]
 
 MOST_SCENES = 100
-"""So many scenarios or worlds are looked at when runs end; the warnings of a table look at all."""
+"""So many scenarios or worlds are examined when runs end; the warnings of a table look at all."""
 
 
 def of_scenarios(*positional: object, **named: object) -> Iterator[ResultWarning]:

@@ -26,7 +26,7 @@ def unknown_walls(walls: StaticMap, law: object, sensed: Sequence[StaticMap | No
     walls : StaticMap
         What stands.
     law : Law or None
-        What drives the robot; nobody who stands drives into a wall.
+        What drives the robot; no person who stands drives into a wall.
     sensed : sequence of StaticMap or None
         Maps of its lidars.
 

@@ -30,7 +30,7 @@ LEGEND_COLUMNS = 4
 
 
 class _Kept(NamedTuple):
-    """What was kept of runs with paths, see `RunTable`."""
+    """Samples that were kept of runs with paths, see `RunTable`."""
 
     time: inputs.Array
     position: inputs.Array

@@ -29,7 +29,7 @@ def comparison_standings(result: Comparison, *, title: str | None = None) -> Fig
     """Draw the shares of success and of contact of each law with their 95 % intervals.
 
     Below the share of the episodes with a contact, a hollow circle is the share of those in which the robot moved
-    toward somebody whom it touched, and a cross that of those in which it was touched from behind or from the side
+    toward a person whom it touched, and a cross that of those in which it was touched from behind or from the side
     while it moved.
 
     Parameters

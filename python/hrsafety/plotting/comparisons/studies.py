@@ -52,7 +52,7 @@ def clearances(
 
     The height of a curve at a clearance c is the share of runs that came as close as c or
     closer; where it crosses the line at zero it tells the share of runs with a contact. Runs
-    that met nobody have infinite clearance: they count, but their step is never reached.
+    that met no person have infinite clearance: they count, but their step is never reached.
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ def outcomes(
     With counts of contacts, runs with a contact are split: those in which the robot was
     moving at the first contact with anybody, and those in which it always stood. Counts of a
     RunTable are used by themselves; of these the runs in which it moved are split into those in which it moved
-    toward somebody whom it touched, and those in which it was touched from behind or from the side only.
+    toward a person whom it touched, and those in which it was touched from behind or from the side only.
 
     Parameters
     ----------
@@ -256,7 +256,7 @@ def _whole(name: str, values: npt.ArrayLike) -> npt.NDArray[np.int64]:
 def _counts(words: npt.NDArray[np.str_], contacts: tuple[Counts, ...] | None) -> dict[str, int]:
     """Return the number of runs of each outcome, runs with a contact split if counts are known.
 
-    They are those of contacts moving, standing and, if it is known, moving toward somebody.
+    They are those of contacts moving, standing and, if it is known, moving toward a person.
     """
     whole = [word for word in OUTCOMES if word != "collided"]
     counts = {word.replace("_", " "): int(np.count_nonzero(words == word)) for word in whole}

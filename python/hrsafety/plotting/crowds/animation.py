@@ -94,7 +94,7 @@ def animate_crowd(
 
 
 class _Stage:
-    """What moves in the picture of a world: its artists, and how they show one row."""
+    """Moving artists of the picture of a world, and how they show one row."""
 
     def __init__(self, axes: Axes, run: Trajectory, place: world_scenes.Floor, kinds: Sequence[str]) -> None:
         self.run, self.place = run, place

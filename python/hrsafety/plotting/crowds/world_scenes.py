@@ -173,7 +173,7 @@ class Floor:
         return np.insert(inside, jumps + 1, np.nan, axis=0)
 
     def copies(self, place: Array, radius: float) -> Iterator[Array]:
-        """Yield the places in view at which somebody stands: several in a world that repeats itself."""
+        """Yield the places in view at which a person stands: several in a world that repeats itself."""
         shifts = [np.zeros(1)] * 2
         for axis, (low, high) in enumerate(self.limits):
             size = self.period[axis]

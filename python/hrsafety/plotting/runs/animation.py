@@ -105,7 +105,7 @@ def animate(
 
 
 class _Stage:
-    """What moves in the picture of a run: its artists, and how they show one row."""
+    """Moving artists of the picture of a run, and how they show one row."""
 
     def __init__(self, axes: Axes, run: Trajectory, ids: Sequence[str], *, regions: bool) -> None:
         self.run = run

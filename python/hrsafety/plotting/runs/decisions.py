@@ -1,4 +1,4 @@
-"""What the parts around a law decide: plan of the guide, verdict of the shield, verified way to rest, in one frame."""
+"""Decisions of the parts around a law in one frame: plan of the guide, verdict of the shield, verified way to rest."""
 
 from __future__ import annotations
 
@@ -174,7 +174,7 @@ def _limits(record: SafetyRecord, decision: SafetyDecision | None = None) -> sty
 
 
 def _corners(obstacle: Obstacle, decision: SafetyDecision, index: int) -> inputs.Array:
-    """Return corners around somebody who can move and the reach that is drawn, none of who is absent."""
+    """Return corners around a person who can move and the reach that is drawn, none of who is absent."""
     place, reach = decision.obstacle_position[index], float(decision.obstacle_reach[index])
     if not shapes.is_mobile(obstacle) or not np.isfinite(place).all():
         return np.empty((0, 2))

@@ -1,4 +1,4 @@
-"""What is around the robot that follows a sound: leader and obstacles."""
+"""Surroundings of the robot that follows a sound: leader and obstacles."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, Parameters, instance, pair, positive, sequence
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
-from hrsafety.reactive.sonar.echoes import Box, Disc, Echoing, Wall
+from hrsafety.reactive.sonar.echoes import Box, Cylinder, Echoing, Wall
 
 __all__ = ["FollowerScene", "MovingObstacle", "SoundLeader"]
 
@@ -22,7 +22,7 @@ class MovingObstacle(Parameters):
 
     Parameters
     ----------
-    shape : Box, Disc or Wall
+    shape : Box, Cylinder or Wall
         At its first place.
     velocity : tuple of float
         While it moves, in m/s.
@@ -51,7 +51,7 @@ class MovingObstacle(Parameters):
     def __post_init__(self) -> None:
         """Check the values."""
         if not isinstance(self.shape, Echoing):
-            raise InvalidParameterError("shape", "be a Box, a Disc or a Wall", self.shape)
+            raise InvalidParameterError("shape", "be a Box, a Cylinder or a Wall", self.shape)
         self._set(velocity=pair("velocity", self.velocity))
         values = self._as_numbers("start", "stop")
         self._set(_native=_hrsafety.Mover(shape=self.shape._native, velocity=self.velocity, **values))
@@ -106,13 +106,13 @@ def _finite(name: str, value: object) -> Pair:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FollowerScene(Parameters):
-    """What is around the follower, which starts at the origin and looks along x.
+    """Surroundings of the follower, which starts at the origin and looks along x.
 
     Parameters
     ----------
     leader : SoundLeader
         Source of the sound.
-    obstacles : sequence of MovingObstacle, Box, Disc or Wall
+    obstacles : sequence of MovingObstacle, Box, Cylinder or Wall
         A bare shape stands.
     duration : float
         How long it is watched, in s.
@@ -136,10 +136,10 @@ class FollowerScene(Parameters):
     def __post_init__(self) -> None:
         """Check the values."""
         instance("leader", self.leader, SoundLeader)
-        rule = "be a sequence of MovingObstacle, Box, Disc and Wall"
+        rule = "be a sequence of MovingObstacle, Box, Cylinder and Wall"
         movers = []
         for each in sequence("obstacles", rule, self.obstacles):
-            if not isinstance(each, MovingObstacle | Box | Disc | Wall):
+            if not isinstance(each, MovingObstacle | Box | Cylinder | Wall):
                 raise InvalidParameterError("obstacles", rule, each)
             movers.append(each if isinstance(each, MovingObstacle) else MovingObstacle(shape=each, stop=0.0))
         self._set(obstacles=tuple(movers), duration=positive("duration", self.duration))

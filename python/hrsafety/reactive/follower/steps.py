@@ -94,7 +94,7 @@ class FollowerSteps(Stepped[FollowerRun]):
 
     @property
     def scene(self) -> FollowerScene:
-        """What is around."""
+        """Surroundings of the robot."""
         return self._scene
 
     @property

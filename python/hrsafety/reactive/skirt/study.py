@@ -31,7 +31,7 @@ _COUNTS = {"even": tuple(range(3, 17)), "wheels": (6, 9, 12, 15, 18)}
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class SmallestSkirt(Table):
-    """What `smallest_skirt` found.
+    """Result of `smallest_skirt`.
 
     Attributes
     ----------

@@ -7,7 +7,7 @@ from hrsafety._namespace import names_of
 if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.reactive.sonar.echoes import (
         Box as Box,
-        Disc as Disc,
+        Cylinder as Cylinder,
         Sonar as Sonar,
         SonarMounts as SonarMounts,
         Wall as Wall,

@@ -16,7 +16,7 @@ from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
 
-__all__ = ["Box", "Disc", "Sonar", "SonarMounts", "Wall", "cast_rays", "speed_of_sound"]
+__all__ = ["Box", "Cylinder", "Sonar", "SonarMounts", "Wall", "cast_rays", "speed_of_sound"]
 
 # In degrees Celsius.
 ABSOLUTE_ZERO = -273.15
@@ -68,7 +68,7 @@ def _sides(value: object) -> Pair:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Disc(Parameters):
+class Cylinder(Parameters):
     """A disc.
 
     Parameters
@@ -86,7 +86,7 @@ class Disc(Parameters):
     Examples
     --------
     >>> from hrsafety import reactive
-    >>> reactive.Disc(center=(1.0, 0.5), radius=0.1).radius
+    >>> reactive.Cylinder(center=(1.0, 0.5), radius=0.1).radius
     0.1
     """
 
@@ -131,12 +131,12 @@ class Wall(Parameters):
         self._set(_native=_hrsafety.EchoShape.wall(start=self.start, end=self.end))
 
 
-Echoing = Box | Disc | Wall
+Echoing = Box | Cylinder | Wall
 
 
 def native_shapes(name: str, shapes: object) -> list[_hrsafety.EchoShape]:
     """Return the native counterparts of shapes."""
-    rule = "be a sequence of Box, Disc and Wall"
+    rule = "be a sequence of Box, Cylinder and Wall"
     given = sequence(name, rule, shapes)
     for shape in given:
         if not isinstance(shape, Echoing):
@@ -245,7 +245,7 @@ class Sonar(Parameters):
 
         Parameters
         ----------
-        shapes : sequence of Box, Disc or Wall
+        shapes : sequence of Box, Cylinder or Wall
             What echoes.
         poses : array_like, shape (3,) or (n, 3)
             Position (m) and heading (rad) of the robot, step by step.
@@ -295,7 +295,7 @@ def cast_rays(shapes: Sequence[Echoing], origins: npt.ArrayLike, angles: npt.Arr
 
     Parameters
     ----------
-    shapes : sequence of Box, Disc or Wall
+    shapes : sequence of Box, Cylinder or Wall
         What they may meet.
     origins : array_like, shape (n, 2)
         Where they start, in m.
@@ -317,7 +317,7 @@ def cast_rays(shapes: Sequence[Echoing], origins: npt.ArrayLike, angles: npt.Arr
     Examples
     --------
     >>> from hrsafety import reactive
-    >>> reactive.sonar.cast_rays([reactive.Disc(center=(3.0, 0.0), radius=1.0)], [(0.0, 0.0)], [0.0])
+    >>> reactive.sonar.cast_rays([reactive.Cylinder(center=(3.0, 0.0), radius=1.0)], [(0.0, 0.0)], [0.0])
     array([2.])
     """
     starts, directions = numbers("origins", origins), numbers("angles", angles)

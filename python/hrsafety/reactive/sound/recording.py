@@ -16,7 +16,7 @@ from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 __all__ = ["SoundRecording", "read_recording"]
 
 FRAMES_AT_ONCE = 1 << 20
-"""Frames of a long recording that are looked at between two looks at Ctrl-C."""
+"""Frames of a long recording that are examined between two looks at Ctrl-C."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

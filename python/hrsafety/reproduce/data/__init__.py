@@ -1,4 +1,4 @@
-"""What the reproduction knows without computing: printed numbers, names, tolerances, reasons, captions."""
+"""Data of the reproduction: printed numbers, names, tolerances, reasons, captions."""
 
 from __future__ import annotations
 

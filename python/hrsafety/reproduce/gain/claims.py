@@ -1,4 +1,4 @@
-"""What sections C.2 and C.3 say in their text, measured: the search, sensitivities and trends."""
+"""Claims of sections C.2 and C.3 in their text, measured: the search, sensitivities and trends."""
 
 from __future__ import annotations
 

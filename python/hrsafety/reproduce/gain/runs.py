@@ -1,4 +1,4 @@
-"""What appendix C is made of again: one gain changed at a time, and the search for the best gains."""
+"""Runs that make appendix C again: one gain changed at a time, and the search for the best gains."""
 
 from __future__ import annotations
 

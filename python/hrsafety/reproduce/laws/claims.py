@@ -1,4 +1,4 @@
-"""What sections 2.2.5, 5.7 and 6.4 say about the compared laws in their text, measured."""
+"""Claims of sections 2.2.5, 5.7 and 6.4 about the compared laws in their text, measured."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The laws that section 5.7 compares, and the person whom nobody can predict."""
+"""The laws that section 5.7 compares, and the person who cannot be predicted."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ _FULL_SPEED, _HAIR = 0.7, 1e-9  # m/s, and m on either side of an edge
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Encounters:
-    """What one law did with many walks of the person, walk by walk.
+    """Encounters of one law with many walks of the person, walk by walk.
 
     Attributes
     ----------

@@ -49,7 +49,7 @@ class Variant:
 
 
 def variants() -> dict[str, Variant]:
-    """Return every change that is looked at, by its words."""
+    """Return every change that is examined, by its words."""
     return {entry["name"]: _variant(entry) for entry in data.table("follower")["variant"]}
 
 

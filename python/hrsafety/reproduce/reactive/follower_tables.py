@@ -1,4 +1,4 @@
-"""What the source says of its experiments beside rates over many layouts."""
+"""Printed results of the source's experiments beside rates over many layouts."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _DATA = data.table("follower")
 SECOND: Mapping[str, tuple[float, int]] = {key: tuple(value) for key, value in _DATA["second"].items()}
 """Shares with a contact of a second implementation, and in how many layouts, by setting and law."""
 SECOND_CHANGED: Mapping[str, Mapping[str, float]] = _DATA["changed"]
-"""The same with one change, from about 1,000 layouts each."""
+"""Rates with one change of the model, from about 1,000 layouts each."""
 
 
 def cells(study: FollowerStudy) -> list[PrintedValue]:
