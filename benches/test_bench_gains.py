@@ -38,7 +38,7 @@ def grids_of_the_package(step: float, threads: int | None) -> nav.GainSearch:
     return nav.optimize_gains(SCENES, step=step, local_starts=0, threads=threads)
 
 
-def grids_of_numba(rounds: tuple[nav.gains.SearchRound, ...]) -> list[Array]:
+def grids_of_numba(rounds: tuple[nav.gains.SearchStage, ...]) -> list[Array]:
     return [peer_gains_numba.scores(each.axes) for each in rounds]
 
 
@@ -50,14 +50,14 @@ def coarse() -> tuple[nav.GainSearch, list[Array], float, float]:
     begin = time.process_time()
     own = grids_of_the_package(0.06, 1)
     middle = time.process_time()
-    peer = grids_of_numba(own.history)
+    peer = grids_of_numba(own.grids)
     return own, peer, middle - begin, time.process_time() - middle
 
 
 def deviations(search: nav.GainSearch, peer: list[Array]) -> Array:
     """Return by how much the scores differ on every seventh point of each grid."""
     found = []
-    for each, scores in zip(search.history, peer, strict=True):
+    for each, scores in zip(search.grids, peer, strict=True):
         points = np.array(list(itertools.product(*each.axes)))[::7]
         found.append(np.abs(mean_scores(points, 0.06) - scores[::7]))
     return np.concatenate(found)
@@ -77,7 +77,7 @@ def test_grids_of_the_package(benchmark: Any, step: float, threads: int | None) 
 def test_grids_of_numba_with_coarse_steps(benchmark: Any) -> None:
     search, peer, own_time, peer_time = coarse()
     apart = deviations(search, peer)
-    benchmark.pedantic(grids_of_numba, args=(search.history[:1],), rounds=1, iterations=1)
+    benchmark.pedantic(grids_of_numba, args=(search.grids[:1],), rounds=1, iterations=1)
     assert (apart < EQUAL).mean() > 0.999
     assert abs(max(scores.max() for scores in peer) - search.best_value) < EQUAL
     benchmark.extra_info["timed"] = "the first grid of four"
@@ -96,7 +96,7 @@ def test_whole_procedure(benchmark: Any, threads: int | None) -> None:
     )
     own = nav.simulate_batch(SCENES, LAW, [search.best.gains, SOURCE]).performance_total.reshape(2, -1).mean(axis=1)
     assert abs(own[0] - search.best_value) < 1e-12
-    assert search.best_value > max(entry.best_value for entry in search.history) - 1e-15
+    assert search.best_value > max(entry.best_value for entry in search.grids) - 1e-15
     benchmark.extra_info["best_value"] = round(search.best_value, 5)
     benchmark.extra_info["above_the_source"] = round(float(own[0] - own[1]), 5)
     benchmark.extra_info["gain_sets"] = search.evaluations

@@ -40,11 +40,11 @@ def optimum() -> Iterator[str]:
     yield ""
     yield line("stage", "gain sets", "failed", "best mean H", "worst survivor")
     yield "|---" * 5 + "|"
-    for index, entry in enumerate(search.history, start=1):
+    for index, entry in enumerate(search.grids, start=1):
         counts = (f"{entry.evaluations:,}", f"{entry.failures:,}")
         yield line(f"grid {index}", *counts, f"{entry.best_value:.5f}", f"{entry.worst_survivor:.5f}")
     evaluations = sum(entry.evaluations for entry in search.local)
-    best = max(entry.value for entry in search.local)
+    best = max(entry.best_value for entry in search.local)
     yield line(f"{len(search.local)} local searches", f"{evaluations:,}", "", f"{best:.5f}", "")
     yield ""
 

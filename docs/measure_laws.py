@@ -117,7 +117,7 @@ def searched_how(name: str, search: nav.GainSearch) -> str:
         return "CMA-ES"
     names = LAWS[name].GAIN_NAMES
     sizes = dict(zip(names, search.settings.grid, strict=True))
-    return f"{len(search.history)} of {' x '.join(str(sizes[gain]) for gain in varied(name))}"
+    return f"{len(search.grids)} of {' x '.join(str(sizes[gain]) for gain in varied(name))}"
 
 
 def source_table(searches: dict[str, nav.GainSearch]) -> Iterator[str]:

@@ -160,9 +160,9 @@ def test_printed_optimum_arrives_sooner_here(place: int, low: float, high: float
 
 def test_search_has_the_size_of_the_published_one_and_finds_more(runs: GainRuns) -> None:
     search = runs.search
-    assert [entry.evaluations for entry in search.history] == [77_616] * 4
+    assert [entry.evaluations for entry in search.grids] == [77_616] * 4
     assert len(search.local) == 20
-    assert all(entry.failures > 0 for entry in search.history[:1])
+    assert all(entry.failures > 0 for entry in search.grids[:1])
     assert search.best_value >= LEAST_BEST
     assert search.best_value - runs.changed.reference_performance.mean() >= LEAST_GAIN
     low, high = search.settings.bounds.T
@@ -171,7 +171,7 @@ def test_search_has_the_size_of_the_published_one_and_finds_more(runs: GainRuns)
 
 
 def test_increments_of_the_first_grid_are_the_published_ones(runs: GainRuns) -> None:
-    assert runs.search.history[0].increments == pytest.approx([5.0, 10.0, 25.0, 0.2])
+    assert runs.search.grids[0].increments == pytest.approx([5.0, 10.0, 25.0, 0.2])
 
 
 def test_best_value_is_the_mean_of_single_runs(runs: GainRuns) -> None:

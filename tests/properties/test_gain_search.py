@@ -33,7 +33,7 @@ grids = st.tuples(*[st.integers(2, 4)] * 4)
 few = settings(max_examples=25)
 
 
-def points_of(entry: nav.gains.SearchRound) -> np.ndarray:
+def points_of(entry: nav.gains.SearchStage) -> np.ndarray:
     return np.array(list(itertools.product(*entry.axes)))
 
 
@@ -61,7 +61,7 @@ def test_best_is_at_least_every_point_and_inside_the_bounds(
     )
     nearest = np.array(found.nearest.gains)
     assert ((bounds[:, 0] <= nearest) & (nearest <= bounds[:, 1])).all()
-    for entry in found.history:
+    for entry in found.grids:
         points = points_of(entry)
         assert ((bounds[:, 0] <= points) & (points <= bounds[:, 1])).all()
         scores, failures = judged(points)

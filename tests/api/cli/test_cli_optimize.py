@@ -147,8 +147,8 @@ def test_values_are_those_of_the_library(small_example: tuple[Path, str]) -> Non
     assert tuple(found["best_gains"].values()) == search.best.gains
     assert found["best_value"] == search.best_value
     assert (found["evaluations"], found["failures"]) == (search.evaluations, search.failures)
-    assert [entry["best_value"] for entry in found["history"]] == [entry.best_value for entry in search.history]
-    assert [entry["value"] for entry in found["local"]] == [entry.value for entry in search.local]
+    assert [entry["best_value"] for entry in found["history"]] == [entry.best_value for entry in search.grids]
+    assert [entry["value"] for entry in found["local"]] == [entry.best_value for entry in search.local]
     flatness = search.flatness()
     assert found["flatness"]["low"] == dict(zip(flatness.gain_names, flatness.low.tolist(), strict=True))
     assert f"objective      performance {search.best_value:.5f}" in text

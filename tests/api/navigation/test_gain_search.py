@@ -38,7 +38,7 @@ def mean_scores(gains: Any) -> np.ndarray:
     return batch(gains).performance_total.reshape(-1, len(SCENES)).mean(axis=1)
 
 
-def points_of(entry: nav.gains.SearchRound) -> np.ndarray:
+def points_of(entry: nav.gains.SearchStage) -> np.ndarray:
     return np.array(list(itertools.product(*entry.axes)))
 
 
@@ -64,14 +64,14 @@ def assert_same(one: Any, other: Any) -> None:
 
 
 def test_first_grid_is_that_of_the_bounds(search: nav.GainSearch) -> None:
-    first = search.history[0]
+    first = search.grids[0]
     for axis, (low, high), count in zip(first.axes, search.settings.bounds, SMALL["grid"], strict=True):
         np.testing.assert_allclose(axis, np.linspace(low, high, count), rtol=1e-14)
     np.testing.assert_allclose(first.increments, [50 / 3, 200 / 4, 500 / 3, 3 / 5], rtol=1e-14)
 
 
 def test_every_grid_is_what_the_batch_says_of_its_points(search: nav.GainSearch) -> None:
-    for entry in search.history:
+    for entry in search.grids:
         points = points_of(entry)
         scores = mean_scores(points)
         assert entry.evaluations == len(points)
@@ -85,7 +85,7 @@ def test_every_grid_is_what_the_batch_says_of_its_points(search: nav.GainSearch)
 
 
 def test_each_grid_spans_the_survivors_of_the_one_before(search: nav.GainSearch) -> None:
-    for before, after in itertools.pairwise(search.history):
+    for before, after in itertools.pairwise(search.grids):
         # Where the survivors agree in a gain, half an increment is kept to either side.
         room = np.where(before.survivor_low == before.survivor_high, before.increments / 2, 0.0)
         low, high = search.settings.bounds.T
@@ -94,7 +94,7 @@ def test_each_grid_spans_the_survivors_of_the_one_before(search: nav.GainSearch)
 
 
 def test_top_holds_the_best_points_of_all_grids(search: nav.GainSearch) -> None:
-    points = np.unique(np.vstack([points_of(entry) for entry in search.history]), axis=0)
+    points = np.unique(np.vstack([points_of(entry) for entry in search.grids]), axis=0)
     np.testing.assert_allclose(search.top_values, np.sort(mean_scores(points))[::-1][: len(search.top)], atol=1e-12)
     np.testing.assert_allclose(mean_scores(search.top), search.top_values, atol=1e-12)
 
@@ -103,10 +103,11 @@ def test_local_searches_start_at_the_best_points_and_do_not_lose(search: nav.Gai
     assert len(search.local) == SMALL["local_starts"]
     for entry, start in zip(search.local, search.top, strict=False):
         np.testing.assert_array_equal(entry.start, start)
-        assert entry.value >= entry.start_value
-        assert entry.value == pytest.approx(float(mean_scores(entry.gains)[0]), abs=1e-12)
-        assert ((entry.gains >= search.settings.bounds[:, 0]) & (entry.gains <= search.settings.bounds[:, 1])).all()
-    assert search.best_value == max(entry.value for entry in search.local)
+        assert entry.best_value >= entry.start_value
+        assert entry.best_value == pytest.approx(float(mean_scores(entry.best_gains)[0]), abs=1e-12)
+        low, high = search.settings.bounds.T
+        assert ((entry.best_gains >= low) & (entry.best_gains <= high)).all()
+    assert search.best_value == max(entry.best_value for entry in search.local)
 
 
 def test_what_is_said_of_the_best_set_is_what_it_does(search: nav.GainSearch) -> None:
@@ -119,11 +120,11 @@ def test_what_is_said_of_the_best_set_is_what_it_does(search: nav.GainSearch) ->
 
 
 def test_counts_and_convergence_add_up(search: nav.GainSearch) -> None:
-    grids = sum(entry.evaluations for entry in search.history)
+    grids = sum(entry.evaluations for entry in search.grids)
     assert grids == 3 * np.prod(SMALL["grid"])
     assert search.evaluations == grids + sum(entry.evaluations for entry in search.local)
     assert search.episodes == 3 * search.evaluations
-    assert search.failures >= sum(entry.failures for entry in search.history)
+    assert search.failures >= sum(entry.failures for entry in search.grids)
     assert search.convergence[-1, 0] == search.evaluations
     assert (np.diff(search.convergence[:, 0]) > 0).all()
     assert (np.diff(search.convergence[:, 1]) >= 0).all()
@@ -134,7 +135,7 @@ def test_a_held_gain_stays(search: nav.GainSearch) -> None:
     found = nav.optimize_gains(SCENES, bounds={"gain_ratio": (0.5, 0.5), "detour_gain": (100, 300)}, **SMALL)
     assert found.best.gain_ratio == 0.5
     assert 100 <= found.best.detour_gain <= 300
-    assert all((entry.axes[3] == 0.5).all() and entry.increments[3] == 0.0 for entry in found.history)
+    assert all((entry.axes[3] == 0.5).all() and entry.increments[3] == 0.0 for entry in found.grids)
     assert found.settings.bounds[0].tolist() == [0.0, 50.0]
     assert found.best_value <= search.best_value + 0.02
 
@@ -164,7 +165,7 @@ def test_callable_that_says_the_same_finds_the_same(search: nav.GainSearch) -> N
     assert found.best_value == pytest.approx(search.best_value, abs=1e-12)
     np.testing.assert_allclose(found.top_values, search.top_values, atol=1e-12)
     assert found.failures == search.failures
-    assert [entry.evaluations for entry in found.history] == [entry.evaluations for entry in search.history]
+    assert [entry.evaluations for entry in found.grids] == [entry.evaluations for entry in search.grids]
 
 
 def test_callable_sees_every_gain_set_in_every_scenario() -> None:
@@ -197,7 +198,7 @@ def test_callable_sees_every_gain_set_in_every_scenario() -> None:
 )
 def test_metric_as_objective_is_the_mean_over_the_scenarios(metric: str, column: str, sign: int) -> None:
     found = nav.optimize_gains(SCENES, objective=metric, **(GRIDS_ONLY | {"refinements": 0}))
-    table = batch(points_of(found.history[0]))
+    table = batch(points_of(found.grids[0]))
     values = sign * getattr(table, column).reshape(-1, 3).mean(axis=1)
     # A set that fails has an avoidance all the same.
     values[~(table.outcome == "arrived").reshape(-1, 3).all(axis=1)] = -np.inf
@@ -206,7 +207,7 @@ def test_metric_as_objective_is_the_mean_over_the_scenarios(metric: str, column:
 
 def test_least_clearance_over_the_scenarios_as_objective() -> None:
     found = nav.optimize_gains(SCENES, objective="min_clearance", **(GRIDS_ONLY | {"refinements": 0}))
-    table = batch(points_of(found.history[0]))
+    table = batch(points_of(found.grids[0]))
     values = table.min_clearance.reshape(-1, 3).min(axis=1)
     values[~(table.outcome == "arrived").reshape(-1, 3).all(axis=1)] = -np.inf
     assert found.best_value == pytest.approx(values.max(), rel=1e-12)
@@ -322,7 +323,7 @@ def test_constraint_that_the_free_optimum_misses_is_kept(search: nav.GainSearch)
     assert found.feasible
     assert batch(found.best.gains).min_clearance.min() >= free + 0.03 - 1e-6
     # The first grid is the same; what follows looks elsewhere.
-    assert found.history[0].best_value <= search.history[0].best_value
+    assert found.grids[0].best_value <= search.grids[0].best_value
 
 
 def test_callable_constraint_is_the_same_as_the_named_one(search: nav.GainSearch) -> None:
@@ -351,7 +352,7 @@ def test_constraint_that_cannot_hold_is_reported() -> None:
     found = nav.optimize_gains(SCENES, constraints=[limit], **GRIDS_ONLY)
     assert not found.feasible
     assert found.violation > 0.0
-    assert found.history[-1].violation >= found.violation
+    assert found.grids[-1].violation >= found.violation
     assert np.isneginf(found.convergence[:, 1]).all()
     assert len(found.top) == 0
     # The least violation is what the search falls back to.
@@ -479,7 +480,7 @@ def test_global_search_keeps_its_budget_and_its_seed(method: Any) -> None:
     assert_same(one, again)
     assert one.best.gains != other.best.gains
     assert one.evaluations <= 600
-    assert one.history == one.local == ()
+    assert one.history == ()
     assert one.best_value == pytest.approx(float(mean_scores(one.best.gains)[0]), abs=1e-12)
     assert (np.diff(one.convergence[:, 1]) >= 0).all()
     assert one.convergence[-1].tolist() == [one.evaluations, one.best_value]

@@ -50,16 +50,16 @@ def test_search_beats_the_gains_it_did_not_start_from(search: nav.GainSearch) ->
 
 
 def test_first_grid_spans_the_bounds_of_the_law(search: nav.GainSearch) -> None:
-    first = search.history[0]
+    first = search.grids[0]
     assert len(first.axes) == 3
     for axis, name, count in zip(first.axes, MASOUD.GAIN_NAMES, SMALL["grid"], strict=True):
         np.testing.assert_allclose(axis, np.linspace(*MASOUD.GAIN_BOUNDS[name], count), rtol=1e-14)
-    assert [entry.evaluations for entry in search.history] == [80, 80, 80]
+    assert [entry.evaluations for entry in search.grids] == [80, 80, 80]
     assert search.evaluations == 240 + sum(entry.evaluations for entry in search.local)
 
 
 def test_every_grid_is_what_the_batch_says(search: nav.GainSearch) -> None:
-    for entry in search.history:
+    for entry in search.grids:
         points = np.array(list(itertools.product(*entry.axes)))
         assert entry.best_value == pytest.approx(mean_score(MASOUD, points).max(), abs=1e-12)
     np.testing.assert_allclose(mean_score(MASOUD, search.top), search.top_values, atol=1e-12)
@@ -70,7 +70,7 @@ def test_two_gains_are_searched_with_the_third_held() -> None:
     bounds = {"attractive_gain": (2.0, 10.0), "repulsive_gain": (10.0, 60.0), "detour_gain": (36.0, 36.0)}
     found = nav.optimize_gains(SCENES, MASOUD, bounds=bounds, **(SMALL | {"grid": (9, 11, 1)}))
     assert found.best.gains[2] == 36.0
-    assert (found.history[0].axes[2] == 36.0).all()
+    assert (found.grids[0].axes[2] == 36.0).all()
     assert found.best_value > mean_score(MASOUD)[0]
 
 
@@ -136,7 +136,7 @@ def test_numbers_of_a_planner_are_searched(planner: nav.GainSearch) -> None:
     assert planner.feasible
     assert planner.best_value > mean_score(RECIPROCAL)[0]
     assert planner.best_value == pytest.approx(mean_score(planner.best)[0], abs=1e-15)
-    first = planner.history[0]
+    first = planner.grids[0]
     points = np.array(list(itertools.product(*first.axes)))
     assert first.best_value == pytest.approx(mean_score(RECIPROCAL, points).max(), abs=1e-12)
     for name, value in zip(RECIPROCAL.GAIN_NAMES, planner.best.gains, strict=True):

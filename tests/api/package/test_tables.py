@@ -200,7 +200,7 @@ def test_search_tells_how_it_went() -> None:
     assert table["stage"].tolist() == ["grid 1", "grid 2", "local 1"]
     assert table["evaluations"][-1] == search.evaluations
     assert table["best_value"][-1] == search.best_value
-    assert table["attractive_gain_N_per_m"][-1] == search.local[0].gains[0]
+    assert table["attractive_gain_N_per_m"][-1] == search.local[0].best_gains[0]
 
 
 @pytest.mark.parametrize("library", ["polars", "pandas"])

@@ -49,9 +49,11 @@ def settings(**changes: Any) -> nav.gains.SearchSettings:
     return nav.gains.SearchSettings(**(values | changes))
 
 
-def grid(low: Any, high: Any, *, best: float, worst: float) -> nav.gains.SearchRound:
+def grid(low: Any, high: Any, *, best: float, worst: float, name: str = "grid 1") -> nav.gains.SearchStage:
     low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
-    return nav.gains.SearchRound(
+    return nav.gains.SearchStage(
+        name=name,
+        status="complete",
         axes=tuple(np.linspace(a, b, 3) for a, b in zip(low, high, strict=True)),
         increments=(high - low) / 2.0,
         evaluations=81,
@@ -65,16 +67,26 @@ def grid(low: Any, high: Any, *, best: float, worst: float) -> nav.gains.SearchR
     )
 
 
-def local(value: float) -> nav.gains.LocalSearch:
+def local(value: float) -> nav.gains.SearchStage:
     gains = np.array([10.0, 80.0, 490.0, 0.5])
-    return nav.gains.LocalSearch(
-        start=gains, start_value=0.66, gains=gains, value=value, violation=0.0, evaluations=40, status="converged"
+    return nav.gains.SearchStage(
+        name="local",
+        start=gains,
+        start_value=0.66,
+        best_gains=gains,
+        best_value=value,
+        violation=0.0,
+        evaluations=40,
+        status="converged",
     )
 
 
 def search(**changes: Any) -> nav.GainSearch:
     low, high = BOUNDS.T
-    history = (grid(low, high, best=0.66, worst=0.61), grid(0.25 * high, 0.75 * high, best=0.665, worst=0.65))
+    history = (
+        grid(low, high, best=0.66, worst=0.61),
+        grid(0.25 * high, 0.75 * high, best=0.665, worst=0.65, name="grid 2"),
+    )
     values: dict[str, Any] = {
         "nearest": LAW,
         "best_value": 0.67,
@@ -84,8 +96,7 @@ def search(**changes: Any) -> nav.GainSearch:
         "evaluations": 242,
         "episodes": 484,
         "failures": 14,
-        "history": history,
-        "local": (local(0.67), local(0.668)),
+        "history": (*history, local(0.67), local(0.668)),
         "convergence": np.array([[81.0, 0.66], [162.0, 0.665], [242.0, 0.67]]),
         "top": np.array([LAW.gains]),
         "top_values": np.array([0.665]),
@@ -261,19 +272,19 @@ def test_history_shows_the_ranges_of_grid_and_survivors() -> None:
     for index, axes in enumerate(figure.axes[1:]):
         bars = [(bar.get_x(), bar.get_x() + bar.get_width()) for bar in axes.patches]
         expected = []
-        for entry in found.history:
+        for entry in found.grids:
             expected += [
                 (entry.axes[index][0], entry.axes[index][-1]),
                 (entry.survivor_low[index], entry.survivor_high[index]),
             ]
         assert bars == [pytest.approx(pair) for pair in expected]
         stars = [line.get_xdata()[0] for line in axes.lines if line.get_marker() == "*"]
-        assert stars == [*(entry.best_gains[index] for entry in found.history), found.best.gains[index]]
+        assert stars == [*(entry.best_gains[index] for entry in found.grids), found.best.gains[index]]
     assert {"range of the grid", "range of the survivors"} <= set(legend_texts(figure))
 
 
 def test_history_without_grids_is_the_convergence() -> None:
-    (axes,) = plotting.search_history(search(history=(), local=())).axes
+    (axes,) = plotting.search_history(search(history=())).axes
     assert axes.get_xlabel() == "gain sets evaluated"
     assert list(axes.lines[0].get_xdata()) == [81.0, 162.0, 242.0]
     assert list(axes.lines[0].get_ydata()) == [0.66, 0.665, 0.67]
@@ -282,7 +293,7 @@ def test_history_without_grids_is_the_convergence() -> None:
 def test_history_of_a_search_without_any_valid_gain_set_is_drawn() -> None:
     low, high = BOUNDS.T
     empty = grid(low, high, best=-np.inf, worst=-np.inf)
-    figure = plotting.search_history(search(history=(empty,), local=(), best_value=-np.inf))
+    figure = plotting.search_history(search(history=(empty,), best_value=-np.inf))
     assert not [line for axes in figure.axes[1:] for line in axes.lines if line.get_marker() == "*"]
 
 

@@ -42,7 +42,7 @@ def values(report: FoundGains) -> dict[str, Any]:
             "values": dict(zip(found.gain_names, found.values, strict=True)),
         },
         "sensitivity": report.sensitivity.columns(),
-        "history": [_round(entry) for entry in report.search.history],
+        "history": [_round(entry) for entry in report.search.grids],
         "convergence": report.search.convergence,
         "local": [_local(entry) for entry in report.search.local],
         "front": None if report.front is None else _front(report.front),
@@ -67,7 +67,7 @@ def best_so_far(path: str, study: GainStudy, search: nav.GainSearch) -> str:
         JSON text.
     """
     unfinished = {"interrupted": True}  # the front, if the search itself came to its end
-    return json_text(_head(path, study, search) | unfinished | {"history": [_round(entry) for entry in search.history]})
+    return json_text(_head(path, study, search) | unfinished | {"history": [_round(entry) for entry in search.grids]})
 
 
 def _head(path: str, study: GainStudy, search: nav.GainSearch) -> dict[str, Any]:
@@ -150,7 +150,7 @@ def _scored(entry: Scored, study: GainStudy) -> dict[str, Any]:
     return {"name": entry.name, "gains": _by_gain(entry.law.gains), "value": entry.value, "scenarios": runs}
 
 
-def _round(entry: nav.gains.SearchRound) -> dict[str, Any]:
+def _round(entry: nav.gains.SearchStage) -> dict[str, Any]:
     return {
         "low": _by_gain([axis[0] for axis in entry.axes]),
         "high": _by_gain([axis[-1] for axis in entry.axes]),
@@ -165,12 +165,12 @@ def _round(entry: nav.gains.SearchRound) -> dict[str, Any]:
     }
 
 
-def _local(entry: nav.gains.LocalSearch) -> dict[str, Any]:
+def _local(entry: nav.gains.SearchStage) -> dict[str, Any]:
     return {
         "start": _by_gain(entry.start),
         "start_value": entry.start_value,
-        "gains": _by_gain(entry.gains),
-        "value": entry.value,
+        "gains": _by_gain(entry.best_gains),
+        "value": entry.best_value,
         "violation": entry.violation,
         "evaluations": entry.evaluations,
         "status": entry.status,

@@ -104,7 +104,7 @@ def _sections(found: FoundGains, pictures: Mapping[str, Picture]) -> Iterator[Se
         [told, flat, pictures["flatness"], pictures["sensitivity"]],
     )
     history: list[str | ReportTable | Picture] = [pictures["history"]]
-    if search.history:
+    if search.grids:
         titles = ("grid", "gain sets", "failed", "best", "worst survivor", *GAIN_TITLES)
         history.append(ReportTable(headers=[titles], rows=_history_rows(search)))
     if search.local:
@@ -230,7 +230,7 @@ def _history_rows(search: nav.GainSearch) -> Rows:
             f"{entry.worst_survivor:.5f}",
             *(f"{axis[0]:.4g} to {axis[-1]:.4g}" for axis in entry.axes),
         )
-        for index, entry in enumerate(search.history, start=1)
+        for index, entry in enumerate(search.grids, start=1)
     ]
 
 
@@ -239,8 +239,8 @@ def _local_rows(search: nav.GainSearch) -> Rows:
         (
             str(index),
             f"{entry.start_value:.5f}",
-            f"{entry.value:.5f}",
-            *(f"{gain:.4g}" for gain in entry.gains),
+            f"{entry.best_value:.5f}",
+            *(f"{gain:.4g}" for gain in entry.best_gains),
             f"{entry.evaluations:,}",
             entry.status.replace("_", " "),
         )

@@ -11,12 +11,11 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     )
     from hrsafety.navigation.gains.confidence import Confidence as Confidence
     from hrsafety.navigation.gains.front import pareto_front as pareto_front
-    from hrsafety.navigation.gains.pareto import ParetoFront as ParetoFront
     from hrsafety.navigation.gains.results import (
         Flatness as Flatness,
         GainSearch as GainSearch,
-        LocalSearch as LocalSearch,
-        SearchRound as SearchRound,
+        ParetoFront as ParetoFront,
+        SearchStage as SearchStage,
     )
     from hrsafety.navigation.gains.search import optimize_gains as optimize_gains
     from hrsafety.navigation.gains.settings import GainConstraint as GainConstraint, SearchSettings as SearchSettings

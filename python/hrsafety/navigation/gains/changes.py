@@ -22,7 +22,6 @@ from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.simulation import refuse_in_worlds
 from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.navigation.trajectory import Integrator
-from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.navigation.warnings.units import of_scenarios
 from hrsafety.plausibility import ResultWarning, telling
 from hrsafety.tables import Columns, Table
@@ -92,9 +91,7 @@ class GainSensitivity(Table):
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why the numbers may not mean what they seem to: the first warning of each kind, and how many follow."""
-        if isinstance(self.scenarios[0], World):
-            return doubts_of(self.scenarios, self.law)
-        return run_warnings.of_scenes(self.scenarios, [self.law])
+        return doubts_of(self.scenarios, self.law)
 
     def largest_sensitivity(self) -> Array:
         """Return the largest magnitude of the relative sensitivity to each gain.

@@ -15,8 +15,8 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.batch import check_threads
 from hrsafety.navigation.gains.checkpoint import Checkpoint
 from hrsafety.navigation.gains.metrics import is_maximized
-from hrsafety.navigation.gains.pareto import ParetoFront
 from hrsafety.navigation.gains.problem import gain_problem
+from hrsafety.navigation.gains.results import ParetoFront
 from hrsafety.navigation.gains.search import Progress
 from hrsafety.navigation.gains.settings import (
     Bounds,

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Literal, TypeVar
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -12,45 +11,52 @@ from hrsafety._arguments import Array, count, positive
 from hrsafety._bounds import MOST_POINTS_OF_AXIS
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
-from hrsafety.errors import InfeasibleError
+from hrsafety.errors import InfeasibleError, InvalidParameterError
 from hrsafety.navigation.batch import check_threads
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.gains.confidence import Confidence
-from hrsafety.navigation.gains.pareto import gain_columns
-from hrsafety.navigation.gains.problem import gain_problem
+from hrsafety.navigation.gains.metrics import METRIC_UNITS
+from hrsafety.navigation.gains.problem import gain_problem, with_gains
 from hrsafety.navigation.gains.settings import SearchSettings
 from hrsafety.navigation.gains.worlds import doubts_of
 from hrsafety.navigation.laws.force_laws import Law
-from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.plausibility import ResultWarning
-from hrsafety.tables import Columns, Table
+from hrsafety.tables import Columns, Table, unit_suffix
 
-__all__ = ["Confidence", "Flatness", "GainSearch", "LocalSearch", "SearchRound"]
-
-Entry = TypeVar("Entry")
+__all__ = ["Confidence", "Flatness", "GainSearch", "ParetoFront", "SearchStage", "gain_columns"]
 
 
 @displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class SearchRound:
-    """One grid of a coarse-to-fine search, Zeng (2011), appendix C.2, steps 2 to 5.
+class SearchStage:
+    """One grid or one local search, Zeng (2011), appendix C.2, steps 2 to 5 and step 8.
 
     Attributes
     ----------
-    axes : tuple of ndarray
-        Values of K_1, K_3, K_5, b; every combination was evaluated.
-    increments : ndarray, shape (4,)
-        Distance of neighbouring values of each gain; 0 for a gain that is held.
-    evaluations : int
-        Number of gain sets, failures included.
-    failures : int
-        Gain sets that touched an obstacle or did not arrive in at least one scenario.
+    name : str
+        ``"grid 1"``, ``"grid 2"``, ..., ``"local 1"``, ...
+    best_gains : ndarray, shape (4,)
+        Best gain set of this stage.
     best_value : float
-        Objective at the best gain set of this grid; ``-inf`` where it has no value there.
+        Objective there; ``-inf`` where it has no value.
     violation : float
         Sum by which constraints are missed there; 0 when all hold.
-    best_gains : ndarray, shape (4,)
-        Where.
+    evaluations : int
+        Number of gain sets, failures included.
+    status : str
+        Why it ended: a grid ``"complete"``, a local search ``"converged"``, ``"budget_spent"``, ``"interrupted"`` or
+        ``"failed"``.
+    start : ndarray, shape (4,), or None
+        Gain set that a local search began at.
+    start_value : float or None
+        Objective there.
+    failures : int or None
+        Gain sets of a grid that touched an obstacle or did not arrive in at least one scenario.
+    axes : tuple of ndarray
+        Values of K_1, K_3, K_5, b of a grid; every combination was evaluated. Empty for a local search, as what follows
+        is ``None``.
+    increments : ndarray, shape (4,)
+        Distance of neighbouring values of each gain; 0 for a gain that is held.
     survivor_low, survivor_high : ndarray, shape (4,)
         Box around the survivors: the bounds of the next grid. Where they agree in a gain, that
         grid keeps half an increment to either side.
@@ -58,48 +64,20 @@ class SearchRound:
         Objective at the last of the survivors.
     """
 
-    axes: tuple[Array, ...]
-    increments: Array
-    evaluations: int
-    failures: int
-    best_value: float
-    violation: float
+    name: str
     best_gains: Array
-    survivor_low: Array
-    survivor_high: Array
-    worst_survivor: float
-
-
-@displayed
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class LocalSearch:
-    """One local constrained search, Zeng (2011), appendix C.2, step 8.
-
-    Attributes
-    ----------
-    start : ndarray, shape (4,)
-        Gain set that the search began at.
-    start_value : float
-        Objective there.
-    gains : ndarray, shape (4,)
-        Gain set that the search ended at.
-    value : float
-        Objective there.
-    violation : float
-        Sum by which constraints are missed there; 0 when all hold.
-    evaluations : int
-        Number of gain sets.
-    status : str
-        Why it ended: ``"converged"``, ``"budget_spent"``, ``"interrupted"`` or ``"failed"``.
-    """
-
-    start: Array
-    start_value: float
-    gains: Array
-    value: float
+    best_value: float
     violation: float
     evaluations: int
     status: str
+    start: Array | Any = None
+    start_value: float | Any = None
+    failures: int | Any = None
+    axes: tuple[Array, ...] = ()
+    increments: Array | Any = None
+    survivor_low: Array | Any = None
+    survivor_high: Array | Any = None
+    worst_survivor: float | Any = None
 
 
 @displayed
@@ -146,7 +124,36 @@ class Flatness:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
-class GainSearch(Table):
+class _Search(Table):
+    """Counts, end and doubts of a search with one objective or several."""
+
+    evaluations: int
+    episodes: int
+    failures: int
+    interrupted: bool
+    settings: SearchSettings
+
+    @property
+    def valid(self) -> bool:
+        """Whether a gain set keeps every constraint."""
+        raise NotImplementedError
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Why the numbers may not mean what they seem to: the first warning of each kind, and how many follow."""
+        worlds = isinstance(self.settings.scenarios[0], World)
+        return doubts_of(self.settings.scenarios, self.settings.law, *([] if worlds else [self.settings.step]))
+
+    @property
+    def status(self) -> Literal["found", "infeasible", "interrupted"]:
+        """How the search ended: ``"interrupted"`` before its end, with or without a best so far."""
+        if self.interrupted:
+            return "interrupted"
+        return "found" if self.valid else "infeasible"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class GainSearch(_Search):
     """Best gains found, and how.
 
     Attributes
@@ -172,10 +179,8 @@ class GainSearch(Table):
         that give T* and L* are not counted.
     failures : int
         Gain sets that touched an obstacle or did not arrive in at least one scenario.
-    history : tuple of SearchRound
-        Grids in their order; empty for the other methods.
-    local : tuple of LocalSearch
-        Local searches, best start first.
+    history : tuple of SearchStage
+        Grids in their order, then local searches, best start first; empty for the other methods.
     convergence : ndarray, shape (reports, 2)
         Gain sets evaluated, and the best value so far.
     top : ndarray, shape (n, 4)
@@ -196,24 +201,21 @@ class GainSearch(Table):
     best_performance: Array
     violation: float
     feasible: bool
-    evaluations: int
-    episodes: int
-    failures: int
-    history: tuple[SearchRound, ...]
-    local: tuple[LocalSearch, ...]
+    history: tuple[SearchStage, ...]
     convergence: Array
     top: Array
     top_values: Array
     confidence: Confidence | None
-    interrupted: bool
-    settings: SearchSettings
 
     @property
-    def warnings(self) -> tuple[ResultWarning, ...]:
-        """Why the numbers may not mean what they seem to: the first warning of each kind, and how many follow."""
-        if isinstance(self.settings.scenarios[0], World):
-            return doubts_of(self.settings.scenarios, self.settings.law)
-        return run_warnings.of_scenes(self.settings.scenarios, [self.settings.law], self.settings.step)
+    def grids(self) -> tuple[SearchStage, ...]:
+        """Stages of the history that are grids."""
+        return tuple(each for each in self.history if each.axes)
+
+    @property
+    def local(self) -> tuple[SearchStage, ...]:
+        """Stages of the history that are local searches, best start first."""
+        return tuple(each for each in self.history if not each.axes)
 
     @property
     def best(self) -> Law:
@@ -233,13 +235,6 @@ class GainSearch(Table):
     def valid(self) -> bool:
         """Whether a gain set keeps every constraint and has a value: whether there is a `best`."""
         return self.violation == 0.0 and self.best_value > -np.inf
-
-    @property
-    def status(self) -> Literal["found", "infeasible", "interrupted"]:
-        """How the search ended: ``"interrupted"`` before its end, with or without a best so far."""
-        if self.interrupted:
-            return "interrupted"
-        return "found" if self.valid else "infeasible"
 
     @property
     def shortcoming(self) -> str:
@@ -285,13 +280,9 @@ class GainSearch(Table):
         >>> search.columns()["stage"].tolist()
         ['grid 1', 'grid 2', 'local 1']
         """
-        stages = [(f"grid {k}", each.best_value, each.violation, each.best_gains) for k, each in _counted(self.history)]
-        stages += [(f"local {k}", each.value, each.violation, each.gains) for k, each in _counted(self.local)]
-        rows = len(self.convergence)
-        if len(stages) != rows:
-            unknown = np.full(len(self.nearest.gains), np.nan)
-            stages = [("global", np.nan, np.nan, unknown)] * rows
-        gains = np.array([each[3] for each in stages]).reshape(rows, -1)
+        unknown = np.full(len(self.nearest.gains), np.nan)
+        stages = [(each.name, each.best_value, each.violation, each.best_gains) for each in self.history]
+        stages = stages or [("global", np.nan, np.nan, unknown)] * len(self.convergence)
         found: Columns = {
             "stage": np.array([each[0] for each in stages], dtype=np.str_),
             "evaluations": self.convergence[:, 0].astype(np.int64),
@@ -299,7 +290,7 @@ class GainSearch(Table):
             "value": np.array([each[1] for each in stages], dtype=np.float64),
             "violation": np.array([each[2] for each in stages], dtype=np.float64),
         }
-        return found | gain_columns(self.nearest, gains)
+        return found | gain_columns(self.nearest, np.array([each[3] for each in stages]).reshape(-1, len(unknown)))
 
     def flatness(self, points: int = 41, *, tolerance: float = 0.01, threads: int | None = None) -> Flatness:
         """Return the objective along each gain through the best set, or the nearest without a best.
@@ -331,8 +322,96 @@ class GainSearch(Table):
         return _flatness(self, points, positive("tolerance", tolerance), threads)
 
 
-def _counted(entries: tuple[Entry, ...]) -> Iterator[tuple[int, Entry]]:
-    return enumerate(entries, start=1)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class ParetoFront(_Search):
+    """Gain sets that no other one beats in every objective.
+
+    Attributes
+    ----------
+    objectives : tuple of str
+        Names of the metrics.
+    maximized : tuple of bool
+        Whether large values of each are good.
+    gains : ndarray, shape (n, 4)
+        K_1, K_3, K_5, b; ordered by the first objective, best first.
+    values : ndarray, shape (n, objectives)
+        Metrics in their own units: the mean over the scenarios, for a clearance the least.
+    reference : ndarray, shape (objectives,)
+        Corner that the hypervolume is measured from: the worst value of each on the front.
+    hypervolume : float
+        Volume between front and reference, each objective divided by its range on the front.
+    evaluations, episodes, failures : int
+        As in `GainSearch`.
+    interrupted : bool
+        Whether the search was stopped before its end.
+    settings : SearchSettings
+        Everything that is needed to run the same search again.
+    """
+
+    objectives: tuple[str, ...]
+    maximized: tuple[bool, ...]
+    gains: Array
+    values: Array
+    reference: Array
+    hypervolume: float
+
+    @property
+    def valid(self) -> bool:
+        """Whether a gain set keeps every constraint: whether there is one on the front."""
+        return len(self.gains) > 0
+
+    def __len__(self) -> int:
+        """Return the number of gain sets."""
+        return len(self.gains)
+
+    def columns(self) -> Columns:
+        """Return one-dimensional columns by name, a row for each gain set.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Gains, then objectives; units are in the names.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav, scenarios
+        >>> front = nav.gains.pareto_front([scenarios.configuration("c1")], grid=(3, 3, 3, 3), refinements=0)
+        >>> list(front.columns())[2:]
+        ['detour_gain_N_per_m2', 'gain_ratio_s', 'arrival_time_s', 'min_clearance_m', 'energy_J']
+        """
+        found = gain_columns(self.settings.law, self.gains)
+        units = (unit_suffix(METRIC_UNITS.get(name, "")) for name in self.objectives)
+        named = zip(self.objectives, units, self.values.T, strict=True)
+        return found | {f"{name}{unit}": values for name, unit, values in named}
+
+    def law(self, index: int) -> Law:
+        """Return the law with the gains of one point of the front.
+
+        Parameters
+        ----------
+        index : int
+            Row of ``gains``.
+
+        Returns
+        -------
+        Law
+            The searched law with these gains.
+
+        Raises
+        ------
+        InvalidParameterError
+            If there is no such row.
+        """
+        row = count("index", index, least=0)
+        if row >= len(self.gains):
+            raise InvalidParameterError("index", f"be below {len(self.gains)}", index)
+        return with_gains(self.settings.law, self.gains[row])
+
+
+def gain_columns(law: Law, gains: Array) -> Columns:
+    """Return a column for each gain, with its unit in the name."""
+    names = [f"{name}{unit_suffix(law.GAIN_UNITS.get(name, ''))}" for name in law.GAIN_NAMES]
+    return {name: gains[:, index] for index, name in enumerate(names)}
 
 
 def _flatness(search: GainSearch, points: int, tolerance: float, threads: int | None) -> Flatness:
@@ -360,7 +439,7 @@ def _flatness(search: GainSearch, points: int, tolerance: float, threads: int | 
         low=low,
         high=high,
         near_best_share=float((search.top_values >= floor).mean())
-        if search.history and search.top_values.size
+        if search.grids and search.top_values.size
         else np.nan,
         warnings=search.warnings,
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 from os import PathLike
@@ -19,7 +19,7 @@ from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.gains.checkpoint import Checkpoint
 from hrsafety.navigation.gains.confidence import Confidence, confidence_of
 from hrsafety.navigation.gains.problem import gain_problem, noise_seeds, with_gains
-from hrsafety.navigation.gains.results import GainSearch, LocalSearch, SearchRound
+from hrsafety.navigation.gains.results import GainSearch, SearchStage
 from hrsafety.navigation.gains.settings import (
     Bounds,
     Constraint,
@@ -195,8 +195,8 @@ def optimize_gains(
     >>> search = nav.optimize_gains(
     ...     [scenarios.configuration("c1")], grid=(4, 4, 4, 4), refinements=1, survivors=10, local_starts=2
     ... )
-    >>> search.feasible, len(search.history), search.history[0].evaluations
-    (True, 2, 256)
+    >>> search.feasible, [stage.name for stage in search.history], search.history[0].evaluations
+    (True, ['grid 1', 'grid 2', 'local 1', 'local 2'], 256)
     """
     word("method", method, METHODS)
     settings = search_settings(
@@ -287,8 +287,7 @@ def _search(
 
 def _result(settings: SearchSettings, found: dict[str, Any], threads: int | None) -> GainSearch:
     best = found["best"]
-    rounds = tuple(SearchRound(**{**each, "axes": tuple(each["axes"])}) for each in found.get("rounds", ()))
-    local = tuple(LocalSearch(**each) for each in found.get("local", ()))
+    history = tuple(_stages(found))
     law = with_gains(settings.law, best["gains"])
     top, top_values = _top(found)
     valid = best["violation"] == 0.0 and best["value"] > -np.inf
@@ -301,9 +300,8 @@ def _result(settings: SearchSettings, found: dict[str, Any], threads: int | None
         evaluations=found["evaluations"],
         episodes=found["evaluations"] * len(settings.scenarios) * max(settings.seeds, 1),
         failures=found["failures"],
-        history=rounds,
-        local=local,
-        convergence=_convergence(found, rounds, local),
+        history=history,
+        convergence=_convergence(found, history),
         top=top,
         top_values=top_values,
         confidence=None if found["interrupted"] or not valid else _confidence(settings, best["gains"], threads),
@@ -322,19 +320,26 @@ def _top(found: dict[str, Any]) -> tuple[Array, Array]:
     return found["top"][kept], found["top_values"][kept]
 
 
-def _convergence(found: dict[str, Any], rounds: Sequence[SearchRound], local: Sequence[LocalSearch]) -> Array:
+def _stages(found: dict[str, Any]) -> Iterator[SearchStage]:
+    """Yield grids and local searches."""
+    for index, each in enumerate(found.get("rounds", ()), start=1):
+        yield SearchStage(name=f"grid {index}", status="complete", **{**each, "axes": tuple(each["axes"])})
+    for index, each in enumerate(found.get("local", ()), start=1):
+        named = {"gains": "best_gains", "value": "best_value"}
+        yield SearchStage(name=f"local {index}", **{named.get(name, name): value for name, value in each.items()})
+
+
+def _convergence(found: dict[str, Any], history: Sequence[SearchStage]) -> Array:
     """Return evaluations and best value: after each grid and local search, or where a global one became better."""
     if "history" in found:
         best = found["best"]
         end = [[found["evaluations"], best["value"] if best["violation"] == 0.0 else -np.inf]]
         return np.vstack([found["history"], end])
-    steps = [(entry.evaluations, entry.best_value, entry.violation) for entry in rounds]
-    steps += [(entry.evaluations, entry.value, entry.violation) for entry in local]
-    if not steps:
+    if not history:
         return np.empty((0, 2))
-    counts, values, violation = np.array(steps, dtype=np.float64).T
-    feasible = np.where(violation == 0.0, values, -np.inf)
-    return np.column_stack([np.cumsum(counts), np.maximum.accumulate(feasible)])
+    counts = np.cumsum([each.evaluations for each in history], dtype=np.float64)
+    feasible = [each.best_value if each.violation == 0.0 else -np.inf for each in history]
+    return np.column_stack([counts, np.maximum.accumulate(feasible)])
 
 
 def _performance(settings: SearchSettings, law: Law, threads: int | None) -> Array:

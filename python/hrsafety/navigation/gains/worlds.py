@@ -18,27 +18,32 @@ from hrsafety.navigation.gains.scoring import judged, over_seeds
 from hrsafety.navigation.gains.settings import GainConstraint, Judge, SearchSettings
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.tables.runs import RunTable
+from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.plausibility import ResultWarning, gathered
 
 __all__ = ["WorldScorer", "doubts_of", "runs_of_sets"]
 
 
-def doubts_of(worlds: Sequence[World], law: Law) -> tuple[ResultWarning, ...]:
-    """Return the doubts about worlds whose robots are under a law, the first of each kind.
+def doubts_of(places: Sequence[Any], law: Law, *step: float) -> tuple[ResultWarning, ...]:
+    """Return the doubts about scenarios or worlds whose robots are under a law, the first of each kind.
 
     Parameters
     ----------
-    worlds : sequence of World
-        The worlds.
+    places : sequence of Scenario or of World
+        All of one kind.
     law : Law
-        What drives every robot.
+        Law of every robot.
+    *step : float
+        Motion step of runs in scenarios in s.
 
     Returns
     -------
     tuple of ResultWarning
-        Each names its world.
+        Each names its place.
     """
-    named = ((f"scenarios[{index}]", driven(world, law).warnings) for index, world in enumerate(worlds))
+    if not isinstance(places[0], World):
+        return run_warnings.of_scenes(places, [law], *step)
+    named = ((f"scenarios[{index}]", driven(world, law).warnings) for index, world in enumerate(places))
     return gathered(named, "scenarios")
 
 

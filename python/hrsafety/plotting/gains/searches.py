@@ -11,8 +11,7 @@ import numpy as np
 
 from hrsafety._arguments import instance
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.navigation.gains.pareto import ParetoFront
-from hrsafety.navigation.gains.results import GainSearch
+from hrsafety.navigation.gains.results import GainSearch, ParetoFront
 from hrsafety.plotting import inputs, notes, style
 from hrsafety.plotting.gains.sensitivity import gain_label, mark_look
 
@@ -79,9 +78,9 @@ def search_history(search: GainSearch, *, quantity: str = "mean H", title: str |
     ['$K_1$ (N/m)', '$K_3$ (N/m)', '$K_5$ (N/m²)', '$b$ (s)']
     """
     instance("search", search, GainSearch)
-    if not search.history:
+    if not search.grids:
         return _convergence(search, quantity, title)
-    rounds = len(search.history)
+    rounds = len(search.grids)
     figure = style.new_figure(3.9 + 0.42 * (rounds + 1), title=title)
     places = figure.add_gridspec(2, 1, height_ratios=(2.9, 0.6 + 0.42 * (rounds + 1)))
     _draw_values(figure.add_subplot(places[0]), search, quantity)
@@ -181,19 +180,20 @@ def _convergence(search: GainSearch, quantity: str, title: str | None) -> Figure
 
 def _draw_values(axes: Axes, search: GainSearch, quantity: str) -> None:
     """Draw best and worst survivor of each round, and where the local searches led."""
-    places = np.arange(1, len(search.history) + 1)
-    best = np.array([entry.best_value for entry in search.history])
-    worst = np.array([entry.worst_survivor for entry in search.history])
+    grids, local = search.grids, search.local
+    places = np.arange(1, len(grids) + 1)
+    best = np.array([entry.best_value for entry in grids])
+    worst = np.array([entry.worst_survivor for entry in grids])
     for values, label, index in ((best, "best of the grid", 0), (worst, "worst survivor", 1)):
         shown = np.where(np.isfinite(values), values, np.nan)
         axes.plot(places, shown, marker="o", label=label, **style.run_look(index))
-    labels = [f"grid {place}\n{entry.evaluations:,}" for place, entry in zip(places, search.history, strict=True)]
-    if search.local:
-        values = np.array([entry.value for entry in search.local])
+    labels = [f"{entry.name}\n{entry.evaluations:,}" for entry in grids]
+    if local:
+        values = np.array([entry.best_value for entry in local])
         spread = places[-1] + 1.0 + np.linspace(-0.22, 0.22, len(values))
         look: style.Properties = {"linestyle": "none", "marker": "o", "markersize": 4.5, "color": LOCAL_COLOR}
         axes.plot(spread, np.where(np.isfinite(values), values, np.nan), label="local searches", **look)
-        labels.append(f"local\n{sum(entry.evaluations for entry in search.local):,}")
+        labels.append(f"local\n{sum(entry.evaluations for entry in local):,}")
     axes.set_xticks(np.arange(1, len(labels) + 1), labels=labels)
     axes.set_xlim(0.6, len(labels) + 0.4)
     axes.set_xlabel("stage, number of gain sets")
@@ -202,7 +202,7 @@ def _draw_values(axes: Axes, search: GainSearch, quantity: str) -> None:
 
 def _draw_ranges(figure: Figure, place: SubplotSpec, search: GainSearch) -> None:
     """Draw the range of each gain in each round, one panel for each gain."""
-    rounds = search.history
+    rounds = search.grids
     names = search.nearest.GAIN_NAMES
     columns = place.subgridspec(1, len(names))
     for index, name in enumerate(names):
@@ -216,7 +216,7 @@ def _draw_ranges(figure: Figure, place: SubplotSpec, search: GainSearch) -> None
             if math.isfinite(entry.best_value):
                 label = _first("best gain set", row)
                 axes.plot([entry.best_gains[index]], [row], label=label, **_star(style.RUN_COLORS[3]))
-        labels = [f"grid {row}" for row in range(1, len(rounds) + 1)]
+        labels = [entry.name for entry in rounds]
         if search.local:
             axes.plot([search.nearest.gains[index]], [len(rounds) + 1], **_star(LOCAL_COLOR))
             labels.append("local")

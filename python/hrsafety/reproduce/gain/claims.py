@@ -31,7 +31,7 @@ _SAME_TIME = 0.1  # s
 
 def search(runs: GainRuns) -> Iterator[PrintedValue]:
     """Yield what section C.2 says about the search beside the own one: grids and local searches."""
-    rounds = runs.search.history
+    rounds = runs.search.grids
     sizes = [entry.evaluations for entry in rounds]
     listed = " / ".join(f"{size:,}" for size in sizes)
     yield SHEET.claim("grids", holds=sizes == [77_616] * 4, number=len(sizes), sizes=listed)
@@ -40,7 +40,7 @@ def search(runs: GainRuns) -> Iterator[PrintedValue]:
             own, given = float(entry.increments[index]), printed["increments"][grid == "last"]
             yield make(grid, own, printed=given, name=name, unit=GAIN_UNITS[name])
     local = runs.search.local
-    gain = max(entry.value - entry.start_value for entry in local)
+    gain = max(entry.best_value - entry.start_value for entry in local)
     yield SHEET.claim("local", holds=len(local) == 20, number=len(local), gain=gain)
 
 
