@@ -32,10 +32,8 @@ def run_suite(options: argparse.Namespace) -> None:
     options : argparse.Namespace
         Of ``hrsafety benchmark``.
     """
-    place = None if options.out is None else output.planned_folder(options.out)
-    output.check_json(options)
-    if place is not None:
-        output.require_page("benchmark --out")
+    output.check_targets(options)
+    place = None if options.out is None else Path(options.out)
     try:
         with progress.live() as shown:
             result = benchmark(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import math
-import sys
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -15,14 +14,13 @@ import numpy as np
 
 from hrsafety import io, scenarios
 from hrsafety import navigation as nav
-from hrsafety.cli import output, terminal
-from hrsafety.cli.exit_codes import FAILED_RUN, NOT_CHECKED
+from hrsafety.cli import output, terminal, verdict
 from hrsafety.cli.output import decimal
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.judging.unjudged import REASONS
 from hrsafety.navigation.metrics import METRICS, Judgement
 from hrsafety.pages.report import Report, ReportCell, ReportTable, Section
-from hrsafety.plausibility import ResultWarning, unsafe_doubts
+from hrsafety.plausibility import ResultWarning
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -52,12 +50,8 @@ def judge_log(options: argparse.Namespace) -> None:
     options : argparse.Namespace
         Of ``hrsafety judge``.
     """
-    fail_on = _failures_of(options.fail_on)
-    if options.out is not None:
-        output.planned_folder(options.out)
-        output.require_page("--out")
-    output.check_mcap(options)
-    output.check_json(options)
+    verdict.failures_of(options.fail_on, tuple(FAILURES))  # a wrong word is told before the work
+    output.check_targets(options)
     log = io.load_log(
         options.log,
         robot=options.robot_frame,
@@ -92,15 +86,7 @@ def judge_log(options: argparse.Namespace) -> None:
         written = output.write_report(report, place, _draw(found), [_table(found, place)], plays=plays)
     written += output.mcap(found, options)
     output.say_written(written, report, options)
-    _end(found, fail_on, options)
-
-
-def _failures_of(text: str | None) -> tuple[str, ...]:
-    words = [] if text is None else [each.strip().lower().replace("-", "_") for each in text.split(",")]
-    for each in words:
-        if each not in FAILURES:
-            raise InvalidParameterError("--fail-on", f"be among {', '.join(FAILURES)}, with commas", each)
-    return tuple(dict.fromkeys(words))
+    verdict.end(report.said, found.counts, found.warnings, options, 1, tuple(FAILURES))
 
 
 def _offsets(given: Sequence[str] | None) -> dict[str, float] | None:
@@ -396,33 +382,3 @@ def _draw(found: Judgement) -> Iterator[tuple[str, Figure, str]]:
     if found.moments:
         caption = "The worst moments, 2 s before and after; the robot stands in the middle."
         yield "moments", plotting.runs.worst_moments(found), caption
-
-
-# ---- end ----------------------------------------------------------------------------------------------------
-
-
-def _end(found: Judgement, fail_on: Sequence[str], options: argparse.Namespace) -> None:
-    """Print warnings and the last line, and leave with the code that the options ask for."""
-    output.report_warnings(found.warnings, strict=False)
-    counts, doubts = found.counts, unsafe_doubts(found.warnings)
-    named = [word for word in fail_on if counts[word]]
-    codes = ", ".join(dict.fromkeys(doubt.code for doubt in doubts))
-    print()
-    if named:
-        said, look = f"FAILED  {_said(found)}; --fail-on {', '.join(named)}: exit code {FAILED_RUN}", "bold red"
-    elif doubts and (fail_on or not counts["any"]):
-        end = f"exit code {NOT_CHECKED}" if fail_on else f"exit code 0 all the same, --fail-on makes it {NOT_CHECKED}"
-        said = f"NOT CHECKED  {_said(found)}, but with doubts that may lie on the unsafe side ({codes}); {end}"
-        look = "bold yellow"
-    elif counts["any"]:
-        happened = ",".join(word for word, number in counts.items() if number and word != "any")
-        note = "--fail-on does not name it" if fail_on else f"--fail-on {happened} makes it {FAILED_RUN}"
-        said, look = f"NOTE    {_said(found)}; exit code 0 all the same, {note}", "yellow"
-    else:
-        said, look = f"passed  {_said(found)}", "green"
-    print(terminal.styled(said, look, sys.stdout))
-    if named:
-        raise SystemExit(FAILED_RUN)
-    if doubts and fail_on:
-        raise SystemExit(NOT_CHECKED)
-    output.leave_if_strict(found.warnings, options.strict)

@@ -37,7 +37,6 @@ if TYPE_CHECKING:
 __all__ = [
     "animation",
     "check_json",
-    "check_mcap",
     "check_targets",
     "decided",
     "decimal",
@@ -244,9 +243,12 @@ def check_targets(options: argparse.Namespace) -> None:
     if options.out is not None:
         planned_folder(options.out)
         require_page("--out")
-    if options.animate is not None:
+    if getattr(options, "animate", None) is not None:
         planned_animation(options.animate)
-    check_mcap(options)
+    if getattr(options, "mcap", None) is not None:
+        target("--mcap", options.mcap, (".mcap",))
+        if importlib.util.find_spec("foxglove") is None:
+            raise MissingExtraError("--mcap needs foxglove-sdk: pip install foxglove-sdk")
     check_json(options)
 
 
@@ -377,14 +379,6 @@ def player(run: nav.Trajectory) -> PlayerPage:
     from hrsafety import plotting
 
     return plotting.player(decided(run))
-
-
-def check_mcap(options: argparse.Namespace) -> None:
-    """Refuse before the work an MCAP file that could not be written after it."""
-    if options.mcap is not None:
-        target("--mcap", options.mcap, (".mcap",))
-        if importlib.util.find_spec("foxglove") is None:
-            raise MissingExtraError("--mcap needs foxglove-sdk: pip install foxglove-sdk")
 
 
 def mcap(run: nav.Trajectory | nav.metrics.Judgement, options: argparse.Namespace) -> list[Path]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from hrsafety import records
-from hrsafety.cli import exit_codes, output, terminal, verdict
+from hrsafety.cli import output, terminal, verdict
 from hrsafety.cli.output import decimal
 from hrsafety.errors import InvalidParameterError
 from hrsafety.pages.report import Report, ReportCell, ReportTable, Section
@@ -32,8 +31,6 @@ KINDS = {
 HEAD_LIMITS = ("peak_g", "hic15", "hic36", "clip_3ms_g")
 _HEAD_TITLES = ("peak", "HIC15", "HIC36", "3 ms level")
 _HEAD_UNITS = ("g", "", "", "g")
-_LAST_WORDS = {"exceeds": "FAILED", "not_checked": "NOT CHECKED", "within_limits": "passed"}
-_CODES = {"exceeds": exit_codes.FAILED_RUN, "not_checked": exit_codes.NOT_CHECKED, "within_limits": exit_codes.DONE}
 Loads = records.AccelerationRecord | records.ForceRecord | records.PressureRecord
 
 
@@ -54,10 +51,7 @@ def judge_records(options: argparse.Namespace) -> None:
     options : argparse.Namespace
         Of ``hrsafety record``.
     """
-    if options.out is not None:
-        output.planned_folder(options.out)
-        output.require_page("--out")
-    output.check_json(options)
+    output.check_targets(options)
     limits = _limits(options)
     judged = [_judged(path, options, limits) for path in options.files]
     word, repeated = _verdict(judged, options, limits)
@@ -68,7 +62,7 @@ def judge_records(options: argparse.Namespace) -> None:
         written = output.write_report(report, output.folder(options.out), _draw(judged, options, limits), [])
     output.say_written(written, report, options)
     output.report_warnings(report.warnings, strict=False)
-    _end(word, report)
+    verdict.leave(word, report.said)
     output.leave_if_strict(report.warnings, options.strict)
 
 
@@ -269,19 +263,3 @@ def _draw(
     names = [Path(each.path).name for each in judged]
     figure = plotting.measured_records(traces, names=names, limits=lines)
     yield "traces", figure, "Traces without offset; contacts are shaded, stars are peaks."
-
-
-def _end(word: str, report: Report) -> None:
-    """Print the verdict as the last line, and leave with its code.
-
-    Raises
-    ------
-    SystemExit
-        With code 3 if a load exceeds its limit, with code 5 if one is not checked.
-    """
-    code = _CODES[word]
-    last = f"{_LAST_WORDS[word]}  {report.said}" + ("" if code == exit_codes.DONE else f"; exit code {code}")
-    print()
-    print(terminal.styled(last, verdict.LOOKS[_LAST_WORDS[word]], sys.stdout), flush=True)
-    if code != exit_codes.DONE:
-        raise SystemExit(code)

@@ -36,10 +36,7 @@ def serve_world(options: argparse.Namespace) -> None:
         Of ``hrsafety ros``.
     """
     verdict.failures_of(options.fail_on)  # a wrong word is told before the run
-    output.check_json(options)
-    if options.out is not None:
-        output.planned_folder(options.out)
-        output.require_page("--out")
+    output.check_targets(options)
     with output.located(options.world):
         world = scenarios.load_world(options.world)
     if options.seed is not None:

@@ -12,13 +12,13 @@ import numpy as np
 from hrsafety import navigation as nav
 from hrsafety._arguments import meant
 from hrsafety.cli import output, terminal
-from hrsafety.cli.exit_codes import FAILED_RUN, NOT_CHECKED
+from hrsafety.cli.exit_codes import DONE, FAILED_RUN, NOT_CHECKED
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.plausibility import ResultWarning, unsafe_doubts
 
-__all__ = ["FAILURES", "LOOKS", "counted", "end", "failures_of", "sentence"]
+__all__ = ["FAILURES", "OF_VERDICTS", "counted", "end", "failures_of", "leave", "sentence"]
 
 Counts = Mapping[str, int]
 
@@ -26,8 +26,17 @@ Counts = Mapping[str, int]
 _SHORT_OF_GOAL = tuple(word for word in OUTCOMES if word not in {"arrived", "collided"})
 FAILURES = ("contact", "moving_contact", *_SHORT_OF_GOAL, "not_arrived", "any")
 """Words of ``--fail-on``; the help says what each means."""
-LOOKS = MappingProxyType({"FAILED": "bold red", "NOT CHECKED": "bold yellow", "NOTE": "yellow", "passed": "green"})
+_LOOKS = MappingProxyType({"FAILED": "bold red", "NOT CHECKED": "bold yellow", "NOTE": "yellow", "passed": "green"})
 """First words of the last line and their looks on a terminal."""
+OF_VERDICTS = MappingProxyType(
+    {
+        "not_permitted": ("FAILED", FAILED_RUN),
+        "exceeds": ("FAILED", FAILED_RUN),
+        "not_checked": ("NOT CHECKED", NOT_CHECKED),
+        "within_limits": ("passed", DONE),
+    }
+)
+"""First word of the last line and exit code of each verdict on limits."""
 _SUMMED = ("moving_contact", "not_arrived", "any")
 _OTHER_WORDS = {"collided": "contact", "collision": "contact", "timeout": "timed_out"}
 
@@ -145,10 +154,33 @@ def end(
     print()
     doubts = unsafe_doubts(found)
     last = sentence(said, counts, fail_on, runs, doubts)
-    look = next(look for word, look in LOOKS.items() if last.startswith(word))
+    look = next(look for word, look in _LOOKS.items() if last.startswith(word))
     print(terminal.styled(last, look, sys.stdout))
     if any(counts[word] for word in fail_on):
         raise SystemExit(FAILED_RUN)
     if doubts and fail_on:
         raise SystemExit(NOT_CHECKED)
     output.leave_if_strict(found, options.strict)
+
+
+def leave(word: str, said: str) -> None:
+    """Print a verdict on limits as the last line, and leave with its code unless everything is within limits.
+
+    Parameters
+    ----------
+    word : str
+        Verdict, one of `hrsafety.standards.verdicts.VERDICTS`.
+    said : str
+        The same in a sentence.
+
+    Raises
+    ------
+    SystemExit
+        With code 3 if a limit is exceeded or a contact not permitted, with code 5 if one is not checked.
+    """
+    first, code = OF_VERDICTS[word]
+    last = f"{first}  {said}" + ("" if code == DONE else f"; exit code {code}")
+    print()
+    print(terminal.styled(last, _LOOKS[first], sys.stdout), flush=True)
+    if code != DONE:
+        raise SystemExit(code)

@@ -18,8 +18,8 @@ pytest.importorskip("jinja2")
 from hrsafety import arms, contact, standards
 from hrsafety.cli import main
 from hrsafety.cli.cell import report as cell_report
-from hrsafety.cli.cell.command import ENDS
 from hrsafety.cli.file_kinds import starter
+from hrsafety.cli.verdict import OF_VERDICTS
 from hrsafety.contact import load_cell
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
@@ -80,7 +80,7 @@ def judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., tup
             cell = Path("cell.toml")
         code = main(["contact", str(cell), "--out", "report", *options])
         report = json.loads(Path("report/report.json").read_text(encoding="utf-8"))
-        assert code == ENDS[report["verdict"]]
+        assert code == OF_VERDICTS[report["verdict"]][1]
         return report, Path("report/report.html").read_text(encoding="utf-8")
 
     return made

@@ -5,31 +5,18 @@ from __future__ import annotations
 import argparse
 import datetime
 import os
-import sys
 from importlib import resources
 from pathlib import Path
-from types import MappingProxyType
 
 from hrsafety import contact
-from hrsafety.cli import exit_codes, output, progress, terminal, verdict
+from hrsafety.cli import output, progress, terminal, verdict
 from hrsafety.cli.cell import page as cell_page
 from hrsafety.cli.cell import pictures as cell_pictures
 from hrsafety.cli.cell import report as cell_report
 from hrsafety.errors import InvalidParameterError
 from hrsafety.standards.verdicts import VERDICT_WORDS
 
-__all__ = ["ENDS", "report_cell"]
-
-ENDS = MappingProxyType(
-    {
-        "not_permitted": exit_codes.FAILED_RUN,
-        "exceeds": exit_codes.FAILED_RUN,
-        "not_checked": exit_codes.NOT_CHECKED,
-        "within_limits": exit_codes.DONE,
-    }
-)
-"""Exit codes of the verdicts."""
-LAST_WORDS = {exit_codes.FAILED_RUN: "FAILED", exit_codes.NOT_CHECKED: "NOT CHECKED", exit_codes.DONE: "passed"}
+__all__ = ["report_cell"]
 
 
 def report_cell(options: argparse.Namespace) -> None:
@@ -64,28 +51,15 @@ def report_cell(options: argparse.Namespace) -> None:
     texts = {"report.json": report.json(sort=True), "report.html": page}
     output.say_written([output.write_text(place / name, text) for name, text in texts.items()], report, options)
     output.report_warnings(study.warnings, strict=False)
-    _end(study)
+    verdict.leave(study.verdict, _said(study))
     output.leave_if_strict(study.warnings, options.strict)
 
 
-def _end(study: contact.ContactStudy) -> None:
-    """Print the verdict once more as the last line, and leave with its code unless it is within limits.
-
-    Raises
-    ------
-    SystemExit
-        With code 3 if a contact exceeds its limits or is not permitted, with code 5 if one is not checked.
-    """
-    word, code = study.verdict, ENDS[study.verdict]
-    rows = [each for each in study.verdicts if each["verdict"] == word]
-    said = f"{VERDICT_WORDS[word]}: {len(rows)} of {len(study.verdicts)} contacts"
-    if code == exit_codes.NOT_CHECKED:
-        said += f" ({', '.join(study.fields['doubts'])})"
-    last = f"{LAST_WORDS[code]}  {said}" + ("" if code == exit_codes.DONE else f"; exit code {code}")
-    print()
-    print(terminal.styled(last, verdict.LOOKS[LAST_WORDS[code].strip()], sys.stdout), flush=True)
-    if code != exit_codes.DONE:
-        raise SystemExit(code)
+def _said(study: contact.ContactStudy) -> str:
+    """Return the verdict with its number of contacts and, where they decide it, its doubts."""
+    rows = [each for each in study.verdicts if each["verdict"] == study.verdict]
+    doubts = f" ({', '.join(study.fields['doubts'])})" if study.verdict == "not_checked" else ""
+    return f"{VERDICT_WORDS[study.verdict]}: {len(rows)} of {len(study.verdicts)} contacts{doubts}"
 
 
 def _start(path: str) -> None:
