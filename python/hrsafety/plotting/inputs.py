@@ -18,6 +18,12 @@ VIEWS = ("scene", "paths")
 Array = npt.NDArray[np.float64]
 
 
+def some(name: str, given: object, what: str) -> None:
+    """Refuse an argument that holds nothing."""
+    if not given:
+        raise InvalidParameterError(name, f"hold at least one {what}", Shown("none"))
+
+
 def checked_trajectory(name: str, value: object) -> Trajectory:
     """Return ``value`` if it is a trajectory."""
     if not isinstance(value, Trajectory):

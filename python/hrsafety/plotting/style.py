@@ -120,6 +120,12 @@ def new_figure(
     return figure
 
 
+def one_panel(height: float, **options: Any) -> tuple[Figure, Axes]:
+    """Return an empty figure with axes that fill it; options as for `new_figure`."""
+    figure = new_figure(height, **options)
+    return figure, figure.subplots()
+
+
 def scene_height(
     limits: Limits,
     *,

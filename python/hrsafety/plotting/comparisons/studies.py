@@ -86,8 +86,7 @@ def clearances(
     finite = np.concatenate([values[np.isfinite(values)] for values in groups.values()])
     if len(finite) == 0:
         raise InvalidParameterError("clearances", "hold at least one finite value", Shown("only infinite values"))
-    figure = style.new_figure(3.8, title=title)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(3.8, title=title)
     low, high = min(0.0, float(finite.min())), max(0.0, float(finite.max()))
     pad = 0.03 * max(high - low, 0.1)
     axes.axvspan(low - 2.0 * pad, 0.0, color=style.CONTACT_COLOR, alpha=0.07, zorder=0.5)
@@ -203,8 +202,7 @@ def outcomes(
         if contacts is not None and contacts_moving is None and isinstance(values, RunTable):
             contacts = (*contacts, values.contacts_toward)
         bars[f"{name} (n = {len(words)})"] = _counts(words, contacts)
-    figure = style.new_figure(1.1 + 0.52 * len(bars) + (0.4 if title is not None else 0.0), title=title)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(1.1 + 0.52 * len(bars) + (0.4 if title is not None else 0.0), title=title)
     _draw_bars(axes, bars)
     figure.legend(loc="outside lower center", ncols=3)
     return figure

@@ -9,8 +9,8 @@ import numpy.typing as npt
 
 from hrsafety._arguments import instance, vector
 from hrsafety.contact import ContactImpact
-from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.plotting import notes, style
+from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.plotting import inputs, notes, style
 from hrsafety.plotting.axis_numbers import blank_where_infinite, shown_number
 
 if TYPE_CHECKING:
@@ -58,10 +58,8 @@ def contact_forces(
     >>> figure.axes[0].get_ylabel()
     'force (N)'
     """
-    if not impacts:
-        raise InvalidParameterError("impacts", "hold at least one collision", Shown("none"))
-    figure = style.new_figure(3.6, title=title)
-    axes = figure.subplots()
+    inputs.some("impacts", impacts, "collision")
+    figure, axes = style.one_panel(3.6, title=title)
     for index, (label, impact) in enumerate(impacts.items()):
         instance(f"impacts[{label!r}]", impact, ContactImpact)
         axes.plot(MILLI * impact.time, impact.force, label=_plain(label), **style.run_look(index))
@@ -115,8 +113,7 @@ def forces_over_speed(
     >>> figure = plotting.contacts.forces_over_speed(speeds, {"bare": found.peak_force}, planned=0.25)
     """
     over = blank_where_infinite("speed", vector("speed", speed))
-    figure = style.new_figure(3.6, title=title)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(3.6, title=title)
     for index, (label, values) in enumerate(forces.items()):
         drawn = blank_where_infinite(f"forces[{label!r}]", values)
         if drawn.shape != over.shape:

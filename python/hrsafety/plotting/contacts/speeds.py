@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import instance, pair
-from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.plotting import notes, style
+from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.plotting import inputs, notes, style
 from hrsafety.plotting.axis_numbers import along_axis, blank_where_infinite, shown_number
 from hrsafety.standards import SpeedCurve
 
@@ -76,8 +76,7 @@ def speed_map(
     table = blank_where_infinite("speed", speed)
     if table.shape != (len(rows), len(columns)):
         raise ShapeError("speed", f"({len(rows)}, {len(columns)})", table.shape)
-    figure = style.new_figure(4.4, title=title)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(4.4, title=title)
     colors = axes.pcolormesh(columns, MILLI * rows, table, shading="nearest", rasterized=False)
     bar = figure.colorbar(colors, ax=axes, label="allowed closing speed (m/s)")
     known = table[np.isfinite(table)]
@@ -142,8 +141,7 @@ def speed_over_distance(curve: SpeedCurve, *, title: str | None = None) -> Figur
     """
     instance("curve", curve, SpeedCurve)
     distance = along_axis("curve.distance", curve.distance, rising=False)
-    figure = style.new_figure(3.6, title=title)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(3.6, title=title)
     for index, (mode, words) in enumerate(MODES.items()):
         here = (curve.mode == mode) & ~curve.capped
         # A line reaches to the first point of the next one.
@@ -190,12 +188,10 @@ def contact_sensitivity(values: Mapping[str, float], *, title: str | None = None
     >>> from hrsafety import plotting
     >>> figure = plotting.contacts.contact_sensitivity({"force_limit": 1.0, "robot_mass": -0.5})
     """
-    if not values:
-        raise InvalidParameterError("values", "hold at least one sensitivity", Shown("none"))
+    inputs.some("values", values, "sensitivity")
     lengths = {name: float(blank_where_infinite(f"values[{name!r}]", value)) for name, value in values.items()}
     names = list(values)[::-1]
-    figure = style.new_figure(0.9 + 0.3 * len(names), title=title)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(0.9 + 0.3 * len(names), title=title)
     colors = [style.RUN_COLORS[0] if lengths[name] > 0.0 else style.PERSON_COLORS[0] for name in names]
     axes.barh([name.replace("_", " ") for name in names], [lengths[name] for name in names], color=colors, height=0.65)
     axes.axvline(0.0, color=style.NEUTRAL, linewidth=0.8)

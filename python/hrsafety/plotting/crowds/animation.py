@@ -149,8 +149,7 @@ def _background(
     """Return a figure with everything that does not move."""
     handles = _handles(run, kinds)
     height = style.scene_height(place.limits, titled=title is not None, legend_rows=-(-len(handles) // 3))
-    figure = style.new_figure(height, title=title, dpi=DPI, compressed=True)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(height, title=title, dpi=DPI, compressed=True)
     style.frame_scene(axes, place.limits)
     world_scenes.add_walls(axes, run.scenario, place)
     world_scenes.add_goals(axes, run.scenario)

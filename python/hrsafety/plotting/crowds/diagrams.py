@@ -80,8 +80,7 @@ def fundamental_diagram(
         rule = "be a mapping of names to speeds, with one at least"
         raise InvalidParameterError("speeds", rule, Shown(type(speeds).__name__) if speeds else speeds)
     curves = {str(name): _checked(f"speeds[{name!r}]", values, len(places)) for name, values in speeds.items()}
-    figure = style.new_figure(HEIGHT, title=title)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(HEIGHT, title=title)
     handles = []
     if reference is not None:
         look: style.Properties = {"color": style.NEUTRAL, "linewidth": 5.0, "alpha": 0.45}

@@ -80,8 +80,7 @@ def space_time(
     direction = given / length
     start = np.array([shown_number("origin", each) for each in pair("origin", origin)])
     period = _period(run, direction)
-    figure = style.new_figure(HEIGHT + 0.3 * bool(names), title=title)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(HEIGHT + 0.3 * bool(names), title=title)
     rows = np.unique(np.linspace(0, len(run.time) - 1, MOST_ROWS).astype(int))
     speed = np.hypot(run.obstacle_velocity[..., 0], run.obstacle_velocity[..., 1])
     lines = _draw_people(axes, run.time[rows], (run.obstacle_position[rows] - start) @ direction, speed[rows], period)

@@ -167,8 +167,7 @@ def metric_label(objective: object) -> str:
 
 def _convergence(search: GainSearch, quantity: str, title: str | None) -> Figure:
     """Return the picture of a search without grids."""
-    figure = style.new_figure(3.8, title=title)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(3.8, title=title)
     counts, values = np.asarray(search.convergence, dtype=np.float64).reshape(-1, 2).T
     known = np.isfinite(values)
     axes.step(counts[known], values[known], where="post", label="best so far", **style.run_look(0))

@@ -117,8 +117,7 @@ def foam_boundaries(
     """
     grid = _rising(damping)
     tops, bottoms = _stiffness("upper", upper, grid), _stiffness("lower", lower, grid)
-    figure = style.new_figure(4.8, title=title)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(4.8, title=title)
     shown = [curve[np.isfinite(curve)].max(initial=0.0) for curve in (tops, bottoms)]
     shown += [foam.stiffness / KILO for foam in (foams or {}).values()]
     height = 1.12 * max(shown) or 1.0
@@ -196,8 +195,7 @@ def foam_map(
     table = blank_where_infinite("value", value)
     if table.shape != (len(rows), len(columns)):
         raise ShapeError("value", f"({len(rows)}, {len(columns)})", table.shape)
-    figure = style.new_figure(4.8, title=title)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(4.8, title=title)
     colors = axes.pcolormesh(columns, rows / KILO, table, shading="gouraud" if np.isfinite(table).all() else "nearest")
     bar = figure.colorbar(colors, ax=axes, label=quantity)
     known = table[np.isfinite(table)]

@@ -249,14 +249,12 @@ def impact_study(
     >>> figure = plotting.impact_study([5.0, 10.0, 20.0], {"Foam 1": [5.9, 6.6, 7.1]}, parameter="mass (kg)")
     """
     lines = {name: blank_where_infinite(f"curves[{name!r}]", curve) for name, curve in curves.items()}
-    if not lines:
-        raise InvalidParameterError("curves", "hold at least one curve", Shown("none"))
+    inputs.some("curves", lines, "curve")
     grid = along_axis("values", values, log=log_parameter, rising=False)
     for name, line in lines.items():
         if line.shape != grid.shape:
             raise ShapeError(f"curves[{name!r}]", f"({len(grid)},)", line.shape)
-    figure = style.new_figure(4.4, title=title)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(4.4, title=title)
     for index, (name, line) in enumerate(lines.items()):
         axes.plot(grid, line, label=name, **style.run_look(index))
     if limit is not None:
@@ -285,8 +283,7 @@ def impact_study(
 def _checked_responses(responses: Any) -> list[Any]:
     """Return one or several responses as a list."""
     runs = list(responses) if isinstance(responses, (list, tuple)) else [responses]
-    if not runs:
-        raise InvalidParameterError("responses", "hold at least one ImpactResponse", Shown("an empty sequence"))
+    inputs.some("responses", runs, "ImpactResponse")
     for index, run in enumerate(runs):
         if not all(hasattr(run, name) for name in ("time", "contact_force", "compression")):
             raise InvalidParameterError(f"responses[{index}]", "be an ImpactResponse", Shown(type(run).__name__))

@@ -72,8 +72,7 @@ def measured_records(
     labels = [f"record {place + 1}" for place in range(len(given))] if names is None else [str(each) for each in names]
     if len(labels) != len(given):
         raise InvalidParameterError("names", f"name {len(given)} records", labels)
-    figure = style.new_figure(3.6, title=title)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(3.6, title=title)
     for place, (each, label) in enumerate(zip(given, labels, strict=True)):
         look = style.run_look(place)
         if isinstance(each, AccelerationRecord):

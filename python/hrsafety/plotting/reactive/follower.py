@@ -11,7 +11,7 @@ import numpy as np
 from hrsafety._arguments import vector
 from hrsafety._bounds import MOST_INSTANTS
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.plotting import floor, labels, notes, style
+from hrsafety.plotting import floor, inputs, labels, notes, style
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -67,8 +67,7 @@ def follower_runs(
     >>> scene = reactive.FollowerLayouts(kind="one_dynamic").scene(3)
     >>> figure = plotting.reactive.follower_runs({"active": reactive.follow(scene)}, times=[5.0, 10.0])
     """
-    if not runs:
-        raise InvalidParameterError("runs", "hold at least one run", Shown("none"))
+    inputs.some("runs", runs, "run")
     for name, run in runs.items():
         check_rows(f"runs[{name!r}]", run)
     limits = view_of(list(runs.values()))
@@ -245,10 +244,8 @@ def follower_rates(
     >>> figure = plotting.reactive.follower_rates({"one moving box": found})
     """
     laws = list(dict.fromkeys(law for each in rates.values() for law in each))
-    if not laws:
-        raise InvalidParameterError("rates", "hold at least one rate", Shown("none"))
-    figure = style.new_figure(4.2, title=title)
-    axes = figure.subplots()
+    inputs.some("rates", laws, "rate")
+    figure, axes = style.one_panel(4.2, title=title)
     width = 0.8 / len(laws)
     for rank, law in enumerate(laws):
         places = np.array([index for index, each in enumerate(rates.values()) if law in each])
@@ -320,8 +317,7 @@ def impedance_forces(laws: Mapping[str, VirtualImpedance], *, title: str | None 
     >>> from hrsafety import plotting, reactive
     >>> figure = plotting.reactive.impedance_forces({"active": reactive.VirtualImpedance()})
     """
-    if not laws:
-        raise InvalidParameterError("laws", "hold at least one law", Shown("none"))
+    inputs.some("laws", laws, "law")
     figure = style.new_figure(3.6, title=title)
     left, right = figure.subplots(1, 2)
     for rank, (name, law) in enumerate(laws.items()):

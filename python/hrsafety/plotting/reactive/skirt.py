@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.plotting import floor, notes, style
+from hrsafety.errors import InvalidParameterError
+from hrsafety.plotting import floor, inputs, notes, style
 from hrsafety.plotting.axis_numbers import shown_number
 
 if TYPE_CHECKING:
@@ -62,8 +62,7 @@ def skirt_ring(
     reach = skirt.chassis_radius - skirt.sensor_inset + float(skirt.trigger_distances.max())
     size = 1.22 * max(reach, skirt.chassis_radius)
     limits = ((-size, size), (-size, size))
-    figure = style.new_figure(7.6, width=6.8, title=title)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(7.6, width=6.8, title=title)
     _draw_chassis(axes, skirt)
     _draw_beams(axes, skirt)
     handles = _distance_circles(axes, skirt, size)
@@ -155,8 +154,7 @@ def skirt_runs(runs: Mapping[str, SkirtRun], *, title: str | None = None) -> Fig
     >>> from hrsafety import plotting, reactive
     >>> figure = plotting.reactive.skirt_runs({"escape to the north": reactive.skirt_run(direction="N")})
     """
-    if not runs:
-        raise InvalidParameterError("runs", "hold at least one run", Shown("none"))
+    inputs.some("runs", runs, "run")
     size = max(_extent(run) for run in runs.values())
     limits = ((-size, size), (-size, size))
     titles = [f"{name}\n{_ending(run)}" for name, run in runs.items()]
@@ -256,12 +254,10 @@ def skirt_clearances(
     >>> from hrsafety import plotting, reactive
     >>> figure = plotting.reactive.skirt_clearances({"ideal": reactive.skirt_test(layouts=2)}, printed=0.775)
     """
-    if not tests:
-        raise InvalidParameterError("tests", "hold at least one test", Shown("none"))
+    inputs.some("tests", tests, "test")
     if not 0.0 < most < math.inf:
         raise InvalidParameterError("most", "be finite and positive", most)
-    figure = style.new_figure(4.9 + (0.3 if title is not None else 0.0), title=title)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(4.9 + (0.3 if title is not None else 0.0), title=title)
     limits = np.linspace(0.0, most, _POINTS)
     for index, (name, test) in enumerate(tests.items()):
         shares = [test.shares(float(limit)).completely_avoids for limit in limits]
@@ -311,10 +307,8 @@ def skirt_sensor_counts(studies: Sequence[SmallestSkirt], *, title: str | None =
     """
     from matplotlib.lines import Line2D
 
-    if not studies:
-        raise InvalidParameterError("studies", "hold at least one study", Shown("none"))
-    figure = style.new_figure(4.9 + (0.3 if title is not None else 0.0), title=title)
-    axes = figure.subplots()
+    inputs.some("studies", studies, "study")
+    figure, axes = style.one_panel(4.9 + (0.3 if title is not None else 0.0), title=title)
     for index, study in enumerate(studies):
         _draw_study(axes, study, style.run_look(index))
     for limit in dict.fromkeys(study.contact_share for study in studies):

@@ -136,8 +136,7 @@ def sound_likeness(
     >>> curve = reactive.sound.likeness(heard, row, method="mean_square")
     >>> figure = plotting.reactive.sound_likeness({"similarity": curve})
     """
-    if not curves:
-        raise InvalidParameterError("curves", "hold at least one Likeness", Shown("nothing"))
+    inputs.some("curves", curves, "Likeness")
     figure = style.new_figure(5.8, title=title)
     for index, (axes, pair) in enumerate(zip(figure.subplots(2, 1), ("12", "13"), strict=True)):
         for place, (name, curve) in enumerate(curves.items()):
@@ -209,8 +208,7 @@ def sound_fixes(
     seen = [_ellipse(each, SIGMAS_IN_VIEW) for each in truth]
     center = np.array([[0.0, 0.0]])
     limits = inputs.view_limits([center, *(np.stack([-ring[:, 1], ring[:, 0]], axis=1) for ring in seen)], margin=0.3)
-    figure = style.new_figure(style.scene_height(limits, legend_rows=2, titled=title is not None), title=title)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(style.scene_height(limits, legend_rows=2, titled=title is not None), title=title)
     for index, (ring, name) in enumerate(zip(rings, names, strict=True)):
         color = style.RUN_COLORS[index % len(style.RUN_COLORS)]
         places = fixes.position[index][fixes.found[index]]

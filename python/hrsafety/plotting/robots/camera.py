@@ -190,6 +190,5 @@ def velocity_estimates(
 def _observations(given: Observation | Sequence[Observation]) -> list[Observation]:
     """Return one or several observations as a list; an observation is a tuple of arrays itself."""
     several = [given] if hasattr(given, "measured_at") else list(given)
-    if not several:
-        raise InvalidParameterError("observations", "hold at least one observation", 0)
+    inputs.some("observations", several, "observation")
     return several  # type: ignore[return-value]  # told apart by the attribute

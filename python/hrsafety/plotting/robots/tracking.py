@@ -130,8 +130,7 @@ def tracking_errors(
     groups = _groups(runs, labels)
     if rate is not None and not 0.0 < rate < math.inf:
         raise InvalidParameterError("rate", "be finite and positive", rate)
-    figure = style.new_figure(4.2, title=title)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(4.2, title=title)
     largest, least, last = FLOOR, math.inf, 0.0
     for index, (name, members) in enumerate(groups):
         look = _thinned(style.run_look(index), len(members) > 1)
@@ -171,8 +170,7 @@ def _groups(runs: object, labels: Sequence[str] | None) -> Groups:
         for member in group:
             if not isinstance(member, Trajectory) or member.tracking is None:
                 raise InvalidParameterError(f"runs[{index}]", rule, _found(member))
-    if not groups:
-        raise InvalidParameterError("runs", "hold at least one Trajectory", Shown("an empty sequence"))
+    inputs.some("runs", groups, "Trajectory")
     names = inputs.checked_labels(labels, len(groups))
     return [(name, list(group)) for name, group in zip(names, groups, strict=True)]
 

@@ -65,8 +65,7 @@ def wheel_tracking(
     'angle error (mrad)'
     """
     all_runs = sequence("runs", "be runs of wheels", runs if isinstance(runs, (list, tuple)) else [runs])
-    if not all_runs:
-        raise InvalidParameterError("runs", "hold at least one run", runs)
+    inputs.some("runs", all_runs, "run")
     names = inputs.checked_labels(labels, len(all_runs))
     figure = style.new_figure(6.6, title=title)
     speed, error, current = figure.subplots(3, 1, sharex=True)

@@ -216,8 +216,7 @@ def _background(run: Trajectory, *, regions: bool, title: str | None) -> tuple[F
     scenario = run.scenario
     limits = inputs.view_limits([run.position, scenario.start, scenario.goal], margin=MARGIN, least_ratio=0.5)
     height = style.scene_height(limits, titled=title is not None)
-    figure = style.new_figure(height, title=title, dpi=DPI, compressed=True)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(height, title=title, dpi=DPI, compressed=True)
     style.frame_scene(axes, limits)
     walls.add_maps(axes, walls.maps_of([run]))
     for obstacle, look in zip(scenario.obstacles, shapes.looks(scenario.obstacles), strict=True):

@@ -215,8 +215,7 @@ def lyapunov(
 
     runs = inputs.checked_runs(trajectories)
     names = inputs.checked_labels(labels, len(runs), stem="robot" if len(runs) == 1 else "run")
-    figure = style.new_figure(3.8, title=title)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(3.8, title=title)
     gaps = False
     for index, (run, name) in enumerate(zip(runs, names, strict=True)):
         look = style.run_look(index)

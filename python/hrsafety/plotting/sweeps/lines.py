@@ -64,8 +64,7 @@ def sweep_lines(result: SweepResult, column: str, *, title: str | None = None) -
     found = result.to_numpy([axis.name, column])
     along, values = (finite(found[name], name).reshape(-1, max(len(result.cases), 1)) for name in (axis.name, column))
     order = np.argsort(along[:, 0], kind="stable")
-    figure = style.new_figure(4.2, title=title)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(4.2, title=title)
     for index, (name, line) in enumerate(by_case(result, values)):
         marker = "o" if len(order) <= 30 else ""
         axes.plot(along[order, 0], line[order], marker=marker, ms=4, label=name, **style.run_look(index))

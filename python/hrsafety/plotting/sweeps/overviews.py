@@ -143,8 +143,7 @@ def sweep_parallel(result: SweepResult, column: str, *, most: int = MOST_LINES, 
     values = points[column].mean(axis=1)
     shown = np.flatnonzero(np.isfinite(values))
     order = shown[np.argsort(values[shown], kind="stable")]
-    figure = style.new_figure(4.6, title=title)
-    axes = figure.subplots()
+    figure, axes = style.one_panel(4.6, title=title)
     heights = np.stack([_along(points[axis.name][order, 0], axis) for axis in varying], axis=1)
     places = np.arange(len(varying), dtype=np.float64)
     if len(varying) == 1:
