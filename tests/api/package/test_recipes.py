@@ -23,9 +23,9 @@ RECIPE = re.compile(r"^### (?P<title>[^\n]+?) \((?P<count>\d+) files\)\n(?P<text
 ITEM = re.compile(r"^\d+\. `([^`]+)`: ", re.MULTILINE)
 
 MOST = {
-    "A navigation law": 8,
-    "A gain of a law": 7,
-    "A sensor on a robot": 8,
+    "A navigation law": 7,
+    "A gain of a law": 6,
+    "A sensor on a robot": 7,
     "A model of people": 7,
     "A social metric": 7,
     "A criterion of an impact": 8,

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import nullcontext
 from os import PathLike
 from typing import Any
 
 import numpy as np
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import callback, sequence
+from hrsafety._arguments import sequence
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.batch import check_threads
-from hrsafety.navigation.gains.checkpoint import Checkpoint
 from hrsafety.navigation.gains.metrics import is_maximized
-from hrsafety.navigation.gains.problem import gain_problem
 from hrsafety.navigation.gains.results import ParetoFront
-from hrsafety.navigation.gains.search import Progress
+from hrsafety.navigation.gains.search import Progress, found_of
 from hrsafety.navigation.gains.settings import (
     Bounds,
     Constraint,
@@ -137,23 +133,7 @@ def pareto_front(
         hold=hold,
         time_limit=time_limit,
     )
-    check_threads(threads)
-    callback("progress", progress)
-    file = None if checkpoint is None else Checkpoint(checkpoint, settings)
-    problem = gain_problem(settings)
-    with nullcontext() if file is None else file.alone():
-        found = _hrsafety.gain_front(
-            problem,
-            settings.bounds[:, 0].tolist(),
-            settings.bounds[:, 1].tolist(),
-            shape=list(settings.grid),
-            refinements=settings.refinements,
-            threads=threads,
-            state=None if file is None else file.load(),
-            save=None if file is None else file.save,
-            progress=progress,
-        )
-    return _result(settings, dict(found))
+    return _result(settings, found_of(settings, checkpoint, threads, progress))
 
 
 def _result(settings: SearchSettings, found: dict[str, Any]) -> ParetoFront:

@@ -37,7 +37,7 @@ from hrsafety.navigation.trajectory import Integrator
 from hrsafety.navigation.warnings.units import of_scenarios
 from hrsafety.plausibility import telling
 
-__all__ = ["optimize_gains"]
+__all__ = ["found_of", "optimize_gains"]
 
 # Fresh seeds that the best set of a search over seeds is judged by, at least.
 FRESH_SEEDS = 100
@@ -226,12 +226,7 @@ def optimize_gains(
         low, high = settings.bounds.T
         evaluations = EVALUATIONS_OF_A_GAIN * max(1, int(np.count_nonzero(low < high)))
     settings = replace(settings, evaluations=_budget(settings, evaluations))
-    check_threads(threads)
-    callback("progress", progress)
-    file = None if checkpoint is None else Checkpoint(checkpoint, settings)
-    with nullcontext() if file is None else file.alone():
-        found = _search(settings, file, threads, progress)
-    return _result(settings, found, threads)
+    return _result(settings, found_of(settings, checkpoint, threads, progress), threads)
 
 
 def _budget(settings: SearchSettings, evaluations: int | None) -> int | None:
@@ -245,44 +240,32 @@ def _budget(settings: SearchSettings, evaluations: int | None) -> int | None:
     return count("evaluations", evaluations, most=MOST_EVALUATIONS)
 
 
-def _search(
-    settings: SearchSettings, file: Checkpoint | None, threads: int | None, progress: Progress | None
+def found_of(
+    settings: SearchSettings, checkpoint: str | PathLike[str] | None, threads: int | None, progress: Progress | None
 ) -> dict[str, Any]:
-    problem = gain_problem(settings)
-    lower, upper = settings.bounds[:, 0].tolist(), settings.bounds[:, 1].tolist()
-    state = None if file is None else file.load()
-    save = None if file is None else file.save
-    if settings.evaluations is None:
-        found = _hrsafety.search_gains(
-            problem,
-            lower,
-            upper,
-            shape=list(settings.grid),
-            refinements=settings.refinements,
-            survivors=settings.survivors,
-            keep=max(settings.survivors, settings.local_starts),
-            local_starts=settings.local_starts,
-            threads=threads,
-            state=state,
-            save=save,
-            progress=progress,
-        )
-        return dict(found)
-    return dict(
-        _hrsafety.search_gains_globally(
-            problem,
-            lower,
-            upper,
-            method=settings.method,
-            evaluations=settings.evaluations,
-            islands=max(1, min(ISLANDS, settings.evaluations // EVALUATIONS_OF_AN_ISLAND)),
-            seed=settings.seed,
-            threads=threads,
-            state=state,
-            save=save,
-            progress=progress,
-        )
-    )
+    """Return what the core finds by the method of the settings, resumed from a checkpoint if there is one."""
+    check_threads(threads)
+    callback("progress", progress)
+    file = None if checkpoint is None else Checkpoint(checkpoint, settings)
+    with nullcontext() if file is None else file.alone():
+        lower, upper = settings.bounds.T.tolist()
+        problem = gain_problem(settings)
+        grid: dict[str, Any] = {"shape": list(settings.grid), "refinements": settings.refinements}
+        work: dict[str, Any] = {
+            "threads": threads,
+            "state": None if file is None else file.load(),
+            "save": None if file is None else file.save,
+            "progress": progress,
+        }
+        if settings.method == "front":
+            return dict(_hrsafety.gain_front(problem, lower, upper, **grid, **work))
+        if settings.evaluations is None:
+            starts, survivors = settings.local_starts, settings.survivors
+            more: dict[str, Any] = {"survivors": survivors, "keep": max(survivors, starts), "local_starts": starts}
+            return dict(_hrsafety.search_gains(problem, lower, upper, **grid, **more, **work))
+        islands = max(1, min(ISLANDS, settings.evaluations // EVALUATIONS_OF_AN_ISLAND))
+        more = {"method": settings.method, "evaluations": settings.evaluations, "islands": islands}
+        return dict(_hrsafety.search_gains_globally(problem, lower, upper, **more, seed=settings.seed, **work))
 
 
 def _result(settings: SearchSettings, found: dict[str, Any], threads: int | None) -> GainSearch:
