@@ -9,6 +9,7 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +19,9 @@ from hrsafety.cli import output, terminal
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.pages.report import Report, ReportTable, Section
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 __all__ = ["show_arm"]
 
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -26,16 +30,14 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 
 
 def show_arm(options: argparse.Namespace) -> None:
-    """Print the masses of a point in every pose, and write the table and the picture.
+    """Print the masses of a point in every pose, and write table, picture and page.
 
     Parameters
     ----------
     options : argparse.Namespace
         Of ``hrsafety arm``.
     """
-    output.planned_folder(options.out)
-    output.require_matplotlib("arm")
-    output.check_json(options)
+    output.check_targets(options)
     arm = _arm(options)
     link = arm.moved_links[-1] if options.link is None and arm.moved_links else options.link
     poses = _poses(arm, options)
@@ -52,7 +54,9 @@ def show_arm(options: argparse.Namespace) -> None:
         source=options.robot,
     )
     print(terminal.told(report))
-    written = list(_write(arm, poses, masses, list(directions), place, Path(options.out)))
+    folder = output.folder(options.out)
+    tables = [_csv(arm, poses, masses, list(directions), folder)]
+    written = output.write_report(report, folder, _draw(arm, poses, masses, place), tables)
     output.say_written(written, report, options)
     output.report_warnings(masses.warnings, options.strict)
 
@@ -177,24 +181,25 @@ def _table(masses: arms.PointMasses, names: Sequence[str]) -> ReportTable:
     return ReportTable(headers=(header, units), rows=rows, left=(), printed=True)
 
 
-def _write(
-    arm: arms.Arm, poses: Array, masses: arms.PointMasses, names: Sequence[str], place: dict[str, object], folder: Path
-) -> Iterator[Path]:
-    from hrsafety import plotting
-
-    place_of = output.folder(str(folder))
+def _csv(arm: arms.Arm, poses: Array, masses: arms.PointMasses, names: Sequence[str], folder: Path) -> Path:
     units = ["rad" if kind == "turning" else "m" for kind in arm.joint_kinds]
     joints = [f"{name}_{unit}" for name, unit in zip(arm.joint_names, units, strict=True)]
     header = [*joints, "x_m", "y_m", "z_m", *(f"effective_mass_{name}_kg" for name in names)]
     header += ["least_mass_kg", "worst_mass_kg", "worst_x", "worst_y", "worst_z", "iso_mass_kg"]
-    yield output.write_csv(place_of / "masses.csv", header, _rows(poses, masses))
+    return output.write_csv(folder / "masses.csv", header, _rows(poses, masses))
+
+
+def _draw(
+    arm: arms.Arm, poses: Array, masses: arms.PointMasses, place: dict[str, object]
+) -> Iterator[tuple[str, Figure, str]]:
+    from hrsafety import plotting
+
     worst = int(np.argmax(masses.extremes.worst_mass[:, 0]))
     pose = poses[worst]
     one = arm.point_masses(pose, direction=(1.0, 0.0, 0.0), **place)  # type: ignore[arg-type]  # as in show_arm
     skeleton = arm.skeleton(pose, check_limits=bool(place["check_limits"]))
     figure = plotting.mass_ellipse(skeleton, one, title=f"{arm.name or 'arm'}, pose {worst}: mass by direction")
-    drawn = output.pictures(place_of, [("mass_ellipse", figure, "Mass by direction in the pose with the worst mass.")])
-    yield from (place_of / f"{each.name}.png" for each in drawn)
+    yield "mass_ellipse", figure, "Mass by direction in the pose with the worst mass."
 
 
 def _rows(poses: Array, masses: arms.PointMasses) -> Iterator[list[object]]:

@@ -153,8 +153,8 @@ ARM = """examples:
 
 The table has the mass of a point along the world axes, its least and worst direction, and the mass
 of ISO/TS 15066 beside them. Without --joint and --poses the arm stands in the middle of its limits
-and in drawn poses. The folder receives masses.csv and mass_ellipse.png, the mass ellipse in the
-pose with the worst mass.
+and in drawn poses. The folder receives masses.csv, mass_ellipse.png, the mass ellipse in the pose
+with the worst mass, and summary.html with both.
 """
 
 CONTACT = """examples:

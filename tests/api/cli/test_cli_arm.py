@@ -56,6 +56,7 @@ def test_one_pose_has_the_masses_of_the_arm(robot: str, capsys: pytest.CaptureFi
     assert float(row["worst_mass_kg"]) == float(ARM.extremes(pose, **place).worst_mass)
     assert float(row["iso_mass_kg"]) == 14.5
     assert Path("arm/mass_ellipse.png").read_bytes().startswith(b"\x89PNG")
+    assert "mass_ellipse" in Path("arm/summary.html").read_text(encoding="utf-8")
 
 
 def test_poses_come_from_a_table(robot: str) -> None:
