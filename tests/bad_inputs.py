@@ -443,7 +443,7 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "instant after the end": "plotting.crowds.crowd_paths(met, at=1000.0)",
         "colors by an unknown word": "plotting.crowds.crowd_paths(met, color_by='grop')",
         "direction without a length": "plotting.crowds.space_time(met, along=(0.0, 0.0))",
-        "world for the animation of a run": "plotting.animate(met, 'run.gif')",
+        "world for the Lyapunov function of a run": "plotting.lyapunov(met)",
     },
     "Command line": {
         "no command": "hrsafety",

@@ -12,9 +12,9 @@ from gymnasium import spaces
 from hrsafety import _hrsafety
 from hrsafety._arguments import count, flag, number, numbers, positive, thread_count, word
 from hrsafety.errors import InvalidParameterError, ShapeError, SimulationError
-from hrsafety.gym.worlds import Task
-from hrsafety.navigation.crowd.world import World
+from hrsafety.gym.worlds import Task, task_of
 from hrsafety.navigation.metrics.declared import METRICS
+from hrsafety.navigation.place import Place
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 
 __all__ = ["Environments", "Frame"]
@@ -50,7 +50,7 @@ class Environments:
 
     def __init__(
         self,
-        task: Task | World,
+        task: Task | Place,
         *,
         num_envs: int,
         autoreset_mode: str,
@@ -67,9 +67,7 @@ class Environments:
         metrics: bool = True,
         copy: bool = True,
     ) -> None:
-        if not isinstance(task, (World, Task)):
-            raise InvalidParameterError("world", "be a World or Task", task)
-        self.task = Task(world=task) if isinstance(task, World) else task
+        self.task = task_of(task)
         self.count = count("num_envs", num_envs, most=_MOST_ENVIRONMENTS)
         self.is_dict = word("observation", observation, ("flat", "dict")) == "dict"
         self.people = count("people", people, least=0, most=_MOST_SEEN)

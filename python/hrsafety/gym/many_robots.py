@@ -18,11 +18,12 @@ from hrsafety._bounds import MOST_SIGHTINGS
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.gym.environments import ActionKind, Frame, turn_rate_of
 from hrsafety.gym.single import RENDER_MODES, CrowdEnv
-from hrsafety.gym.worlds import Task, doubts_of
+from hrsafety.gym.worlds import Task, doubts_of, task_of
 from hrsafety.navigation.crowd.agents import Robot
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.laws.situation import Situation
 from hrsafety.navigation.metrics.between import wrapped
+from hrsafety.navigation.place import Place
 from hrsafety.plausibility import telling
 
 __all__ = ["CrowdParallelEnv"]
@@ -122,7 +123,7 @@ class CrowdParallelEnv(ParallelEnv[str, Any, Action]):  # type: ignore[misc]  # 
 
     Parameters
     ----------
-    world : World or Task
+    world : World, Scenario or Task
         As of `parallel_env`.
     render_mode : {"rgb_array"} or None
         Whether pictures are asked for.
@@ -155,11 +156,9 @@ class CrowdParallelEnv(ParallelEnv[str, Any, Action]):  # type: ignore[misc]  # 
     }
 
     @telling(doubts_of)
-    def __init__(self, world: World | Task, *, render_mode: str | None = None, **options: Any) -> None:
+    def __init__(self, world: Place | Task, *, render_mode: str | None = None, **options: Any) -> None:
         """Make the environment."""
-        if not isinstance(world, (World, Task)):
-            raise InvalidParameterError("world", "be a World or Task", world)
-        task = Task(world=world) if isinstance(world, World) else world
+        task = task_of(world)
         driven = _driven(task.world)
         _check_size(task.world, len(driven))
         self.render_mode = render_mode

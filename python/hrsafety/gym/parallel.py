@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from hrsafety.errors import MissingExtraError
 from hrsafety.gym.worlds import Task
-from hrsafety.navigation.crowd.world import World
+from hrsafety.navigation.place import Place
 
 if TYPE_CHECKING:
     from hrsafety.gym.many_robots import CrowdParallelEnv
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 __all__ = ["parallel_env"]
 
 
-def parallel_env(world: World | Task, *, render_mode: str | None = None, **options: Any) -> CrowdParallelEnv:
+def parallel_env(world: Place | Task, *, render_mode: str | None = None, **options: Any) -> CrowdParallelEnv:
     """Return an environment in which a learner drives all robots of a world that have no law.
 
     Parameters
     ----------
-    world : World or Task
+    world : World, Scenario or Task
         Any world with robots; those that have a law follow it. The driven ones share a control period.
     render_mode : {"rgb_array"} or None
         Whether pictures are asked for.

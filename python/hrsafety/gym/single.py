@@ -15,8 +15,8 @@ from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.gym.environments import OUTCOMES, RUNNING, TIMED_OUT, Environments, Frame
 from hrsafety.gym.pictures import picture
 from hrsafety.gym.worlds import Task, doubts_of
-from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.metrics.declared import METRICS
+from hrsafety.navigation.place import Place
 from hrsafety.plausibility import telling
 
 __all__ = ["CrowdEnv"]
@@ -29,7 +29,7 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
 
     Parameters
     ----------
-    world : World or Task
+    world : World, Scenario or Task
         Any world with a robot, or the task of a registered environment. The first robot is driven; the others
         follow their laws.
     render_mode : {"rgb_array"} or None
@@ -85,7 +85,7 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
     metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES), "render_fps": 4}  # noqa: RUF012  # as Gymnasium has it
 
     @telling(doubts_of)
-    def __init__(self, world: World | Task, *, render_mode: str | None = None, **options: Any) -> None:
+    def __init__(self, world: Place | Task, *, render_mode: str | None = None, **options: Any) -> None:
         """Make the environment."""
         if render_mode is not None:
             word("render_mode", render_mode, RENDER_MODES)

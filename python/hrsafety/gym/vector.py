@@ -17,8 +17,8 @@ from hrsafety.gym.environments import OUTCOMES, RUNNING, TIMED_OUT, Environments
 from hrsafety.gym.pictures import picture
 from hrsafety.gym.single import RENDER_MODES
 from hrsafety.gym.worlds import Task, doubts_of
-from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.metrics.declared import METRICS
+from hrsafety.navigation.place import Place
 from hrsafety.plausibility import telling
 
 __all__ = ["CrowdVectorEnv"]
@@ -34,7 +34,7 @@ class CrowdVectorEnv(gymnasium.vector.VectorEnv[Any, npt.NDArray[np.float32], np
 
     Parameters
     ----------
-    world : World or Task
+    world : World, Scenario or Task
         As of `CrowdEnv`.
     num_envs : int
         How many.
@@ -69,7 +69,7 @@ class CrowdVectorEnv(gymnasium.vector.VectorEnv[Any, npt.NDArray[np.float32], np
     @telling(doubts_of)
     def __init__(
         self,
-        world: World | Task,
+        world: Place | Task,
         *,
         num_envs: int = 1,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,

@@ -11,7 +11,9 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.crowd.agents import Robot
 from hrsafety.navigation.crowd.pedestrians import Pedestrian
 from hrsafety.navigation.crowd.world import World
+from hrsafety.navigation.place import Place
 from hrsafety.navigation.robots.bodies import HolonomicRobot
+from hrsafety.navigation.scenario import Scenario
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Task", "bottleneck", "circle_crossing", "corridor", "crossing"]
@@ -28,7 +30,7 @@ class Task:
 
     Parameters
     ----------
-    world : World
+    world : World or Scenario
         People, walls, and the robot that is driven, the first one, without a law.
     circle : bool
         Whether starts and goals of the people are drawn on a circle anew for each episode.
@@ -49,7 +51,7 @@ class Task:
 
     def __post_init__(self) -> None:
         """Check the values."""
-        instance("world", self.world, World)
+        object.__setattr__(self, "world", World.of(instance("world", self.world, World, Scenario)))
         flag("circle", self.circle)
         if self.area is not None:
             rule = "be (low, high, level) or None"
@@ -60,11 +62,20 @@ class Task:
             object.__setattr__(self, "area", area)
 
 
+def task_of(given: object) -> Task:
+    """Return the task of driving the first robot of a world or scenario; a task as it is."""
+    if isinstance(given, Task):
+        return given
+    if not isinstance(given, Place):
+        raise InvalidParameterError("world", "be a World, Scenario or Task", given)
+    return Task(world=World.of(given))
+
+
 def doubts_of(_owner: object, *given: object, **named: object) -> Iterable[ResultWarning]:
     """Return the doubts about the world that an environment is made of."""
     made_of = given[0] if given else named.get("world")
     world = made_of.world if isinstance(made_of, Task) else made_of
-    return world.warnings if isinstance(world, World) else ()
+    return world.warnings if isinstance(world, Place) else ()
 
 
 def _corner(name: str, value: object) -> Pair:

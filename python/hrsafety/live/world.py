@@ -25,6 +25,7 @@ from hrsafety.live.settings import RANGES, LiveSettings, laws
 from hrsafety.navigation.controller import Controller, Sighting
 from hrsafety.navigation.crowd.agents import Person
 from hrsafety.navigation.crowd.world import World
+from hrsafety.navigation.place import Place
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot
 from hrsafety.navigation.run import Run
 from hrsafety.navigation.scenario import Scenario
@@ -55,7 +56,7 @@ class LiveWorld:
 
     Parameters
     ----------
-    world : World
+    world : World or Scenario
         With one robot.
     pace : float
         Seconds of the world in one of the wall; infinite to run as fast as it can.
@@ -66,7 +67,8 @@ class LiveWorld:
         If the world has not one robot, repeats itself, or its law cannot work in it.
     """
 
-    def __init__(self, world: World, *, pace: float = 1.0) -> None:
+    def __init__(self, world: Place, *, pace: float = 1.0) -> None:
+        world = World.of(world)
         if len(world.robots) != 1:
             raise InvalidParameterError("world.robots", "be one robot", len(world.robots))
         self._world, self._pace = world, pace

@@ -54,6 +54,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.navigation.obstacles.moving_rectangle import MovingRectangle as MovingRectangle
     from hrsafety.navigation.obstacles.standing import Disc as Disc, Rectangle as Rectangle
     from hrsafety.navigation.performance import Performance as Performance
+    from hrsafety.navigation.place import Place as Place
     from hrsafety.navigation.pursuits import falsify as falsify
     from hrsafety.navigation.regions import Regions as Regions, region_radii as region_radii
     from hrsafety.navigation.robots.bodies import (

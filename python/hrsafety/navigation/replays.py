@@ -23,7 +23,7 @@ from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.robots.bodies import HolonomicRobot
 from hrsafety.navigation.sensing.lidar import Lidar
 
-__all__ = ["replay_of_record", "replay_of_run"]
+__all__ = ["replay_of_record", "replay_of_run", "walls_of"]
 
 Run = Any
 """A `Trajectory`."""
@@ -48,9 +48,10 @@ def replay_of_run(run: Run, decisions: Decisions | None = None) -> Replay:
     scene = run.scenario
     of_world = hasattr(scene, "people")
     bodies = _people(run) if of_world else _moving(run)
-    maps = [*_walls(scene), *maps_around(run)] if of_world else [*maps_around(run), *_standing(run)]
+    maps = [*walls_of(scene), *maps_around(run)] if of_world else [*maps_around(run), *_standing(run)]
+    decider = run.robot if decisions is not None else None
     robots = [
-        _robot(own, index, maps, bodies, of_world=of_world, decisions=decisions if index == 0 else None)
+        _robot(own, index, maps, bodies, of_world=of_world, decisions=decisions if index == decider else None)
         for index, own in enumerate(run.robots)
     ]
     columns = [column for column, *_ in bodies]
@@ -78,7 +79,7 @@ def replay_of_record(record: Record) -> Replay:
     """Return what a player shows of a run with the decisions of its parts."""
     run, made = record.trajectory, record.decisions
     shielded, guided = record.law.shield is not None, record.law.guide is not None
-    columns = [column for column, *_ in _moving(run)]
+    columns = [column for column, *_ in (_people(run) if hasattr(run.scenario, "people") else _moving(run))]
     decisions = Decisions(
         time=np.array([each.time for each in made]),
         verdict=[_verdict(each.status, taken_over=each.taken_over, shielded=shielded) for each in made],
@@ -162,8 +163,8 @@ def _standing(run: Run) -> list[StaticMap]:
     return [StaticMap.from_obstacles(solid), *walls] if solid else walls
 
 
-def _walls(world: Any) -> list[StaticMap]:
-    """Return what stands in a world."""
+def walls_of(world: Any) -> list[StaticMap]:
+    """Return what stands in a world, as maps."""
     if isinstance(world.walls, StaticMap):
         return [world.walls]
     solid = [each for each in world.walls if isinstance(each, Disc | Rectangle)]

@@ -9,12 +9,13 @@ from dataclasses import field, fields
 from typing import Any
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Pair, Parameters, assign, instance, pair, sequence
+from hrsafety._arguments import Pair, assign, instance, pair, sequence
 from hrsafety._doubts import checked_doubts
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles.base import Obstacle
+from hrsafety.navigation.place import Place
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.navigation.warnings import scenarios as scenario_warnings
@@ -24,7 +25,7 @@ __all__ = ["Scenario"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Scenario(Parameters):
+class Scenario(Place):
     """A robot that starts at rest, its goal, and what stands or walks between them.
 
     Parameters

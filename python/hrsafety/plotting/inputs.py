@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from hrsafety._arguments import word
 from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.navigation.crowd.as_scenario import run_in_scenario, scenario_at_start
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import OPTIONAL_COLUMNS, Trajectory
@@ -24,13 +25,12 @@ def some(name: str, given: object, what: str) -> None:
         raise InvalidParameterError(name, f"hold at least one {what}", Shown("none"))
 
 
-def checked_trajectory(name: str, value: object) -> Trajectory:
-    """Return ``value`` if it is a trajectory."""
+def checked_trajectory(name: str, value: object, columns: Sequence[str] = ()) -> Trajectory:
+    """Return ``value`` if it is a trajectory; of a world as its robot has it, with the columns that are asked for."""
     if not isinstance(value, Trajectory):
         raise InvalidParameterError(name, "be a Trajectory", Shown(type(value).__name__))
     if isinstance(value.scenario, World):
-        remedy = "`plotting.crowds` draws worlds"
-        raise InvalidParameterError(name, "be the run of a scenario", Shown("the run of a world"), remedy)
+        return _of_world(name, value, columns)
     if value.scenario is None:
         remedy = "`plotting.robots.tracking_paths` and `tracking_errors` draw it"
         raise InvalidParameterError(name, "be the run of a scenario", Shown("a run after a reference"), remedy)
@@ -41,20 +41,39 @@ def checked_trajectory(name: str, value: object) -> Trajectory:
     return value
 
 
-def checked_runs(trajectories: Trajectory | Sequence[Trajectory]) -> list[Trajectory]:
+def _of_world(name: str, run: Trajectory, columns: Sequence[str]) -> Trajectory:
+    """Return the run of a world as that of a scenario whose obstacles are people and robots as they went."""
+    remedy = "`plotting.crowds` draws worlds"
+    if columns:
+        found = Shown(f"the run of a world, which has no {', '.join(columns)}")
+        raise InvalidParameterError(name, "be the run of a scenario", found, remedy)
+    robots = len(run.scenario.robots)
+    if run.scenario.period != (0.0, 0.0):
+        raise InvalidParameterError(name, "be of a world that does not repeat itself", run.scenario.period, remedy)
+    if getattr(run, "position", None) is None:
+        advice = "take run.robots[i]" if robots else remedy
+        raise InvalidParameterError(name, "be that of one robot", Shown(f"a world with {robots} robots"), advice)
+    return run_in_scenario(run)
+
+
+def checked_runs(trajectories: Trajectory | Sequence[Trajectory], columns: Sequence[str] = ()) -> list[Trajectory]:
     """Return one or several trajectories as a list."""
     if isinstance(trajectories, Trajectory):
-        return [checked_trajectory("trajectories", trajectories)]
+        return [checked_trajectory("trajectories", trajectories, columns)]
     if isinstance(trajectories, (str, bytes)) or not isinstance(trajectories, Sequence):
         requirement = "be a Trajectory or a sequence of them"
         raise InvalidParameterError("trajectories", requirement, Shown(type(trajectories).__name__))
     if len(trajectories) == 0:
         raise InvalidParameterError("trajectories", "hold at least one Trajectory", Shown("an empty sequence"))
-    return [checked_trajectory(f"trajectories[{i}]", run) for i, run in enumerate(trajectories)]
+    return [checked_trajectory(f"trajectories[{i}]", run, columns) for i, run in enumerate(trajectories)]
 
 
 def checked_scenario(value: object) -> Scenario:
-    """Return ``value`` if it is a scenario."""
+    """Return ``value`` if it is a scenario; a world of one robot as it starts."""
+    if isinstance(value, World):
+        if len(value.robots) != 1:
+            raise InvalidParameterError("scenario.robots", "be one to be drawn", Shown(str(len(value.robots))))
+        return scenario_at_start(value)
     if not isinstance(value, Scenario):
         raise InvalidParameterError("scenario", "be a Scenario", Shown(type(value).__name__))
     return value

@@ -27,12 +27,16 @@ _ROUND = 17  # points of half a circle
 
 
 def maps_of(runs: Iterable[Trajectory]) -> list[StaticMap]:
-    """Return the different maps that the laws and lidars of runs know."""
+    """Return the different maps that stand in the scenarios of runs, and that their laws and lidars know."""
     found: list[StaticMap] = []
     for run in runs:
         built = getattr(run, "built", None)
         sensors = () if built is None else built.sensors
-        known = [getattr(run.law, "map", None), *(each.map for each in sensors if isinstance(each, Lidar))]
+        known = [
+            getattr(run.scenario, "walls", None),
+            getattr(run.law, "map", None),
+            *(each.map for each in sensors if isinstance(each, Lidar)),
+        ]
         found += [each for each in known if isinstance(each, StaticMap) and each not in found]
     return found
 

@@ -15,6 +15,7 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
+from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.ros import messages
 from hrsafety.ros.base import MovingBase, limits_of
@@ -128,7 +129,7 @@ class Bridge:
 
     Parameters
     ----------
-    world : World
+    world : World or Scenario
         One robot, whose law drives nothing, its goal, walls, people. A person who reacts to robots reacts to it.
     bus : Bus
         Where topics are published.
@@ -148,8 +149,8 @@ class Bridge:
     ...     run = ros.Bridge(scenarios.load_world("hall.toml"), bus).run()
     """
 
-    def __init__(self, world: World, bus: Bus, settings: Settings | None = None) -> None:
-        self._world = instance("world", world, World)
+    def __init__(self, world: World | Scenario, bus: Bus, settings: Settings | None = None) -> None:
+        self._world = world = World.of(instance("world", world, World, Scenario))
         if len(world.robots) != 1:
             raise InvalidParameterError("world.robots", "be one robot", len(world.robots))
         self._bus = bus

@@ -306,3 +306,15 @@ def test_options_that_are_no_mapping_are_refused_by_name() -> None:
     for env in (one_person(), gymnasium.make_vec(CIRCLE, num_envs=3)):
         with pytest.raises(InvalidParameterError, match="options must be a mapping or None, got 3"):
             env.reset(options=3)  # type: ignore[arg-type, call-overload]  # what is tried
+
+
+def test_a_learner_drives_the_robot_of_a_scenario() -> None:
+    scene = nav.Scenario(start=(0, 0), goal=(3, 0), obstacles=[nav.Human(start=(1.5, 2.0), velocity=(0.0, -0.2))])
+    env = gym.CrowdEnv(scene, people=1)
+    seen, _ = env.reset(seed=0)
+    assert seen[6:8].tolist() == pytest.approx([1.5, 2.0])
+    ended, outcome = False, ""
+    while not ended:
+        _, _, terminated, truncated, info = env.step([1.0, 0.0])
+        ended, outcome = terminated or truncated, info["outcome"]
+    assert outcome == "arrived"

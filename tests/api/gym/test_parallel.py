@@ -142,7 +142,7 @@ def test_bad_input_is_named() -> None:
         gym.parallel_env(world(robot(0, law)))
     with pytest.raises(InvalidParameterError, match=r"world.robots\[1\].control_period must share"):
         gym.parallel_env(world(robot(0), robot(1, period=0.5)))
-    with pytest.raises(InvalidParameterError, match="world must be a World or Task"):
+    with pytest.raises(InvalidParameterError, match="world must be a World, Scenario or Task"):
         gym.parallel_env(robot(0))  # type: ignore[arg-type]  # wrong on purpose
     for options in ({"action": "velocty"}, {"max_turn_rate": 0.0}, {"max_acceleration": -1.0}, {"lidar": -1}):
         with pytest.raises(InvalidParameterError, match=f"{next(iter(options))} must"):

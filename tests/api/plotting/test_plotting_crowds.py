@@ -193,7 +193,7 @@ def test_an_animation_holds_every_frame(tmp_path: Path) -> None:
         (lambda run, _: plotting.crowds.crowd_paths(run.scenario), "run must be the Trajectory of a World"),
         (lambda run, _: plotting.crowds.space_time(run, along=(0.0, 0.0)), "along must be a direction"),
         (lambda run, path: plotting.crowds.animate_crowd(run, path / "a.avi"), "path must end in"),
-        (lambda run, path: plotting.animate(run, path / "a.gif"), "trajectory must be the run of a scenario.*crowds"),
+        (lambda run, _: plotting.lyapunov(run), "trajectories must be the run of a scenario.*crowds"),
     ],
 )
 def test_bad_input_is_named(call: Callable[..., Any], message: str, tmp_path: Path) -> None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import field
 from typing import Any
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Pair, Parameters, checked_seed, instance, pair, sequence
+from hrsafety._arguments import Pair, checked_seed, instance, pair, sequence
 from hrsafety._doubts import checked_doubts
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
@@ -19,9 +20,16 @@ from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles.base import Obstacle
 from hrsafety.navigation.obstacles.moving import Human, MovingDisc
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
+from hrsafety.navigation.place import Place
+from hrsafety.navigation.scenario import Scenario
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["WallShape", "World", "native_walls"]
+
+_STEP = 0.01
+"""Longest step of the world of a scenario, in s."""
+_FARTHEST = 1e6
+"""How far the robot of a scenario sees, in m."""
 
 Polyline = tuple[Pair, ...]
 WallShape = Disc | Rectangle | Polyline
@@ -72,7 +80,7 @@ def _movers(obstacles: object) -> tuple[list[Person], list[Disc | Rectangle]]:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class World(Parameters):
+class World(Place):
     """People and robots that react to each other, and whatever else moves or stands.
 
     At every instant sources add people, everybody decides from the same snapshot, and all move by a step.
@@ -195,6 +203,58 @@ class World(Parameters):
                 rule = "not be in contact with the walls"
                 remedy = f"the bodies overlap by {-gap:.4f} m"
                 raise InvalidParameterError(f"robots[{index}].start", rule, robot.start, remedy)
+
+    @classmethod
+    def of(cls, place: Place) -> World:
+        """Return a place as a world.
+
+        Parameters
+        ----------
+        place : Scenario or World
+            The place.
+
+        Returns
+        -------
+        World
+            Of a scenario one robot, its moving obstacles as people who do not react, and what stands as walls, which
+            beside a map are a part of it. Everybody moves in steps of at most 0.01 s, and the robot sees as far as
+            it has to; regions are those that a world has, and a robot at rest does not end the run. A world is itself.
+
+        Raises
+        ------
+        InvalidParameterError
+            If it is no place, or a rectangle moves, which worlds do not have.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav, scenarios
+        >>> [person.reacts for person in nav.World.of(scenarios.configuration("c2")).people]
+        [False]
+        """
+        if isinstance(place, World):
+            return place
+        if not isinstance(place, Scenario):
+            raise InvalidParameterError("place", "be a Scenario or World", place)
+        period = place.control_period
+        robot = Robot(
+            place.robot,
+            start=place.start,
+            goal=place.goal,
+            control_period=period,
+            arrival_tolerance=place.arrival_tolerance,
+            heading=place.heading,
+            sensing_range=_FARTHEST,
+            measurement=place.measurement,
+        )
+        return cls(
+            robots=[robot],
+            obstacles=place.obstacles,
+            walls=() if place.walls is None else place.walls,
+            step=period / math.ceil(period / _STEP - 1e-9),
+            time_limit=place.time_limit,
+            seed=place.seed,
+            doubts=place.doubts,
+        )
 
     @property
     def wall_shapes(self) -> tuple[WallShape, ...]:

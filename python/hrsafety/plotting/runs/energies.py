@@ -57,7 +57,7 @@ def energy(
     >>> [axes.get_ylabel() for axes in plotting.energy(run).axes]
     ['current (A)', 'loss (J)']
     """
-    runs = inputs.checked_runs(trajectories)
+    runs = inputs.checked_runs(trajectories, ["wheel_current"])
     names = inputs.checked_labels(labels, len(runs), stem="robot" if len(runs) == 1 else "run")
     figure = style.new_figure(0.7 + 2.2 * (len(runs) + 1), title=title)
     panels = figure.subplots(len(runs) + 1, 1, sharex=True)

@@ -134,7 +134,7 @@ def force_field(
     from matplotlib.colors import LogNorm
 
     grid = checked_grid(field)
-    inputs.checked_scenario(scenario)
+    scenario = inputs.checked_scenario(scenario)
     places = _checked_places(scenario, obstacle_position)
     if term not in FORCE_TERMS:
         raise InvalidParameterError("term", f"be one of {', '.join(FORCE_TERMS)}", term)
@@ -290,7 +290,7 @@ def potential_valley(
     >>> figure = plotting.potential_valley(field, scene, term="repulsive")
     """
     grid = checked_grid(field)
-    inputs.checked_scenario(scenario)
+    scenario = inputs.checked_scenario(scenario)
     places = _checked_places(scenario, obstacle_position)
     if term not in {"potential", "repulsive"}:
         raise InvalidParameterError("term", "be potential or repulsive", term)

@@ -213,7 +213,7 @@ def lyapunov(
     """
     from matplotlib.patches import Patch
 
-    runs = inputs.checked_runs(trajectories)
+    runs = inputs.checked_runs(trajectories, ["lyapunov"])
     names = inputs.checked_labels(labels, len(runs), stem="robot" if len(runs) == 1 else "run")
     figure, axes = style.one_panel(3.8, title=title)
     gaps = False

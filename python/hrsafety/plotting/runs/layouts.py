@@ -9,13 +9,15 @@ import numpy as np
 
 from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.obstacles.moving_rectangle import Mobile
-from hrsafety.plotting import floor, inputs, notes, shapes, style
+from hrsafety.plotting import floor, inputs, notes, shapes, style, walls
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from hrsafety.navigation.crowd.world import World
+    from hrsafety.navigation.maps.static_map import StaticMap
     from hrsafety.navigation.obstacles.base import Obstacle
     from hrsafety.navigation.scenario import Scenario
 
@@ -27,7 +29,7 @@ SLOWEST_WITH_DIRECTION = 0.02  # m/s, below which an arrow would point anywhere
 
 
 @notes.picture
-def layout(scenario: Scenario, *, regions: bool = True, title: str | None = None) -> Figure:
+def layout(scenario: Scenario | World, *, regions: bool = True, title: str | None = None) -> Figure:
     """Draw a scenario before any run: start, goal, obstacles, and how they will move.
 
     An arrow at a moving obstacle shows the way of one second at its initial velocity, a
@@ -37,8 +39,8 @@ def layout(scenario: Scenario, *, regions: bool = True, title: str | None = None
 
     Parameters
     ----------
-    scenario : Scenario
-        What to draw.
+    scenario : Scenario or World
+        What to draw; a world of one robot as it starts.
     regions : bool
         Whether active and critical regions are drawn.
     title : str or None
@@ -52,7 +54,7 @@ def layout(scenario: Scenario, *, regions: bool = True, title: str | None = None
     Raises
     ------
     InvalidParameterError
-        If ``scenario`` is not a Scenario.
+        If ``scenario`` is neither, or a world has not one robot.
     MissingExtraError
         If matplotlib is not installed.
 
@@ -62,10 +64,11 @@ def layout(scenario: Scenario, *, regions: bool = True, title: str | None = None
     >>> len(plotting.layout(scenarios.configuration("c4")).axes)
     1
     """
-    inputs.checked_scenario(scenario)
+    given, scenario = scenario, inputs.checked_scenario(scenario)
     limits = _limits_of_layout(scenario, regions=regions)
     handles = _layout_handles(scenario, regions=regions)
     figure, (axes,) = floor.panels(limits, entries=len(handles), title=title)
+    walls.add_maps(axes, _maps(scenario))
     axes.plot(*zip(scenario.start, scenario.goal, strict=True), color="#B0B0B0", linewidth=1.0, zorder=1.5)
     for obstacle, look in zip(scenario.obstacles, shapes.looks(scenario.obstacles), strict=True):
         place = shapes.first_position(obstacle)
@@ -76,7 +79,12 @@ def layout(scenario: Scenario, *, regions: bool = True, title: str | None = None
             _draw_motion(axes, obstacle, look.color)
     shapes.add_robot(axes, scenario, scenario.start, style.RUN_COLORS[0])
     shapes.add_start_and_goal(axes, scenario)
-    return floor.finish(figure, handles, runs=[scenario])
+    return floor.finish(figure, handles, runs=[given])
+
+
+def _maps(scenario: Scenario) -> list[StaticMap]:
+    """Return the walls of a scenario."""
+    return [] if scenario.walls is None else [scenario.walls]
 
 
 def _shows_regions(scenario: Scenario, obstacle: Obstacle) -> bool:
@@ -108,7 +116,7 @@ def _arrow(obstacle: Mobile) -> list[tuple[float, float]]:
 
 def _limits_of_layout(scenario: Scenario, *, regions: bool) -> style.Limits:
     """Return limits that hold start, goal, obstacles and, of few obstacles, their ways."""
-    points: list[Any] = [scenario.start, scenario.goal]
+    points: list[Any] = [scenario.start, scenario.goal, *walls.points_of(_maps(scenario))]
     for obstacle in scenario.obstacles:
         place = shapes.first_position(obstacle)
         active, critical = shapes.region_radii(obstacle)
@@ -145,7 +153,7 @@ def _layout_handles(scenario: Scenario, *, regions: bool) -> list[Artist]:
     robot: style.Properties = {"marker": "o", "markersize": 10, "color": style.RUN_COLORS[0], "linestyle": "none"}
     handles: list[Artist] = [Line2D([], [], label="robot", **robot), *shapes.start_and_goal_handles()]
     shown = regions and any(_shows_regions(scenario, obstacle) for obstacle in scenario.obstacles)
-    handles += shapes.obstacle_handles(scenario.obstacles, regions=shown)
+    handles += walls.handles(_maps(scenario)) + shapes.obstacle_handles(scenario.obstacles, regions=shown)
     if any(shapes.is_mobile(obstacle) for obstacle in scenario.obstacles):
         arrow: style.Properties = {"marker": ">", "color": "black", "markersize": 7, "markevery": [1]}
         handles.append(Line2D([0, 1], [0, 0], label="way of 1 s", **arrow))
