@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hrsafety._arguments import callback
+from hrsafety._arguments import callback, positive
 from hrsafety.plotting import floor, movies, notes, style
 from hrsafety.plotting.crowds import world_scenes
 
@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 __all__ = ["animate_crowd"]
 
 DPI = 85
+TRAIL_TIME = 2.0  # s of the ways of people that fade behind them
+LONGEST_STEP = 1.0  # m between two rows, beyond which a person has not walked
+FLASH_TIME = 0.6  # s for which a contact is ringed
 
 
 @notes.picture
@@ -32,14 +35,15 @@ def animate_crowd(
     *,
     frames_per_second: float = 20,
     speed: float = 1.0,
+    end: float | None = None,
     color_by: str = "model",
     title: str | None = None,
     progress: Callable[[int, int], object] | None = None,
 ) -> Path:
     """Write an animation of a world to a GIF or MP4 file.
 
-    Shown are walls, people, robots with their trails, goals, contacts and a clock. The file appears under its
-    name only when it is complete.
+    Shown are walls, people with the last two seconds of their ways, robots with their ways and headings, goals,
+    contacts and a clock. The file appears under its name only when it is complete.
 
     Parameters
     ----------
@@ -51,6 +55,8 @@ def animate_crowd(
         Frames in a second of viewing time; at most 50 for a GIF.
     speed : float
         Simulated time over viewing time: 2 plays twice as fast.
+    end : float or None
+        Last instant that is shown, in s; of the whole run if None.
     color_by : {"model", "group"}
         What the colors of people tell.
     title : str or None
@@ -86,8 +92,9 @@ def animate_crowd(
     run = world_scenes.checked_crowd(run)
     kinds = world_scenes.kinds_of_people(run, color_by)
     target = movies.checked_target(path)
-    instants = movies.checked_instants(target, float(run.time[-1]), frames_per_second, speed)
-    rows = [*(int(np.abs(run.time - instant).argmin()) for instant in instants), len(run.time) - 1]
+    until = float(run.time[-1]) if end is None else min(positive("end", end), float(run.time[-1]))
+    instants = movies.checked_instants(target, until, frames_per_second, speed)
+    rows = [int(np.abs(run.time - instant).argmin()) for instant in (*instants, until)]
     frames = _frames(run, rows, kinds, title=title)
     movies.write(target, movies.counted(frames, len(rows), callback("progress", progress)), frames_per_second)
     return target
@@ -103,21 +110,27 @@ class _Stage:
             _circle(axes, radius, colors[kind], 3.2)
             for kind, radius in zip(kinds, run.obstacle_radius.tolist(), strict=True)
         ]
+        self.ways = _FadingWays(axes, run, place, [colors[kind] for kind in kinds])
         looks = [str(look["color"]) for look in world_scenes.robot_looks(len(run.scenario.robots))]
         self.trails = [axes.plot([], [], color=color, linewidth=2.0, zorder=4.0, animated=True)[0] for color in looks]
         self.robots = [
             _circle(axes, robot.body.radius, color, 5.0)
             for robot, color in zip(run.scenario.robots, looks, strict=True)
         ]
+        arrow: style.Properties = {"color": "white", "linewidth": 1.6, "zorder": 5.5, "animated": True}
+        self.headings = [axes.plot([], [], **arrow)[0] for _ in run.scenario.robots]
         self.touched = world_scenes.contacts(run)
         self.contacts = axes.plot([], [], zorder=7.0, animated=True, **floor.CONTACT)[0]
-        box: style.Properties = {"boxstyle": "round,pad=0.25", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
-        where: style.Properties = {"x": 0.015, "y": 0.975, "transform": axes.transAxes, "ha": "left", "va": "top"}
-        self.clock = axes.text(s="", **where, bbox=box, fontsize=style.FONT_SIZE + 1, zorder=9.0, animated=True)
+        ring: style.Properties = {"linestyle": "", "marker": "o", "markersize": 34, "markerfacecolor": "none"}
+        color = style.CONTACT_COLOR
+        self.flash = axes.plot([], [], zorder=7.0, animated=True, markeredgecolor=color, markeredgewidth=2.5, **ring)[0]
+        where: style.Properties = {"x": 1.0, "y": 1.01, "transform": axes.transAxes, "ha": "right", "va": "bottom"}
+        self.clock = axes.text(s="", **where, fontsize=style.FONT_SIZE + 1, zorder=9.0, animated=True)
 
     def artists(self) -> list[Artist]:
         """Return everything that moves, from back to front."""
-        return [*self.people, *self.trails, *self.robots, self.contacts, self.clock]
+        moving = [self.ways.lines, *self.people, *self.trails, *self.robots, *self.headings]
+        return [*moving, self.contacts, self.flash, self.clock]
 
     def show(self, row: int) -> None:
         """Put everything where it is at one row of the run."""
@@ -127,12 +140,49 @@ class _Stage:
             body.set_visible(present)
             if present:
                 body.set_center(where)
+        self.ways.show(row)
         for index, (body, trail) in enumerate(zip(self.robots, self.trails, strict=True)):
-            body.set_center(run.robot_position[row, index])
+            center = run.robot_position[row, index]
+            body.set_center(center)
             trail.set_data(*run.robot_position[: row + 1, index].T)
+            angle, radius = run.robot_heading[row, index], body.get_radius()
+            ahead = center + radius * np.array([np.cos(angle), np.sin(angle)])
+            self.headings[index].set_data(*np.stack([center, ahead]).T)
         places = [run.robot_position[instant, robot] for instant, robot in self.touched if instant <= row]
         self.contacts.set_data(*np.array(places).reshape(-1, 2).T)
+        since = run.time[row] - FLASH_TIME
+        now = [
+            run.robot_position[row, robot]
+            for instant, robot in self.touched
+            if since <= run.time[instant] <= run.time[row]
+        ]
+        self.flash.set_data(*np.array(now).reshape(-1, 2).T)
         self.clock.set_text(f"{run.time[row]:5.2f} s")
+
+
+class _FadingWays:
+    """Ways of the people behind them, which fade with time."""
+
+    def __init__(self, axes: Axes, run: Trajectory, place: world_scenes.Floor, colors: Sequence[str]) -> None:
+        from matplotlib.collections import LineCollection
+        from matplotlib.colors import to_rgb
+
+        self.run, self.place = run, place
+        self.colors = np.array([to_rgb(color) for color in colors]).reshape(-1, 3)
+        self.lines = axes.add_collection(LineCollection([], linewidth=1.6, zorder=3.0, animated=True), autolim=False)
+
+    def show(self, row: int) -> None:
+        """Put the ways behind the people of one row of the run."""
+        time = self.run.time
+        first = int(np.searchsorted(time, time[row] - TRAIL_TIME))
+        ways = np.stack([self.place.wrapped(places) for places in self.run.obstacle_position[first : row + 1]])
+        pieces = np.stack([ways[:-1], ways[1:]], axis=2)  # instant, person, end, axis
+        kept = np.hypot(*np.moveaxis(pieces[:, :, 1] - pieces[:, :, 0], -1, 0)) < LONGEST_STEP  # False for the absent
+        fade = (time[first + 1 : row + 1] - time[row] + TRAIL_TIME) / TRAIL_TIME
+        looks = np.empty((*kept.shape, 4))
+        looks[..., :3], looks[..., 3] = self.colors, 0.7 * fade[:, np.newaxis]
+        self.lines.set_segments(list(pieces[kept]))
+        self.lines.set_color(looks[kept])
 
 
 def _circle(axes: Axes, radius: float, color: str, zorder: float) -> Any:
@@ -148,8 +198,8 @@ def _background(
 ) -> tuple[Figure, Axes]:
     """Return a figure with everything that does not move."""
     handles = _handles(run, kinds)
-    height = style.scene_height(place.limits, titled=title is not None, legend_rows=-(-len(handles) // 3))
-    figure, axes = style.one_panel(height, title=title, dpi=DPI, compressed=True)
+    height = style.scene_height(place.limits, titled=True, legend_rows=-(-len(handles) // 3))
+    figure, axes = style.one_panel(height, title=title or " ", dpi=DPI, compressed=True)  # the clock stands beside it
     style.frame_scene(axes, place.limits)
     world_scenes.add_walls(axes, run.scenario, place)
     world_scenes.add_goals(axes, run.scenario)

@@ -63,6 +63,10 @@ def checked_crowd(value: object) -> Trajectory:
 # ---- who has which color --------------------------------------------------------------------
 
 
+_MODEL = "person, "
+"""Beginning of the words of a model, which stand in a legend where there are several models."""
+
+
 def kinds_of_people(run: Trajectory, color_by: str) -> list[str]:
     """Return for each person of a run the words of the legend: model or group."""
     grouped = word("color_by", color_by, COLORINGS) == "group"
@@ -83,7 +87,7 @@ def _model(owner: Person | Source) -> str:
         return "recorded person"
     if getattr(owner, "mover", None) is not None:
         return "moves as told"
-    return f"person, {owner.model.TITLE}"
+    return f"{_MODEL}{owner.model.TITLE}"
 
 
 def color_of(kinds: Iterable[str]) -> dict[str, str]:
@@ -96,9 +100,11 @@ def color_of(kinds: Iterable[str]) -> dict[str, str]:
 def people_handles(kinds: Sequence[str]) -> list[Artist]:
     """Return an entry of the legend for each color of people."""
     colors = color_of(kinds)
+    models = [kind for kind in colors if kind.startswith(_MODEL)]
+    short = {kind: "person" for kind in models if len(models) == 1}
     named: dict[str, list[str]] = {}
     for kind in dict.fromkeys(kinds):
-        named.setdefault(colors[kind], []).append(kind)
+        named.setdefault(colors[kind], []).append(short.get(kind, kind))
     look: style.Properties = {"marker": "o", "markersize": 9, "alpha": 0.8}
     return [floor.handle(", ".join(names), color=color, **look) for color, names in named.items()]
 
