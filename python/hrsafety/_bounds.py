@@ -66,7 +66,7 @@ MOST_DRAWS = 10**6
 MOST_LAYOUTS = 10**7
 # Seeds of repeated runs, of noise in a search, of a calibration study.
 MOST_SEEDS = 10**6
-# Pairs of a robot under a law and a person whom it may see, in all worlds together: 300 bytes each.
+# Pairs of a robot under a law and a person in its sight, in all worlds together: 300 bytes each.
 MOST_SIGHTINGS = 10**7
 # Rows of a table of runs: about half a kilobyte each while it is made.
 MOST_TABLE_ROWS = 10**7

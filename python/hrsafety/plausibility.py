@@ -175,7 +175,7 @@ def _kinds(found: Iterable[ResultWarning]) -> Iterable[str]:
 
 
 def _is_user(module: object) -> bool:
-    """Return whether code of a module is told of doubts: outside of the package, and not at work for a pool."""
+    """Return whether code of a module is notified of doubts: outside of the package, and not at work for a pool."""
     if str(module).partition(".")[0] == _PACKAGE or threading.current_thread() is not threading.main_thread():
         return False
     process = sys.modules.get("multiprocessing.process")

@@ -1,4 +1,4 @@
-"""Arms from URDF: the mass that a point of an arm has for whom it hits, by pose and direction."""
+"""Arms from URDF: the mass that a point of an arm has for the person it hits, by pose and direction."""
 
 from typing import TYPE_CHECKING
 

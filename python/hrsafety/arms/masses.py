@@ -46,7 +46,7 @@ class Extremes(NamedTuple):
 @displayed
 @dataclass(frozen=True, slots=True, eq=False)
 class EffectiveMass:
-    """Masses of a point of an arm for whom it hits, with the doubts about them.
+    """Masses of a point of an arm for the person it hits, with the doubts about them.
 
     Parameters
     ----------

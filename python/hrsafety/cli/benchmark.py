@@ -80,8 +80,7 @@ def _write(options: argparse.Namespace, result: Result, report: Report, place: P
     ]
     failed = list(_failures(options, result))
     sections = [*report.sections, *([Section("Episodes that did not succeed", failed)] if failed else [])]
-    whole = replace(report, sections=sections, files=[path.name for path in tables])
-    return [*tables, output.write_text(place / f"{stem}.html", whole.page())]
+    return output.write_report(replace(report, sections=sections), place, (), tables, stem)
 
 
 def _failures(options: argparse.Namespace, result: Result) -> Iterator[Picture | PlayerPage]:

@@ -501,7 +501,7 @@ class Recording(Played):
     def lost_near(
         self, run: nav.Trajectory, *, start_time: float, person_radius: float = 0.4
     ) -> tuple[ResultWarning, ...]:
-        """Return doubts about people whom a robot may have touched while they were not seen.
+        """Return doubts about people that a robot may have touched while they were not seen.
 
         Before the first and after the last row a person is absent. Who vanishes in the middle of the scene may still be
         there: within 1.6 m/s of the last place for 2 s, and likewise before the first one.

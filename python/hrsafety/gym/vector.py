@@ -179,7 +179,7 @@ class CrowdVectorEnv(gymnasium.vector.VectorEnv[Any, npt.NDArray[np.float32], np
         return self._all.shown(self._all.observations, self._all.seen[:, 0])
 
     def _infos(self, those: Flags) -> dict[str, Any]:
-        """Return what is told of those at the start of an episode."""
+        """Return the information about those at the start of an episode."""
         outcomes = np.where(those, OUTCOMES[RUNNING], None)
         return {
             "outcome": outcomes,

@@ -389,7 +389,7 @@ class LiveWorld:
         self._after = self._run.step(velocity=(0.0, 0.0)) if command.arrived else self._run.step(command.force)
 
     def _measured(self, time: float) -> tuple[dict[Hashable, Sighting], list[int]]:
-        """Return what the robot is told of people now, and who has left its sight."""
+        """Return the measured people of the robot now, and those who have left its sight."""
         settings, here = self.settings, self._before.position
         self._past.append((time, {number: (place, velocity) for number, (place, velocity, _) in self._seen.items()}))
         while len(self._past) > 1 and self._past[1][0] <= time - settings.delay + 1e-9:

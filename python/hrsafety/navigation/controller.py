@@ -166,7 +166,7 @@ class Controller:
         return _hrsafety.Controller(scenario._native, self._law._native, lidar, _latency(self._law))
 
     def _refuted(self, now: float, told: Mapping[Hashable, Told]) -> dict[str, tuple[Hashable, ...]]:
-        """Return for whom measurements refute what the shield assumes, by the fields of the command."""
+        """Return the people whose measurements refute what the shield assumes, by the fields of the command."""
         found: dict[str, tuple[Hashable, ...]] = dict.fromkeys(_OF_PEOPLE, ())
         if self._measured is None:
             return found
@@ -361,7 +361,7 @@ _NOTHING: Mapping[str, Any] = {
 
 
 _OF_PEOPLE = ("faster", "accelerated", "velocity_off")
-"""Fields of a command that name people for whom measurements refute something."""
+"""Fields of a command that name people whose measurements refute something."""
 
 
 def _assumed(shield: Shield | None) -> tuple[str, ...]:

@@ -117,7 +117,7 @@ class NamedPeople:
     def _matched(
         self, now: float, told: Mapping[Hashable, Told], new: list[Hashable], missing: list[Hashable]
     ) -> dict[Hashable, Hashable]:
-        """Return who of those who are new can be whom of those who are missing, the nearest first."""
+        """Return which new people can be which missing ones, the nearest first."""
         pairs = []
         for row, name in enumerate(new):
             position, _, time = told[name]
@@ -138,7 +138,7 @@ class NamedPeople:
     def _index(self, name: Hashable, told: Mapping[Hashable, Told], present: list[bool]) -> int:
         """Return the place of a person in the core, a free one for who is new.
 
-        Who is told of in the same update keeps his place, though the core does not know of him yet.
+        A person of the same update keeps his place, though the core does not know of him yet.
         """
         if name in self._known:
             return self._known[name].slot

@@ -374,7 +374,7 @@ def _most(most: float | None, scenario: Scenario) -> float:
 
 
 def _with_person(scenario: Scenario, radius: float, speed: float) -> Scenario:
-    """Return the scenario with one more person, whom the episodes place."""
+    """Return the scenario with one more person, placed by the episodes."""
     person = MovingDisc(center=(FAR, FAR), velocity=(speed, 0.0), radius=radius)
     return replace(scenario, obstacles=(*scenario.obstacles, person))
 

@@ -114,7 +114,7 @@ def simulate(
     Returns
     -------
     Trajectory
-        The run. Where a state of a world is no longer finite it ends, and ``diverged`` says when and for whom.
+        The run. Where a state of a world is no longer finite it ends, and ``diverged`` says when, and of which body.
 
     Raises
     ------

@@ -160,7 +160,7 @@ _ADD, _DELETE, _CYLINDER = 0, 2, 3
 
 
 def markers(time: float, seen: Sequence[Seen], gone: Iterable[str] = ()) -> Message:
-    """Return visualization_msgs/MarkerArray: cylinders by number, and whom to take away."""
+    """Return visualization_msgs/MarkerArray: cylinders by number, and the numbers to take away."""
     head = _header("map", time)
     there = [
         {

@@ -126,7 +126,7 @@ class Leg:
 
     @cached_property
     def contacts(self) -> Contacts:
-        """Whom the robot touched: also after it arrived, as it is still there."""
+        """People that the robot touched: also after it arrived, as it is still there."""
         return contacts_of(self._episode, math.nan)
 
     @property
@@ -161,7 +161,7 @@ class BusRecord:
     counts : Counter
         What was counted on the bus, by name.
     touched : set of int
-        Numbers of those whom the robot touched at an instant so far, and ``touched_wall`` whether it touched a wall.
+        Numbers of people that the robot touched at an instant so far, and ``touched_wall`` whether it touched a wall.
     nearest : float
         Least clearance at the instants so far, in m.
     late : float
@@ -234,7 +234,7 @@ class BusRecord:
 
     @property
     def contacts(self) -> Contacts:
-        """Whom the robot touched in all legs."""
+        """People that the robot touched in all legs."""
         return Contacts(*(sum(each) for each in zip(*(leg.contacts for leg in self.legs), strict=True)))
 
     @property

@@ -273,7 +273,7 @@ def _along(time: Array, position: Array, instants: Array) -> Array:
 
 
 def _traffic(recording: Recording, starts: Array, route: _Route, reach: float) -> npt.NDArray[np.int64]:
-    """Count the people whom a robot at its nominal speed would have within its reach."""
+    """Count the people that a robot at its nominal speed would have within its reach."""
     count = np.zeros(len(starts), dtype=np.int64)
     along = (route.goal - route.start) / (route.speed * route.duration)
     for person, time, position in recording.tracks():

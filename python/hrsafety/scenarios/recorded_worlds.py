@@ -1,4 +1,4 @@
-"""Recorded people of whom some react."""
+"""Recorded people, some of which react."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def with_recording(
     awareness: float = 1.0,
     seed: int = 0,
 ) -> World:
-    """Return recorded people of whom some react, with their recorded start, end and mean speed.
+    """Return recorded people, some of which react, with their recorded start, end and mean speed.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A log of a robot: where it was, whom it saw, how late that was, and what is doubtful about it."""
+"""A log of a robot: where it was, which people it saw, how late that was, and what is doubtful about it."""
 
 from __future__ import annotations
 

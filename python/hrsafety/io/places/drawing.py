@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 
 from hrsafety._arguments import Pair
 from hrsafety._bounds import MOST_WALL_POINTS
-from hrsafety.errors import FileError, Shown
+from hrsafety.errors import Shown
 from hrsafety.io.reader import Document
 from hrsafety.navigation.maps.parts import PolylineWall
 from hrsafety.navigation.maps.static_map import StaticMap
@@ -46,6 +46,7 @@ class FloorPlan:
 
     def __init__(self, document: Document, radius: float) -> None:
         self.document = document
+        self.error = document.error
         self.radius = radius
         self.walls: list[PolylineWall] = []
         self.skipped: Counter[str] = Counter()
@@ -92,19 +93,6 @@ class FloorPlan:
         except OverflowError as error:
             rule = "be of a size that walls have"
             raise self.error("too_large", rule, Shown(str(error)), "look at its unit", line=line, key=key) from None
-
-    def error(
-        self,
-        code: str,
-        rule: str,
-        value: object,
-        remedy: str | None = None,
-        *,
-        line: int | None = None,
-        key: str | None = None,
-    ) -> FileError:
-        """Return an error about a place in the file."""
-        return self.document.error(code, rule, value, remedy, line=line, key=key)
 
     def map(self, unit: str, hint: str = "") -> StaticMap:
         """Return the map of the walls.

@@ -30,7 +30,7 @@ APPEARING = 0.2
 
 
 class Contacts(NamedTuple):
-    """Numbers of people whom a robot touched up to its arrival.
+    """Numbers of people that a robot touched up to its arrival.
 
     Robot and people move straight from instant to instant; a contact between two instants counts.
 
@@ -132,7 +132,7 @@ def touches_of(episode: Episode, arrival_time: float) -> Touches:
 
 
 def contacts_of(episode: Episode, arrival_time: float) -> Contacts:
-    """Return whom a robot touched, from positions alone.
+    """Return the people that a robot touched, from positions alone.
 
     Parameters
     ----------

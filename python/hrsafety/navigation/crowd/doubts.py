@@ -367,7 +367,7 @@ def _radii(people: Iterable[Person], sources: Iterable[Source], robots: Iterable
 
 
 def _of_range(owner: str, robot: Robot, motion: Motion, shield: Shield, radius: float) -> Iterator[ResultWarning]:
-    """Warn of a range within which a person may stand whom the robot does not see, and cannot stop for."""
+    """Warn of a range within which a person may stand unseen by the robot, which cannot stop in time."""
     if shield.person_speed is None or radius == 0.0:
         return
     plan = motion.plan_duration

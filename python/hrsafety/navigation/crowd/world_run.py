@@ -106,7 +106,7 @@ class WorldRun(Trajectory):
     robot_arrival_time = property(lambda self: self._recorded["robot_arrival_time"])
 
     def _met(self, robot: int) -> dict[str, Any]:
-        """Return how the run ended for a robot, and whom and what it touched."""
+        """Return how the run ended for a robot, and which people and walls it touched."""
         places = self.robot_position, self.obstacle_position, self.obstacle_radius
         episode = episodes_in(self.scenario, *places)[robot]
         scored = table_of([episode], threads=1)[0]

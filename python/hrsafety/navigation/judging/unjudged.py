@@ -40,7 +40,7 @@ class NotJudged(NamedTuple):
     reason : str
         Among `REASONS`.
     person : int, str or None
-        Whom it is about; ``None``: everybody.
+        Person it is about; ``None``: everybody.
     """
 
     begin: Annotated[float, "s"]

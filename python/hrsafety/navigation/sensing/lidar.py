@@ -50,7 +50,7 @@ class Lidar(RobotSensor):
     influence : float
         Depth of the active region of a point beyond the radius of the robot, in m; the critical one is 1 mm.
     reach : float or None
-        How far from the robot points are told of, in m. ``None``: the active region; planners want more.
+        How far from the robot points are reported, in m. ``None``: the active region; planners want more.
     max_speed : float
         Largest speed in m/s of what is seen; above 0 the regions are sized for it in place of ``influence``.
 

@@ -39,7 +39,7 @@ def of_run(
         What drives the robot. Only the virtual force field brakes in critical regions, so their size
         says nothing about the other laws, nor about one that a shield keeps safe.
     built : AsBuilt or None
-        How the robot is built; a point mass that is told of everything when ``None``.
+        How the robot is built; a point mass that knows everything when ``None``.
     motion_step : float
         Of the run, in s.
 

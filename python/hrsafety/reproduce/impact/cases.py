@@ -16,7 +16,6 @@ __all__ = [
     "LEVER_ARM",
     "MANIPULATOR_SPEED",
     "ParameterSet",
-    "damping_ratios",
     "foam",
     "manipulator",
     "parameter_sets",
@@ -98,11 +97,6 @@ def foam(number: int) -> impact.Foam:
     """Return a foam of Table 3.3."""
     row = _row("3.3", "foam", number)
     return impact.Foam(stiffness=KILO * row["K_c"], damping=row["C_c"])
-
-
-def damping_ratios() -> dict[int, float]:
-    """Return the printed damping ratio of each foam of Table 3.3."""
-    return {row["foam"]: row["zeta_c"] for row in printed_rows("3.3")}
 
 
 def simulations() -> dict[int, tuple[impact.Manipulator, impact.Head]]:
