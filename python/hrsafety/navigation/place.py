@@ -12,7 +12,7 @@ __all__ = ["Place"]
 
 
 class Place(Parameters):
-    """Where robots run: a `World`, or a `Scenario`, which is a world of one robot whose people do not react.
+    """Place where robots run: a `World`, or a `Scenario`, which is a world of one robot whose people do not react.
 
     Every verb takes either. Runs of a scenario have a loop of their own, which also counts forces and currents; for
     what is made for worlds, `World.of` makes one of it.
@@ -38,4 +38,4 @@ class Place(Parameters):
 
         @property
         def unit_doubts(self) -> tuple[ResultWarning, ...]:
-            """Those of the warnings that are about units."""
+            """Warnings about numbers that are hardly meant in their unit."""

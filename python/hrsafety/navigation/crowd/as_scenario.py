@@ -106,7 +106,7 @@ class _RunInScenario(Trajectory):
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """Those of the run of the world."""
+        """Warnings of the run of the world."""
         return self._run.warnings
 
 

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from hrsafety import reactive
 from hrsafety.reproduce.published import published_tables
 
-__all__ = ["BURST", "LEVELS", "NOISE", "ROW", "Place", "SoundStudy", "measure", "places"]
+__all__ = ["BURST", "LEVELS", "NOISE", "ROW", "SoundPlace", "SoundStudy", "measure", "places"]
 
 Array = npt.NDArray[np.float64]
 
@@ -28,7 +28,7 @@ WINDOW = {"lead": -0.02, "samples": 4096}
 
 
 @dataclass(frozen=True, kw_only=True)
-class Place:
+class SoundPlace:
     """One place of the source and what is printed for it.
 
     Attributes
@@ -72,12 +72,12 @@ class SoundStudy:
 
 
 @cache
-def places() -> tuple[Place, ...]:
+def places() -> tuple[SoundPlace, ...]:
     """Return the twelve places of both tables."""
     tables = published_tables()
     pairs = zip(tables["avi2019:1"]["rows"], tables["avi2019:2"]["rows"], strict=True)
     return tuple(
-        Place(
+        SoundPlace(
             distance=float(mean["distance"]),
             angle=float(mean["angle"]),
             mean_distance=mean["measured_distance"],

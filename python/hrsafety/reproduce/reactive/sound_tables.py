@@ -9,7 +9,7 @@ import numpy as np
 
 from hrsafety import reactive
 from hrsafety.reproduce.cells import PrintedValue, Tolerance
-from hrsafety.reproduce.reactive.sound_study import LEVELS, NOISE, ROW, RUNS, Array, Place, SoundStudy, places
+from hrsafety.reproduce.reactive.sound_study import LEVELS, NOISE, ROW, RUNS, Array, SoundPlace, SoundStudy, places
 from hrsafety.reproduce.sheets import Sheet
 
 __all__ = ["cells"]
@@ -96,7 +96,7 @@ def _means(study: SoundStudy) -> Iterator[PrintedValue]:
                 yield SHEET.listed("mean_heard", own, printed=printed, name=name, why=why, **words)
 
 
-def _printed_means(place: Place) -> dict[str, tuple[str, float, float]]:
+def _printed_means(place: SoundPlace) -> dict[str, tuple[str, float, float]]:
     return {
         "distance": ("m", place.mean_distance, place.deviation_distance),
         "angle": ("deg", place.mean_angle, place.deviation_angle),
