@@ -101,6 +101,9 @@ def test_top_holds_the_best_points_of_all_grids(search: nav.GainSearch) -> None:
 
 def test_local_searches_start_at_the_best_points_and_do_not_lose(search: nav.GainSearch) -> None:
     assert len(search.local) == SMALL["local_starts"]
+    assert search.history == (*search.grids, *search.local)
+    assert search.columns()["stage"].tolist() == [stage.name for stage in search.history]
+    assert {stage.status for stage in search.grids} == {"complete"}
     for entry, start in zip(search.local, search.top, strict=False):
         np.testing.assert_array_equal(entry.start, start)
         assert entry.best_value >= entry.start_value
@@ -538,7 +541,7 @@ def test_scipy_cannot_improve_the_best_set_much(search: nav.GainSearch) -> None:
 def test_front_of_nothing_is_empty() -> None:
     front = nav.gains.pareto_front(SCENES[:1], bounds={"attractive_gain": (0.0, 0.0)}, grid=(1, 3, 3, 3))
     assert len(front) == 0
-    assert front.hypervolume == 0.0
+    assert (front.hypervolume, front.valid, front.status) == (0.0, False, "infeasible")
     assert front.failures == front.evaluations > 0
 
 
