@@ -169,7 +169,8 @@ class _FadingWays:
 
         self.run, self.place = run, place
         self.colors = np.array([to_rgb(color) for color in colors]).reshape(-1, 3)
-        self.lines = axes.add_collection(LineCollection([], linewidth=1.6, zorder=3.0, animated=True), autolim=False)
+        self.lines = LineCollection([], linewidth=1.6, zorder=3.0, animated=True)
+        axes.add_collection(self.lines, autolim=False)
 
     def show(self, row: int) -> None:
         """Put the ways behind the people of one row of the run."""
