@@ -11,9 +11,9 @@ from collections import defaultdict
 from pathlib import Path
 
 import hrsafety
-from hrsafety.cli.cell.command import ENDS
 from hrsafety.cli.cell.page import LOOKS
 from hrsafety.cli.exit_codes import MEANINGS
+from hrsafety.cli.verdict import OF_VERDICTS
 from hrsafety.standards.verdicts import VERDICT_WORDS
 from page_tables import DOCS, line, print_or_write
 
@@ -72,7 +72,7 @@ def table(part: str) -> str:
                 code,
                 MEANINGS[code].replace("--fail-on", "`--fail-on`"),
             )
-            for word, code in ENDS.items()
+            for word, (_, code) in OF_VERDICTS.items()
         ]
     else:
         lines = [line("side of the error", "codes"), "|---" * 2 + "|"]

@@ -9,7 +9,7 @@ import pytest
 
 import list_doubts
 from hrsafety.cli import exit_codes, verdict
-from hrsafety.cli.cell import command, page
+from hrsafety.cli.cell import page
 from hrsafety.standards.verdicts import VERDICTS
 from page_tables import written
 
@@ -22,11 +22,11 @@ def test_tables_are_those_of_the_code(part: str) -> None:
 
 
 def test_every_verdict_has_an_end_and_a_color() -> None:
-    assert set(command.ENDS) == set(page.LOOKS) == set(VERDICTS)
+    assert set(verdict.OF_VERDICTS) == set(page.LOOKS) == set(VERDICTS)
     # Only what is within limits is green and ends with 0.
-    assert [word for word, code in command.ENDS.items() if code == exit_codes.DONE] == ["within_limits"]
+    assert [word for word, (_, code) in verdict.OF_VERDICTS.items() if code == exit_codes.DONE] == ["within_limits"]
     assert [word for word, look in page.LOOKS.items() if look == "good"] == ["within_limits"]
-    assert set(command.LAST_WORDS.values()) <= set(verdict.LOOKS)
+    assert {first for first, _ in verdict.OF_VERDICTS.values()} <= set(verdict.LOOKS)
 
 
 def test_every_exit_code_of_a_verdict_is_on_the_page() -> None:

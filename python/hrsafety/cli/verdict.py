@@ -18,7 +18,7 @@ from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.plausibility import ResultWarning, unsafe_doubts
 
-__all__ = ["FAILURES", "OF_VERDICTS", "counted", "end", "failures_of", "leave", "sentence"]
+__all__ = ["FAILURES", "LOOKS", "OF_VERDICTS", "counted", "end", "failures_of", "leave", "sentence"]
 
 Counts = Mapping[str, int]
 
@@ -26,7 +26,7 @@ Counts = Mapping[str, int]
 _SHORT_OF_GOAL = tuple(word for word in OUTCOMES if word not in {"arrived", "collided"})
 FAILURES = ("contact", "moving_contact", *_SHORT_OF_GOAL, "not_arrived", "any")
 """Words of ``--fail-on``; the help says what each means."""
-_LOOKS = MappingProxyType({"FAILED": "bold red", "NOT CHECKED": "bold yellow", "NOTE": "yellow", "passed": "green"})
+LOOKS = MappingProxyType({"FAILED": "bold red", "NOT CHECKED": "bold yellow", "NOTE": "yellow", "passed": "green"})
 """First words of the last line and their looks on a terminal."""
 OF_VERDICTS = MappingProxyType(
     {
@@ -154,7 +154,7 @@ def end(
     print()
     doubts = unsafe_doubts(found)
     last = sentence(said, counts, fail_on, runs, doubts)
-    look = next(look for word, look in _LOOKS.items() if last.startswith(word))
+    look = next(look for word, look in LOOKS.items() if last.startswith(word))
     print(terminal.styled(last, look, sys.stdout))
     if any(counts[word] for word in fail_on):
         raise SystemExit(FAILED_RUN)
@@ -181,6 +181,6 @@ def leave(word: str, said: str) -> None:
     first, code = OF_VERDICTS[word]
     last = f"{first}  {said}" + ("" if code == DONE else f"; exit code {code}")
     print()
-    print(terminal.styled(last, _LOOKS[first], sys.stdout), flush=True)
+    print(terminal.styled(last, LOOKS[first], sys.stdout), flush=True)
     if code != DONE:
         raise SystemExit(code)
