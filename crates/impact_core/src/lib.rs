@@ -25,6 +25,7 @@ pub mod identify;
 pub mod joint;
 pub mod metrics;
 pub mod parameters;
+pub mod program;
 mod quantile;
 pub mod response;
 pub mod roots;

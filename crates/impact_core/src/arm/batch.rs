@@ -182,20 +182,19 @@ impl Arm {
             .map_err(|Singular { column }| singular(self, column, &format!(" in joints[{row}]")))
     }
 
-    /// Refuses values that are not finite or outside the limits of their joints.
     fn check(&self, places: &Places<'_>) -> Result<()> {
         check_rows("joints", &places.joints, places.shape)?;
         check_rows("point", &places.points, places.shape)?;
+        self.check_joints(places.joints.rows, places.check_limits)
+    }
+
+    /// Refuses values by rows that are not finite or, if asked for, outside the limits of their joints.
+    pub(crate) fn check_joints(&self, rows: &[f64], check_limits: bool) -> Result<()> {
         if self.joints.is_empty() {
             return Ok(());
         }
-        for (row, values) in places
-            .joints
-            .rows
-            .chunks_exact(self.joints.len())
-            .enumerate()
-        {
-            let name = |joint: &str| match places.joints.rows.len() / values.len() {
+        for (row, values) in rows.chunks_exact(self.joints.len()).enumerate() {
+            let name = |joint: &str| match rows.len() / values.len() {
                 1 => format!("joints[{joint:?}]"),
                 _ => format!("joints[{row}][{joint:?}]"),
             };
@@ -204,11 +203,11 @@ impl Arm {
                     let given = Given::Number(*value);
                     return Err(Failure::invalid(name(&joint.name), "be finite", given));
                 }
-                if places.check_limits {
+                if check_limits {
                     within(&joint.limits, *value, || name(&joint.name))?;
                 }
             }
-            let follow = self.segments.iter().filter(|_| places.check_limits);
+            let follow = self.segments.iter().filter(|_| check_limits);
             for segment in follow.filter(|segment| segment.own_limits.is_some()) {
                 let value = segment.multiplier * values[segment.source] + segment.addend;
                 let limits = segment.own_limits.unwrap_or_default();

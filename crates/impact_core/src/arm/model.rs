@@ -195,14 +195,14 @@ macro_rules! sized {
                 $call
             }
             _ => {
-                const $size: usize = super::model::MOST_MOVING;
+                const $size: usize = $crate::arm::model::MOST_MOVING;
                 $call
             }
         }
     };
 }
 
-pub(super) use sized;
+pub(crate) use sized;
 
 /// Most joints that move: their mass matrix is kept whole.
 pub const MOST_MOVING: usize = 96;

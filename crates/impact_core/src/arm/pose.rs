@@ -236,39 +236,91 @@ impl<'a, const N: usize> Pose<'a, N> {
         }
     }
 
-    /// Mobility of a point of a link: `L = J M^-1 J^T`.
-    #[must_use]
+    /// `L^-1 J^T` of a point by columns of joints, where the mass matrix is `L D L^T`.
     #[allow(clippy::needless_range_loop)] // as the indices of the matrices are written
-    pub fn mobility(&self, link: usize, point: &Vector3<f64>) -> Mobility {
+    fn solved(&self, link: usize, point: &Vector3<f64>) -> [Vector3<f64>; N] {
         let position = self.position(link, point);
         let mut columns = [Vector3::zeros(); N];
         self.each_column(link, &position, |column, moved| columns[column] += moved);
-        // With L X = J^T it is X^T D^-1 X.
-        let mut mobility = Matrix3::zeros();
         for column in 0..N {
             let mut solved = columns[column];
             for inner in 0..column {
                 solved -= columns[inner] * self.masses[(column, inner)];
             }
             columns[column] = solved;
-            mobility += solved * (solved * self.pivots[column]).transpose();
+        }
+        columns
+    }
+
+    /// Mobility of a point of a link: `L = J M^-1 J^T`.
+    #[must_use]
+    pub fn mobility(&self, link: usize, point: &Vector3<f64>) -> Mobility {
+        let columns = self.solved(link, point);
+        let mut mobility = Matrix3::zeros();
+        for (solved, pivot) in columns.iter().zip(self.pivots.iter()) {
+            mobility += solved * (solved * *pivot).transpose();
         }
         Mobility(mobility)
+    }
+
+    /// Columns of `A = J L^-T D^-1/2` of a point: its mobility is `A A^T`, its velocity `A w` with the [`Self::weights`]
+    /// `w` of a motion.
+    #[must_use]
+    pub fn levers(&self, link: usize, point: &Vector3<f64>) -> [Vector3<f64>; N] {
+        let mut columns = self.solved(link, point);
+        for (column, pivot) in columns.iter_mut().zip(self.pivots.iter()) {
+            *column *= pivot.sqrt();
+        }
+        columns
+    }
+
+    /// `w = D^1/2 L^T dq` of a motion: `w^T w` is twice its kinetic energy.
+    #[must_use]
+    pub fn weights(&self, rates: &[f64]) -> [f64; N] {
+        let mut moved = [0.0; N];
+        for (joint, rate) in self.arm.joints.iter().zip(rates) {
+            if let Some(column) = joint.column {
+                moved[column] = *rate;
+            }
+        }
+        std::array::from_fn(|column| {
+            let below = column + 1..N;
+            let coupled: f64 = below
+                .map(|row| self.masses[(row, column)] * moved[row])
+                .sum();
+            (moved[column] + coupled) / self.pivots[column].sqrt()
+        })
     }
 
     /// Velocity of a point of a link for rates of all joints that take values, locked ones too.
     #[must_use]
     pub fn velocity(&self, link: usize, point: &Vector3<f64>, rates: &[f64]) -> Vector3<f64> {
+        self.velocity_and_scale(link, point, rates).0
+    }
+
+    /// Velocity of a point, and the speed of which its rounding error is a share: the point may be on the axis.
+    #[must_use]
+    pub fn velocity_and_scale(
+        &self,
+        link: usize,
+        point: &Vector3<f64>,
+        rates: &[f64],
+    ) -> (Vector3<f64>, f64) {
         let position = self.position(link, point);
-        let mut velocity = Vector3::zeros();
+        let (mut velocity, mut scale) = (Vector3::zeros(), 0.0);
         let mut next = self.arm.links[link].segment;
         while let Some(index) = next {
             let segment = &self.arm.segments[index];
             let rate = segment.multiplier * rates[segment.source];
             velocity += self.moved(index, &position) * rate;
+            let reach = match segment.kind {
+                JointKind::Turning => position.amax() + self.frames[index].origin.amax(),
+                JointKind::Sliding => 1.0,
+            };
+            scale += reach * rate.abs();
             next = segment.parent;
         }
-        velocity
+        (velocity, scale)
     }
 }
 
