@@ -14,6 +14,7 @@ mod keywords;
 mod laws;
 mod maps;
 mod parameters;
+mod program;
 mod python_law;
 mod reactive;
 mod robots;
@@ -114,6 +115,12 @@ mod _hrsafety {
     use crate::parameters::{
         DifferentialDriveRobot, HolonomicRobot, Measurement, Obstacle, Scenario, region_radii,
     };
+    #[pymodule_export]
+    use crate::program::contact::ProgramContact;
+    #[pymodule_export]
+    use crate::program::path::{program_refine, program_retime, program_spline};
+    #[pymodule_export]
+    use crate::program::{program_draws, program_zone_starts, program_zones};
     #[pymodule_export]
     use crate::reactive::follower::echoes::{
         EchoShape, Sonar, cast_rays, sonar_mounts, sonar_readings, speed_of_sound,

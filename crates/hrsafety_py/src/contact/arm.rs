@@ -21,7 +21,7 @@ const FEW: usize = 1000;
 
 /// An arm on a base that stands still.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct Arm(arm::Arm);
+pub struct Arm(pub(crate) arm::Arm);
 
 /// Link, mass, center and inertia by rows.
 type Load = (String, f64, [f64; 3], [[f64; 3]; 3]);
