@@ -67,6 +67,8 @@ mod _hrsafety {
         CrowdEpisode, crowd_metric_names, crowd_metrics, crowd_world_metrics,
     };
     #[pymodule_export]
+    use crate::crowd::run::WorldRun;
+    #[pymodule_export]
     use crate::crowd::{
         CrowdModel, CrowdPerson, CrowdRobot, CrowdSource, CrowdWall, CrowdWorld, crowd_circle,
         crowd_decisions, crowd_simulate,

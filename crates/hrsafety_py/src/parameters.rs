@@ -266,11 +266,6 @@ impl Scenario {
         self.0.obstacles().iter().map(radii).collect()
     }
 
-    /// Mass, radius, largest speed and acceleration of the point mass that a law drives.
-    fn point_mass(&self) -> crate::python_law::PointMass {
-        crate::python_law::point_mass(&self.0)
-    }
-
     /// Copy of the scenario with another seed.
     fn reseeded(&self, seed: u64) -> Self {
         Self(self.0.clone().reseeded(seed))

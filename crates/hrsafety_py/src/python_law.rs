@@ -7,6 +7,7 @@ use numeric::error::Result;
 use pyo3::prelude::*;
 use vff_core::lanes::{Planar, Vector2};
 use vff_core::laws::{Command, Law, LawFamily, Situation, force_toward};
+use vff_core::robots::HolonomicRobot;
 use vff_core::world::scenario::Scenario;
 
 use crate::run::situation::situation_fields;
@@ -63,7 +64,7 @@ impl LawFamily for PythonLaw {
             begin: Arc::clone(&self.begin),
             asked: None,
             velocity: self.velocity,
-            robot: point_mass(scenario),
+            robot: point_mass(scenario.point_mass()),
             ends: (scenario.start(), scenario.goal()),
             aim: None,
             seed: scenario.seed(),
@@ -75,8 +76,7 @@ impl LawFamily for PythonLaw {
 pub type PointMass = (f64, f64, f64, f64, f64);
 
 /// The point mass that a law drives.
-pub fn point_mass(scenario: &Scenario) -> PointMass {
-    let robot = scenario.point_mass();
+pub fn point_mass(robot: &HolonomicRobot) -> PointMass {
     (
         robot.mass,
         robot.radius,

@@ -10,7 +10,6 @@ use vff_core::laws::shield::{
 };
 use vff_core::laws::yielding;
 use vff_core::world::geometry::RobotState;
-use vff_core::world::shape::PlacedShape;
 
 use crate::errors::CoreError;
 use crate::keywords::{Keywords, parameter_class, taken, value_class};
@@ -29,10 +28,6 @@ type RobotLimits = (f64, f64, f64, f64);
 
 /// Position and velocity of a robot.
 type MotionState = ([f64; 2], [f64; 2]);
-
-/// Center, outline (radius, or length, width and heading), velocity, largest speed and largest error of
-/// the position of somebody; a radius has NaN beside it.
-type OutlineState = ([f64; 2], [f64; 3], [f64; 2], [f64; 2]);
 
 /// Center, radius and velocity of a person; the velocity is NaN where it is not known.
 type PersonState = ([f64; 2], f64, [f64; 2]);
@@ -78,38 +73,7 @@ value_class! {
         let velocity: [f64; 2] = decision.velocity.into();
         Ok((velocity, decision.status.word(), gaps))
     }
-
-    /// Of the plan behind a command: the gap, its instants, and where the robot is at them.
-    fn examine<'py>(
-        &self,
-        py: Python<'py>,
-        limits: RobotLimits,
-        state: MotionState,
-        command: [f64; 2],
-        others: Vec<OutlineState>,
-    ) -> PyResult<(f64, [Bound<'py, PyAny>; 2])> {
-        let guard = self.guard(limits)?;
-        let others: Vec<Person> = others.into_iter().map(|each| self.other(each)).collect();
-        let view = seen(state, &others);
-        let plan = guard.plan(&view.robot, command.into());
-        let share = |part: u32| f64::from(part) / f64::from(PARTS_OF_PLAN);
-        let instants: Vec<f64> = (0..=PARTS_OF_PLAN)
-            .map(|part| plan.end() * share(part))
-            .collect();
-        let places: Vec<[f64; 2]> = instants
-            .iter()
-            .map(|time| plan.position(*time).into())
-            .collect();
-        let found = [
-            instants.into_pyobject(py)?.into_any(),
-            places.into_pyobject(py)?.into_any(),
-        ];
-        Ok((guard.gap(&view, command.into()), found))
-    }
 }
-
-/// Parts of a plan between the instants that are told.
-const PARTS_OF_PLAN: u32 = 24;
 
 /// View of a robot in the open.
 fn seen((position, velocity): MotionState, people: &[Person]) -> View<'_> {
@@ -133,23 +97,6 @@ impl Shield {
             period,
         };
         Ok(Guard::new(self.0, limits).map_err(CoreError::from)?)
-    }
-
-    /// Somebody or something with bounds of its own.
-    fn other(&self, (center, outline, velocity, [speed, error]): OutlineState) -> Person {
-        let [size, width, heading] = outline;
-        let person = self.person((center, size, velocity));
-        let placed = if width.is_nan() {
-            person.placed
-        } else {
-            PlacedShape::turned(center, [size, width], heading)
-        };
-        Person {
-            placed,
-            position_error: error,
-            max_speed: speed,
-            ..person
-        }
     }
 
     fn person(&self, (center, radius, velocity): PersonState) -> Person {

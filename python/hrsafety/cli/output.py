@@ -366,9 +366,11 @@ def planned_animation(path: str) -> None:
 def decided(run: nav.Trajectory) -> nav.Trajectory | nav.metrics.SafetyRecord:
     """Return a run with the decisions of a shield, where recording them gives the same run again; else as it is."""
     place = run.scenario
-    if not isinstance(place, nav.Scenario) or not isinstance(run.law, nav.laws.SafeNavigation):
+    of_world = isinstance(place, nav.World)
+    if place is None or (of_world and len(place.robots) != 1) or not isinstance(run.law, nav.laws.SafeNavigation):
         return run
-    if not isinstance(place.robot, nav.HolonomicRobot) or run.built is not None:
+    body = place.robots[0].body if of_world else place.robot
+    if not isinstance(body, nav.HolonomicRobot) or run.built is not None:
         return run
     record = nav.metrics.record_safety(place, run.law)
     return record if np.array_equal(record.trajectory.position, run.position) else run

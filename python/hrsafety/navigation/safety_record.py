@@ -4,29 +4,27 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from typing import Annotated
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
-from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, instance, number
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety._replay.played import Played
 from hrsafety._replay.record import Replay
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.free_space import stands
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation, SafetyTrace
-from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.laws.situation import Situation
 from hrsafety.navigation.maps.guide import LocalGoal, Plan
-from hrsafety.navigation.obstacles.base import Obstacle
-from hrsafety.navigation.obstacles.moving_rectangle import Box, Mobile
 from hrsafety.navigation.robots.bodies import HolonomicRobot
 from hrsafety.navigation.run import Run
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import Trajectory
-from hrsafety.navigation.warnings.scenarios import own_speed
+
+if TYPE_CHECKING:
+    from hrsafety.navigation.crowd.world import World
 
 __all__ = ["SafetyDecision", "SafetyRecord", "record_safety"]
 
@@ -57,9 +55,11 @@ class SafetyDecision:
     plan_position : ndarray, shape (k, 2)
         Where the robot is at them, in m.
     obstacle_position : ndarray, shape (n, 2)
-        Measured positions of the obstacles in m, NaN for who is absent.
+        Measured positions of the obstacles in m, NaN for who is absent; in a world those of its people, NaN for who
+        is not seen, too, and for everybody where sensors tell of obstacles.
     obstacle_reach : ndarray, shape (n,)
-        How far each of them can have come from there when the robot rests, in m; 0 for what stands.
+        How far each of them can have come from there when the robot rests, in m; 0 for what stands, and for who has no
+        position.
     path : ndarray, shape (p, 2)
         Path of the guide through the map alone from here, in m; empty without a guide. Around people who
         stand the guide makes another plan in the run, which is not recorded.
@@ -144,17 +144,21 @@ class SafetyRecord(Played):
         return f"SafetyRecord({len(self.decisions)} decisions: {shares})"
 
 
-def record_safety(scenario: Scenario, law: SafeNavigation) -> SafetyRecord:
+def record_safety(
+    scenario: Scenario | World, law: SafeNavigation | None = None, *, robot: int | None = None
+) -> SafetyRecord:
     """Run a law with parts around it, and keep what they decided in every control period.
 
     The run is that of `simulate`, bit for bit.
 
     Parameters
     ----------
-    scenario : Scenario
+    scenario : Scenario or World
         Where; the robot is a `HolonomicRobot`.
-    law : SafeNavigation
-        The law with its parts.
+    law : SafeNavigation or None
+        The law with its parts, in a world that of every robot; ``None``: robots of a world have their own.
+    robot : int or None
+        Index of the robot of a world that decides; ``None``: the only one.
 
     Returns
     -------
@@ -178,33 +182,57 @@ def record_safety(scenario: Scenario, law: SafeNavigation) -> SafetyRecord:
     >>> record = nav.metrics.record_safety(scenarios.configuration("c2"), law)
     >>> record.trajectory.outcome, record.decisions[0].status
     ('arrived', 'kept')
+
+    Among people who react:
+
+    >>> person = nav.Person(start=(6, 0.1), route=[(0, 0.1)], desired_speed=0.9)
+    >>> world = nav.World(people=[person], robots=[nav.Robot(start=(0, 0), goal=(6, 0))])
+    >>> nav.metrics.record_safety(world, law).trajectory.outcome
+    'arrived'
     """
-    parts, scene = instance("law", law, SafeNavigation), instance("scenario", scenario, Scenario)
-    robot = instance("scenario.robot", scene.robot, HolonomicRobot)
-    run = Run(scene, parts)
+    if law is not None or isinstance(scenario, Scenario):
+        instance("law", law, SafeNavigation)
+    run = Run(scenario, law)
+    index = run._index(robot)
+    place: Any = run.scenario
+    if isinstance(place, Scenario):
+        parts, own, body = instance("law", law, SafeNavigation), place, place.robot
+    else:
+        own = place.robots[index]
+        parts, body = instance(f"scenario.robots[{index}].law", own.law, SafeNavigation), own.body
+    instance("scenario.robot" if own is place else f"scenario.robots[{index}].body", body, HolonomicRobot)
     plan = None
     if parts.guide is not None and parts.map is not None:
-        plan = parts.guide.plan(parts.map, radius=robot.radius, start=scene.start, goal=scene.goal)
-    decisions = []
+        plan = parts.guide.plan(parts.map, radius=body.radius, start=own.start, goal=own.goal)
+    native, made = run._native, []
     while not run.finished:
-        seen = run.observe()
+        seen, decides = run.observe(index), native.deciding()[index]
+        whom = native.people(index)
         run.step()
-        trace = run.trace
-        if trace is not None:
-            decisions.append(_decision(seen, trace, parts.shield, plan, scene))
-    return SafetyRecord(trajectory=run.trajectory, decisions=tuple(decisions))
+        trace = run._trace(index)
+        if decides and trace is not None:
+            made.append((seen, trace, native.examined(index), whom))
+    ended = run.trajectory.robots[index]
+    others = ended.obstacle_position.shape[1]
+    return SafetyRecord(trajectory=ended, decisions=tuple(_decision(*each, plan, others) for each in made))
 
 
 def _decision(
-    seen: Situation, trace: SafetyTrace, shield: Shield | None, plan: Plan | None, scene: Scenario
+    seen: Situation,
+    trace: SafetyTrace,
+    verified: tuple[float, list[float], list[list[float]], list[float]] | None,
+    whom: Sequence[int | None],
+    plan: Plan | None,
+    others: int,
 ) -> SafetyDecision:
-    instants, places, margin = np.zeros(1), seen.position[None, :], math.nan
-    reach = np.zeros(len(scene.obstacles))
-    if shield is not None:
-        margin, instants, places = _examined(seen, trace.command, shield, scene)
-        ages = shield.latency + instants[-1]
-        bounds = (_bounds(each, shield) for each in scene.obstacles)
-        reach = np.array([error + speed * ages if speed > 0.0 else 0.0 for speed, error in bounds])
+    """Return a decision; `whom`: column of the run for each obstacle that was seen."""
+    margin, instants, places, reaches = math.nan, np.zeros(1), seen.position[None, :], np.zeros(len(whom))
+    if verified is not None:
+        margin, (instants, places, reaches) = verified[0], map(np.array, verified[1:])
+    position, reach = np.full((others, 2), np.nan), np.zeros(others)
+    for index, column in enumerate(whom):
+        if column is not None:
+            position[column], reach[column] = seen.obstacle_position[index], reaches[index]
     local: LocalGoal | None = None if plan is None else plan.local_goal(seen.position)
     return SafetyDecision(
         time=seen.time,
@@ -217,47 +245,8 @@ def _decision(
         margin=margin,
         plan_time=instants,
         plan_position=places,
-        obstacle_position=seen.obstacle_position,
+        obstacle_position=position,
         obstacle_reach=reach,
         path=np.empty((0, 2)) if plan is None else plan.path(seen.position),
         local_goal=None if local is None else local.point,
     )
-
-
-def _examined(seen: Situation, command: Pair, shield: Shield, scene: Scenario) -> tuple[float, Array, Array]:
-    """Return the margin of a command, and instants and places of the plan behind it."""
-    robot = seen.robot
-    native: _hrsafety.Shield = shield._native
-    others = []
-    for index, obstacle in enumerate(scene.obstacles):
-        # Rectangles that stand are walls, which are kept off by their clearance.
-        if not seen.obstacle_present[index] or (stands(obstacle) and isinstance(obstacle, Box)):
-            continue
-        sizes = (obstacle.length, obstacle.width, obstacle.heading) if isinstance(obstacle, Box) else None
-        outline = sizes or (float(seen.obstacle_radius[index]), math.nan, math.nan)
-        velocity = (math.nan, math.nan) if stands(obstacle) else _pair(seen.obstacle_velocity[index])
-        others.append((_pair(seen.obstacle_position[index]), outline, velocity, _bounds(obstacle, shield)))
-    margin, (instants, places) = native.examine(
-        (robot.radius, robot.max_speed, min(robot.max_acceleration, robot.max_deceleration), seen.control_period),
-        (_pair(seen.position), _pair(seen.velocity)),
-        command,
-        others,
-    )
-    return margin, np.array(instants), np.array(places)
-
-
-def _bounds(obstacle: Obstacle, shield: Shield) -> Pair:
-    """Return speed in m/s and error in m that a shield assumes of an obstacle."""
-    if stands(obstacle):
-        return 0.0, 0.0
-    if shield.person_speed is not None:
-        return shield.person_speed, shield.position_error
-    accelerates = isinstance(obstacle, Mobile) and (
-        any(getattr(obstacle, "acceleration", ())) or any(any(each[2]) for each in obstacle.segments or ())
-    )
-    return math.inf if accelerates else own_speed(obstacle, 0.0), shield.position_error
-
-
-def _pair(row: Array) -> Pair:
-    x, y = row.tolist()
-    return x, y

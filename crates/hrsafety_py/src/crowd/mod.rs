@@ -2,6 +2,7 @@
 
 pub(crate) mod gym;
 pub(crate) mod metrics;
+pub(crate) mod run;
 
 use std::sync::Arc;
 
@@ -18,7 +19,7 @@ use vff_core::crowd::walls::Wall;
 use vff_core::crowd::world::{
     PersonSetup, RobotSetup, Route, RouteEnd, SourceSetup, Traits, Waypoint,
 };
-use vff_core::crowd::{Diverged, Model, Simulation, simulate_worlds};
+use vff_core::crowd::{Diverged, Model, Simulation, Trajectories, simulate_worlds};
 use vff_core::lanes::Vector2;
 use vff_core::run::pursuit::Pursuer;
 use vff_core::world::motion::Motion;
@@ -313,8 +314,11 @@ impl CrowdWorld {
 }
 
 /// Fields of what was recorded.
-fn fields_of(py: Python<'_>, mut ended: Simulation) -> PyResult<Bound<'_, PyDict>> {
-    let mut found = ended.take_recorded().unwrap_or_default();
+fn fields_of<'py>(
+    py: Python<'py>,
+    ended: &Simulation,
+    mut found: Trajectories,
+) -> PyResult<Bound<'py, PyDict>> {
     let (instants, people, robots) = (found.time.len(), found.people(), ended.robots().len());
     let flat = |vectors: &[Vector2<f64>]| -> Vec<f64> {
         vectors.iter().flat_map(|each| [each.x, each.y]).collect()
@@ -384,7 +388,11 @@ pub fn crowd_simulate<'py>(
     } else {
         watched(py, report, work)?
     };
-    ended.into_iter().map(|each| fields_of(py, each)).collect()
+    let fields = ended.into_iter().map(|mut each| {
+        let found = each.take_recorded().unwrap_or_default();
+        fields_of(py, &each, found)
+    });
+    fields.collect()
 }
 
 /// Starts of people who cross a circle.

@@ -4,18 +4,51 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use vff_core::laws::trace::{Examined, Trace};
 use vff_core::run::{Episode, Navigation, Outcome, Request};
 
 use crate::errors::CoreError;
 use crate::laws::Law;
 use crate::parameters::Scenario;
+use crate::python_law::{PointMass, point_mass};
 use crate::robots::as_built::{AsBuilt, as_built_fields};
 use crate::run::situation::situation_fields;
 use crate::run::stepped::Stepped;
 use crate::run::trajectory_fields;
 
 /// Wanted and commanded velocity, whether the law was taken over from, and the status.
-type Told = ([f64; 2], [f64; 2], bool, &'static str);
+pub type Told = ([f64; 2], [f64; 2], bool, &'static str);
+
+/// Margin in m, instants in s and places in m of a plan, and how far others can have come at its end, in m.
+pub type Verified = (f64, Vec<f64>, Vec<[f64; 2]>, Vec<f64>);
+
+/// Number of a robot, and a force in N or a velocity in m/s that it is told.
+pub type Order = (usize, Option<[f64; 2]>, Option<[f64; 2]>);
+
+/// What was recorded of the parts around a law.
+pub fn told(trace: Trace) -> Told {
+    let word = trace.status.word();
+    (
+        trace.wanted.into(),
+        trace.command.into(),
+        trace.taken_over,
+        word,
+    )
+}
+
+/// The plan that a shield verified.
+pub fn verified(found: Examined) -> Verified {
+    (found.margin, found.time, found.position, found.reach)
+}
+
+/// A force in N or a velocity in m/s as a request; the law where there is neither.
+pub fn request_of(force: Option<[f64; 2]>, velocity: Option<[f64; 2]>) -> Request {
+    match (force, velocity) {
+        (Some(force), _) => Request::Force(force),
+        (None, Some(velocity)) => Request::Velocity(velocity),
+        (None, None) => Request::Law,
+    }
+}
 
 /// Error message of a run that is being stepped.
 pub const BUSY: &str = "a step of this run is under way; step it from one place at a time";
@@ -41,24 +74,24 @@ impl Run {
         Ok(Self(Stepped::new(episode.map_err(CoreError::from)?, BUSY)))
     }
 
+    // Robots have numbers, as in `WorldRun`; the only one is 0.
+
+    /// The point mass that the law drives.
+    fn point_mass(&self, _robot: usize) -> PyResult<PointMass> {
+        Ok(point_mass(self.0.idle()?.scenario().point_mass()))
+    }
+
     /// Fields of what the controller sees.
-    fn situation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn situation<'py>(&self, py: Python<'py>, _robot: usize) -> PyResult<Bound<'py, PyDict>> {
         situation_fields(py, &self.0.idle()?.situation())
     }
 
-    /// One control period under the law, a force in N or a velocity in m/s.
-    #[pyo3(signature = (*, force, velocity))]
-    fn step(
-        &self,
-        py: Python<'_>,
-        force: Option<[f64; 2]>,
-        velocity: Option<[f64; 2]>,
-    ) -> PyResult<()> {
-        let request = match (force, velocity) {
-            (Some(force), _) => Request::Force(force),
-            (None, Some(velocity)) => Request::Velocity(velocity),
-            (None, None) => Request::Law,
-        };
+    /// One control period under the law, or with a force in N or a velocity in m/s.
+    fn step(&self, py: Python<'_>, told: Vec<Order>) -> PyResult<()> {
+        let order = told.first().copied();
+        let request = order.map_or(Request::Law, |(_, force, velocity)| {
+            request_of(force, velocity)
+        });
         self.0.work(py, |episode, interrupted| {
             episode.period(request, interrupted)
         })
@@ -72,18 +105,30 @@ impl Run {
 
     /// Wanted and commanded velocity of the last control period, whether the law was taken over from,
     /// and the status, if the law has parts around it.
+    fn trace(&self, _robot: usize) -> PyResult<Option<Told>> {
+        Ok(self.0.idle()?.trace().map(told))
+    }
+
+    /// Plan that the shield verified last, if there is one.
+    fn examined(&self, _robot: usize) -> PyResult<Option<Verified>> {
+        Ok(self.0.idle()?.examined().map(verified))
+    }
+
+    /// Column of each obstacle that the controller sees.
+    fn people(&self, _robot: usize) -> PyResult<Vec<Option<usize>>> {
+        let seen = self.0.idle()?.situation().bodies.len();
+        Ok((0..seen).map(Some).collect())
+    }
+
+    /// Whether it has ended.
     #[getter]
-    fn trace(&self) -> PyResult<Option<Told>> {
-        let trace = self.0.idle()?.trace();
-        Ok(trace.map(|trace| {
-            let word = trace.status.word();
-            (
-                trace.wanted.into(),
-                trace.command.into(),
-                trace.taken_over,
-                word,
-            )
-        }))
+    fn finished(&self) -> PyResult<bool> {
+        Ok(self.0.idle()?.finished())
+    }
+
+    /// Whether the robot decides in the next step.
+    fn deciding(&self) -> PyResult<Vec<bool>> {
+        Ok(vec![!self.0.idle()?.finished()])
     }
 
     /// The word for how it ended, if it has.

@@ -9,7 +9,7 @@ use crate::crowd::world::{CrowdWorld, count_of};
 use crate::error::Result;
 use crate::lanes::Vector2;
 use crate::laws::Law;
-use crate::laws::trace::Trace;
+use crate::laws::trace::{Examined, Trace};
 use crate::laws::{Situation, Stop, force_toward};
 use crate::robots::drives::{MotorDrive, PointMass, Reading};
 use crate::run::as_built::sight::BuiltSensors;
@@ -39,18 +39,21 @@ struct RobotSensors {
     reading: Reading,
 }
 
-/// Controller of a robot that drives itself: apart from it, for robots that are told what to do have none.
+/// Eyes and law of a robot: apart from it, for robots that are told what to do and observed by nobody have none.
 struct Pilot {
-    law: Box<dyn Law<f64>>,
-    /// Surroundings as the law sees them, or as they are for sensors.
+    /// `None`: it does what it is told, or stands.
+    law: Option<Box<dyn Law<f64>>>,
+    /// What the law sees, or what there is to be sensed.
     sight: Sight,
     sensing: Option<RobotSensors>,
+    /// State of the robot as measured last, with step and time in s of the sample.
+    sample: Option<(usize, f64, MeasuredState)>,
 }
 
 impl Pilot {
     /// A law that knows what it can see of a scenario.
     fn new(
-        law: &AnyLaw,
+        law: Option<&AnyLaw>,
         mut sight: Sight,
         scenario: &Scenario,
         built: Option<&AsBuilt>,
@@ -68,10 +71,51 @@ impl Pilot {
             None => scenario,
         };
         Ok(Self {
-            law: law.with_own_gains(known)?,
+            law: law.map(|law| law.with_own_gains(known)).transpose()?,
             sight,
             sensing,
+            sample: None,
         })
+    }
+
+    /// Measures once at a sample; `heading` in rad is what the robot itself takes it for.
+    fn measure(
+        &mut self,
+        world: &CrowdWorld,
+        people: &[PersonState],
+        robots: &[Agent],
+        (step, time): (usize, f64),
+        (heading, interval): (f64, f64),
+    ) -> MeasuredState {
+        if let Some((_, _, known)) = self.sample.filter(|(last, ..)| *last == step) {
+            return known;
+        }
+        let sight = &mut self.sight;
+        sight.look(people, robots, world, interval);
+        let known = if let Some(RobotSensors { sensors, reading }) = &mut self.sensing {
+            MeasuredState::of(&sensors.look(time, reading, heading, &sight.bodies))
+        } else {
+            MeasuredState {
+                clear: sight.clear(),
+                ..MeasuredState::exactly(sight.own)
+            }
+        };
+        self.sample = Some((step, time, known));
+        known
+    }
+}
+
+/// A situation with obstacles as they were measured last.
+fn shown<'a>(
+    situation: Situation<'a, f64>,
+    sight: &'a Sight,
+    sensing: Option<&'a RobotSensors>,
+) -> Situation<'a, f64> {
+    let bodies = &sight.bodies;
+    Situation {
+        bodies: sensing.map_or(bodies, |sensing| sensing.sensors.bodies(bodies)),
+        ages: sensing.map_or(&[], |sensing| sensing.sensors.ages()),
+        ..situation
     }
 }
 
@@ -97,17 +141,18 @@ pub struct CrowdRobot {
 
 impl CrowdRobot {
     /// A robot of a world at its start; `part`: time between two motions in s; `motors`: whether the currents of
-    /// its motors are looked at.
+    /// its motors are looked at; `observed`: whether it has eyes without a law, too.
     pub(super) fn new(
         world: &CrowdWorld,
         people: &[PersonState],
         index: usize,
-        (part, motors): (f64, bool),
+        (part, motors, observed): (f64, bool, bool),
     ) -> Result<Self> {
         let setup = &world.robots[index];
-        let sighted = match setup.law {
-            Some(_) => Some(Sight::new(world, people, index, guests(world))?),
-            None => None,
+        let sighted = if setup.law.is_some() || observed {
+            Some(Sight::new(world, people, index, guests(world))?)
+        } else {
+            None
         };
         let (sight, known) =
             sighted.map_or((None, Vec::new()), |(sight, known)| (Some(sight), known));
@@ -121,15 +166,15 @@ impl CrowdRobot {
             ..setup.built.clone().unwrap_or_default()
         };
         let start = built.start_in(&scenario);
-        let pilot = match (&setup.law, sight) {
-            (Some(law), Some(sight)) => {
-                let sensing = setup.sensing(world.step);
+        let pilot = match sight {
+            Some(sight) => {
+                let (law, sensing) = (setup.law.as_ref(), setup.sensing(world.step));
                 let pilot = Pilot::new(law, sight, &scenario, sensing.as_ref())?;
                 Some(Box::new(pilot))
             }
-            _ => None,
+            None => None,
         };
-        let built = match (&pilot, scenario.differential()) {
+        let built = match (&setup.law, scenario.differential()) {
             // From outside a robot with two wheels is told velocities and twists.
             (None, Some(_)) => AsBuilt {
                 steering_law: crate::run::as_built::SteeringLaw::Velocity,
@@ -200,7 +245,83 @@ impl CrowdRobot {
     /// Trace of the parts around the law in the last control period, if there are any.
     #[must_use]
     pub fn trace(&self) -> Option<Trace> {
-        self.pilot.as_ref()?.law.trace()
+        self.law()?.trace()
+    }
+
+    /// What parts around the law verified in the last control period, if there is a shield.
+    #[must_use]
+    pub fn examined(&self) -> Option<Examined> {
+        self.law()?.examined()
+    }
+
+    fn law(&self) -> Option<&dyn Law<f64>> {
+        self.pilot.as_ref()?.law.as_deref()
+    }
+
+    /// Whether it decides anew at a step of the world; one that has arrived does no more.
+    pub(super) fn decides_at(&self, step: usize) -> bool {
+        self.is_due(step) && !self.has_arrived()
+    }
+
+    /// Whether a control period begins at a step of the world.
+    pub(super) fn is_due(&self, step: usize) -> bool {
+        step.is_multiple_of(self.every)
+    }
+
+    /// What its controller sees, measured at the start of the control period; `None` without eyes.
+    pub(super) fn observe(
+        &mut self,
+        world: &CrowdWorld,
+        people: &[PersonState],
+        robots: &[Agent],
+        (step, time): (usize, f64),
+        index: usize,
+    ) -> Result<Option<Situation<'_, f64>>> {
+        let (heading, interval) = (self.known_heading(), self.interval);
+        let begun = step - step % self.every;
+        let old = |pilot: &Pilot| pilot.sample.is_none_or(|(last, ..)| last < begun);
+        if self.pilot.as_deref().is_some_and(old) {
+            self.make_room(world, people, index)?;
+            if let Some(pilot) = &mut self.pilot {
+                pilot.measure(world, people, robots, (step, time), (heading, interval));
+            }
+        }
+        let seen = self.pilot.as_deref().and_then(|pilot| {
+            let (_, time, known) = pilot.sample?;
+            let measured = known.fix.and_then(|fix| fix.heading);
+            let situation = Situation {
+                time,
+                bodies: &[],
+                ages: &[],
+                robot: known.robot,
+                heading: measured.unwrap_or(heading),
+                interval,
+                stop: Stop::never(),
+            };
+            Some(shown(situation, &pilot.sight, pilot.sensing.as_ref()))
+        });
+        Ok(seen)
+    }
+
+    /// Number of the person whom each obstacle of [`Self::observe`] is; `None` for robots, walls and free places, and
+    /// for all that sensors tell of.
+    #[must_use]
+    pub fn people_seen(&self) -> Vec<Option<usize>> {
+        let Some(pilot) = &self.pilot else {
+            return Vec::new();
+        };
+        match &pilot.sensing {
+            Some(sensing) if sensing.sensors.tells() => Vec::new(),
+            _ => pilot.sight.people().collect(),
+        }
+    }
+
+    /// Heading in rad as the robot itself takes it.
+    fn known_heading(&self) -> f64 {
+        match &self.chassis {
+            Chassis::Point(_) => self.heading,
+            Chassis::Motors(drive, _) => drive.known_heading(),
+        }
     }
 
     /// The robot as others see it.
@@ -251,7 +372,7 @@ impl CrowdRobot {
         (step, time): (usize, f64),
         (index, interrupted): (usize, Interrupted<'_>),
     ) -> Result<bool> {
-        if !step.is_multiple_of(self.every) {
+        if !self.is_due(step) {
             return Ok(true);
         }
         self.make_room(world, people, index)?;
@@ -261,10 +382,7 @@ impl CrowdRobot {
             bodies: &[],
             ages: &[],
             robot: known.robot,
-            heading: match &self.chassis {
-                Chassis::Point(_) => self.heading,
-                Chassis::Motors(drive, _) => drive.known_heading(),
-            },
+            heading: self.known_heading(),
             interval: self.interval,
             stop: Stop(interrupted),
         };
@@ -274,33 +392,18 @@ impl CrowdRobot {
             _ if !self.arrival_time.is_nan() => toward(Vector2::zeros(), &situation),
             (Request::Force(force), _) => force.into(),
             (Request::Velocity(velocity), _) => toward(velocity.into(), &situation),
-            (Request::Law, None) => toward(Vector2::zeros(), &situation),
-            (
-                Request::Law,
-                Some(Pilot {
-                    law,
-                    sight,
-                    sensing,
-                }),
-            ) => {
-                sight.look(people, robots, world, self.interval);
-                if let Some(RobotSensors { sensors, reading }) = sensing {
-                    let seen = sensors.look(time, reading, situation.heading, &sight.bodies);
-                    known = MeasuredState::of(&seen);
-                    let measured = known.fix.and_then(|fix| fix.heading);
-                    situation.heading = measured.unwrap_or(situation.heading);
-                    situation.bodies = sensors.bodies(&sight.bodies);
-                    situation.ages = sensors.ages();
-                } else {
-                    known = MeasuredState {
-                        clear: sight.clear(),
-                        ..MeasuredState::exactly(sight.own)
-                    };
-                    situation.bodies = &sight.bodies;
-                }
+            (Request::Law, Some(pilot)) if pilot.law.is_some() => {
+                let own = (situation.heading, self.interval);
+                known = pilot.measure(world, people, robots, (step, time), own);
+                let measured = known.fix.and_then(|fix| fix.heading);
+                situation.heading = measured.unwrap_or(situation.heading);
                 situation.robot = known.robot;
-                law.command(&situation).force
+                let (sight, sensing) = (&pilot.sight, pilot.sensing.as_ref());
+                let seen = shown(situation, sight, sensing);
+                let law = pilot.law.as_mut();
+                law.map_or(Vector2::zeros(), |law| law.command(&seen).force)
             }
+            (Request::Law, _) => toward(Vector2::zeros(), &situation),
         };
         match &mut self.chassis {
             Chassis::Point(point) => point.hold(force),
@@ -316,13 +419,11 @@ impl CrowdRobot {
         people: &[PersonState],
         index: usize,
     ) -> Result<()> {
-        // Without a law nothing of the world is read.
+        // Without eyes nothing of the world is read.
         let Some(pilot) = self.pilot.as_deref_mut() else {
             return Ok(());
         };
-        let Some(kind) = &world.robots[index].law else {
-            return Ok(());
-        };
+        let kind = world.robots[index].law.as_ref();
         let mut places = guests(world);
         while !pilot.sight.admit(people) {
             places *= 2;

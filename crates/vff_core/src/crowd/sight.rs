@@ -236,6 +236,14 @@ impl Sight {
         true
     }
 
+    /// Number of the person in each place of the list of obstacles; `None` for robots, walls and free places.
+    pub fn people(&self) -> impl Iterator<Item = Option<usize>> + '_ {
+        self.slots.iter().map(|slot| match slot {
+            Slot::Person(number) | Slot::Guest(_, Some(number)) => Some(*number),
+            Slot::Robot(_) | Slot::Guest(_, None) | Slot::Wall => None,
+        })
+    }
+
     /// State of whoever has a place, `None` if nobody has.
     fn state(slot: Slot, people: &[PersonState], robots: &[Agent]) -> Option<(Vector, Vector)> {
         match slot {

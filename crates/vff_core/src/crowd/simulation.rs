@@ -18,6 +18,7 @@ use crate::crowd::snapshot::{CrowdSetting, Models, Snapshot};
 use crate::crowd::sources::Source;
 use crate::crowd::world::{CrowdWorld, count_of};
 use crate::error::Result;
+use crate::laws::Situation;
 use crate::run::{Clock, Episode, Interrupted, Parts, Request};
 
 /// Room for the decisions of everybody at an instant; nothing in it outlasts the instant, so that worlds that are
@@ -48,6 +49,8 @@ struct CrowdParts {
     wall_rescues: u64,
     fastest_squared: f64,
     record: Option<Trajectories>,
+    /// Whether robots without a law have eyes, too.
+    observed: bool,
     /// Steps of the world so far.
     instant: usize,
     diverged: Option<Divergence>,
@@ -80,6 +83,7 @@ impl CrowdParts {
             wall_rescues: 0,
             fastest_squared: 0.0,
             record: record.then(Trajectories::default),
+            observed: false,
             instant: 0,
             diverged: None,
             over: false,
@@ -101,7 +105,8 @@ impl CrowdParts {
         self.robots.clear();
         for index in 0..world.robots.len() {
             let motors = self.record.is_some();
-            let robot = CrowdRobot::new(world, &self.people, index, (part, motors));
+            let options = (part, motors, self.observed);
+            let robot = CrowdRobot::new(world, &self.people, index, options);
             let robot = robot.map_err(|error| error.within(&format!("robots[{index}]")))?;
             self.robots.push(robot);
         }
@@ -312,13 +317,29 @@ impl Simulation {
     /// # Errors
     /// The world breaks a rule, or a law cannot work in it.
     pub fn new(world: impl Into<Arc<CrowdWorld>>, record: bool) -> Result<Self> {
+        Self::starting(CrowdParts::new(world.into(), record))
+    }
+
+    /// A recorded world at its start, all robots of which can be observed.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn observed(world: impl Into<Arc<CrowdWorld>>) -> Result<Self> {
         let world = world.into();
-        world.check()?;
-        let clock = clock_of(&world)?;
-        if record {
-            check_rows(&world)?;
+        let robots = world.robots.len();
+        world.check_sightings(robots * (robots + world.people.len()))?;
+        Self::starting(CrowdParts {
+            observed: true,
+            ..CrowdParts::new(world, true)
+        })
+    }
+
+    fn starting(mut parts: CrowdParts) -> Result<Self> {
+        parts.world.check()?;
+        let clock = clock_of(&parts.world)?;
+        if parts.record.is_some() {
+            check_rows(&parts.world)?;
         }
-        let mut parts = CrowdParts::new(world, record);
         parts.open(clock.step)?;
         Episode::starting(parts, clock).map(Self)
     }
@@ -342,6 +363,45 @@ impl Simulation {
     pub fn ask(&mut self, robot: usize, request: Request) {
         if let Some(robot) = self.0.parts.robots.get_mut(robot) {
             robot.ask(request);
+        }
+    }
+
+    /// What the controller of a robot sees, measured at the start of its control period; `None` without such a robot,
+    /// or one without eyes.
+    ///
+    /// # Errors
+    /// Its law cannot work among the people who have come.
+    pub fn observe(&mut self, robot: usize) -> Result<Option<Situation<'_, f64>>> {
+        let now = self.0.stepped();
+        let parts = &mut self.0.parts;
+        let Some(observer) = parts.robots.get_mut(robot) else {
+            return Ok(None);
+        };
+        let at = (parts.instant, now);
+        let seen = observer.observe(&parts.world, &parts.people, &parts.bodies, at, robot);
+        seen.map_err(|error| error.within(&format!("robots[{robot}]")))
+    }
+
+    /// Which robots decide in the next step: their control periods begin, and they have not arrived.
+    #[must_use]
+    pub fn deciding(&self) -> Vec<bool> {
+        let instant = self.0.parts.instant;
+        let robots = self.robots().iter();
+        robots.map(|robot| robot.decides_at(instant)).collect()
+    }
+
+    /// Advances by steps of the world until a control period of a robot begins, or it has ended.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    pub fn period(&mut self, interrupted: Interrupted<'_>) -> Result<()> {
+        loop {
+            self.step(interrupted)?;
+            let (instant, robots) = (self.0.parts.instant, self.robots());
+            let begins = robots.is_empty() || robots.iter().any(|robot| robot.is_due(instant));
+            if begins || self.finished() {
+                return Ok(());
+            }
         }
     }
 

@@ -56,7 +56,7 @@ pub use masoud::Masoud;
 
 use crate::error::Result;
 use crate::lanes::{Real, Vector2};
-use crate::laws::trace::Trace;
+use crate::laws::trace::{Examined, Trace};
 use crate::world::geometry::{Body, RobotState};
 use crate::world::map::StaticMap;
 use crate::world::scenario::{PlacedObstacle, Scenario};
@@ -164,6 +164,11 @@ pub trait Law<R: Real>: Send {
 
     /// Record of the parts around the law in the last control period, if there are any.
     fn trace(&self) -> Option<Trace> {
+        None
+    }
+
+    /// Plan behind the command of the last control period of a robot without wheels, if there is a shield.
+    fn examined(&self) -> Option<Examined> {
         None
     }
 }

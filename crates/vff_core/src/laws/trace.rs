@@ -21,3 +21,17 @@ pub struct Trace {
     /// Assumptions of the shield, if there is one.
     pub shield: Option<Shield>,
 }
+
+/// Plan behind the command of the last control period, from where the robot was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Examined {
+    /// Least distance between the half disc ahead and everywhere that others can be, over the plan, in m; infinite
+    /// without others.
+    pub margin: f64,
+    /// Instants of the plan from 0 to rest, in s.
+    pub time: Vec<f64>,
+    /// Position of the robot at them in m.
+    pub position: Vec<[f64; 2]>,
+    /// How far each obstacle can have come from where it was measured when the robot rests, in m; 0 for what stands.
+    pub reach: Vec<f64>,
+}

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::lanes::{Planar, Vector2};
-use crate::laws::trace::Trace;
+use crate::laws::trace::{Examined, Trace};
 use crate::laws::{Command, Law, Situation, Stop, force_toward};
 use crate::robots::drives::{MotorDrive, Order, PoseFix, Reading};
 use crate::run::Interrupted;
@@ -188,6 +188,12 @@ impl<L: Listener> Episode<Navigation<L>> {
     #[must_use]
     pub fn trace(&self) -> Option<Trace> {
         self.parts.law.as_ref()?.trace()
+    }
+
+    /// Plan that was verified in the last control period, if there is a shield.
+    #[must_use]
+    pub fn examined(&self) -> Option<Examined> {
+        self.parts.law.as_ref()?.examined()
     }
 
     /// Situation of the controller now; after the end of the run, at the end of its last motion step.

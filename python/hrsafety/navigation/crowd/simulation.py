@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import callback, instance, sequence, thread_count
@@ -14,7 +14,7 @@ from hrsafety.navigation.crowd.world_run import WorldRun
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.laws.python_law import PythonLaw
 
-__all__ = ["OWN_LAWS", "driven", "simulated"]
+__all__ = ["OWN_LAWS", "driven", "run_of", "simulated"]
 
 
 def _own(_: object) -> NoReturn:
@@ -79,7 +79,22 @@ def simulated(
     checked = [instance(f"worlds[{index}]", world, World) for index, world in enumerate(given)]
     natives = [world._native for world in checked]
     found = _hrsafety.crowd_simulate(natives, threads=thread_count(threads), progress=callback("progress", progress))
-    return [
-        WorldRun(world, {_NAMES.get(name, name): values for name, values in recorded.items()})
-        for world, recorded in zip(checked, found, strict=True)
-    ]
+    return list(map(run_of, checked, found))
+
+
+def run_of(world: World, recorded: dict[str, Any]) -> WorldRun:
+    """Return the run of a world.
+
+    Parameters
+    ----------
+    world : World
+        The world.
+    recorded : dict of str to object
+        What the core has recorded, by its names.
+
+    Returns
+    -------
+    Trajectory
+        The run.
+    """
+    return WorldRun(world, {_NAMES.get(name, name): values for name, values in recorded.items()})

@@ -16,6 +16,7 @@ from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.metrics.between import first_wall_contact, paths_of, until_arrival, wrapped
 from hrsafety.navigation.metrics.scores import table_of
 from hrsafety.navigation.trajectory import Divergence, Trajectory
+from hrsafety.navigation.warnings.runs import of_commands
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, plane
 
@@ -62,6 +63,7 @@ class WorldRun(Trajectory):
             values |= {name: recorded[f"robot_{name}"][:, robot] for name in ("position", "velocity", "heading")}
             values["arrival_time"] = float(recorded["robot_arrival_time"][robot])
             values["energy"] = float(self.robot_energy[robot])
+            values["commanded_periods"] = self._commanded[robot]
         for name, value in values.items():
             assign(self, name, value)
 
@@ -105,6 +107,12 @@ class WorldRun(Trajectory):
     robot_energy = property(lambda self: self._recorded.get("robot_energy", np.full(len(self.scenario.robots), np.nan)))
     robot_arrival_time = property(lambda self: self._recorded["robot_arrival_time"])
 
+    @property
+    def _commanded(self) -> tuple[int, ...]:
+        """Control periods in which each robot was commanded from outside."""
+        commanded: tuple[int, ...] = self._recorded.get("commanded", (0,) * len(self.scenario.robots))
+        return commanded
+
     def _met(self, robot: int) -> dict[str, Any]:
         """Return how the run ended for a robot, and which people and walls it touched."""
         places = self.robot_position, self.obstacle_position, self.obstacle_radius
@@ -122,9 +130,12 @@ class WorldRun(Trajectory):
         walls = first_wall_contact(episode, scored.arrival_time) if scored.wall_contacts else (math.nan, math.nan)
         away = wrapped(self.obstacle_position - self.robot_position[:, robot, None], self.scenario.period)
         arrived = not math.isnan(self.arrival_time)
+        running = not arrived and self._recorded.get("running", False)
         touched = touches.counted or scored.wall_contacts > 0
         return {
-            "outcome": outcome_of(touched=touched, arrived=arrived, diverged=self.diverged is not None),
+            "outcome": "running"
+            if running
+            else outcome_of(touched=touched, arrived=arrived, diverged=self.diverged is not None),
             "distance": np.hypot(away[..., 0], away[..., 1]),
             "min_distance": least,
             "min_clearance": least - episode.robot_radius - self.obstacle_radius,
@@ -165,10 +176,15 @@ class WorldRun(Trajectory):
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """Warnings of the world; divergence, people who were set back at walls, or moved faster than people do."""
+        """Warnings of the world; divergence, people who were set back at walls, or moved faster than people do.
+
+        Of a `Run` also commands that a shield has not verified.
+        """
         # Of a world that diverged its end says more than a speed.
         speed = self.max_person_speed if self.diverged is None else 0.0
-        found = (*of_people(self.wall_rescues, speed, self.desired_speed), *self.scenario.warnings)
+        asked = range(len(self.scenario.robots)) if self._robot is None else (self._robot,)
+        told = [each for i in asked for each in of_commands(self.scenario.robots[i].law, self._commanded[i])]
+        found = (*told, *of_people(self.wall_rescues, speed, self.desired_speed), *self.scenario.warnings)
         if self.diverged is None:
             return found
         who, when = f"{self.diverged.kind} {self.diverged.index}", self.diverged.time

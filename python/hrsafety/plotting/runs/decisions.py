@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -68,7 +69,7 @@ def safety_decision(record: SafetyRecord, time: float, *, title: str | None = No
     >>> plotting.runs.safety_decision(record, 1.0).axes[0].get_xlabel()
     'x (m)'
     """
-    shown = instance("record", record, SafetyRecord)
+    shown = _checked(record)
     decision = shown.at(time)
     handles = _handles(shown)
     figure, (axes,) = floor.panels(_limits(shown, decision), entries=len(handles), title=title)
@@ -131,7 +132,7 @@ def animate_safety(
     ...     plotting.runs.animate_safety(record, pathlib.Path(folder) / "c2.gif", frames_per_second=2).name
     'c2.gif'
     """
-    shown = instance("record", record, SafetyRecord)
+    shown = _checked(record)
     target = movies.checked_target(path)
     times = [each.time for each in shown.decisions]
     instants = movies.checked_instants(target, times[-1], frames_per_second, speed)
@@ -163,21 +164,40 @@ def _frames(record: SafetyRecord, rows: list[int], title: str | None) -> Iterato
     return movies.drawn(figure, axes, rows, shown)
 
 
+def _checked(record: SafetyRecord) -> SafetyRecord:
+    """Return a record whose run is that of a scenario."""
+    given = instance("record", record, SafetyRecord)
+    return replace(given, trajectory=inputs.checked_trajectory("record.trajectory", given.trajectory))
+
+
+def _seen(record: SafetyRecord, decision: SafetyDecision) -> Iterator[tuple[Obstacle, str, inputs.Array, float]]:
+    """Yield obstacles that can move, with color, place and reach at a decision.
+
+    Who was not seen is where the run has it, without a reach.
+    """
+    run = record.trajectory
+    obstacles, now = run.scenario.obstacles, inputs.row_at(run, decision.time)
+    for index, (obstacle, look) in enumerate(zip(obstacles, shapes.looks(obstacles), strict=True)):
+        place, reach = run.obstacle_position[now, index], 0.0
+        known = decision.obstacle_position[index : index + 1]
+        if np.isfinite(known).all() and len(known):
+            place, reach = known[0], float(decision.obstacle_reach[index])
+        if shapes.is_mobile(obstacle) and np.isfinite(place).all():
+            yield obstacle, look.color, place, reach
+
+
 def _limits(record: SafetyRecord, decision: SafetyDecision | None = None) -> style.Limits:
     """Return what is in view: the run and the scene, and all that one decision is about."""
     run = record.trajectory
     points: list[Any] = [run.position, run.scenario.start, run.scenario.goal]
     if decision is not None:
-        points += [_corners(obstacle, decision, index) for index, obstacle in enumerate(run.scenario.obstacles)]
+        points += [_corners(obstacle, place, reach) for obstacle, _, place, reach in _seen(record, decision)]
     points += shapes.scene_points(run.scenario.obstacles) + walls.points_of(walls.maps_of([run]))
     return inputs.view_limits(points, margin=MARGIN, least_ratio=0.5)
 
 
-def _corners(obstacle: Obstacle, decision: SafetyDecision, index: int) -> inputs.Array:
-    """Return corners around a person who can move and the reach that is drawn, none of who is absent."""
-    place, reach = decision.obstacle_position[index], float(decision.obstacle_reach[index])
-    if not shapes.is_mobile(obstacle) or not np.isfinite(place).all():
-        return np.empty((0, 2))
+def _corners(obstacle: Obstacle, place: inputs.Array, reach: float) -> inputs.Array:
+    """Return corners around a person who can move and the reach that is drawn."""
     size = 0.0 if isinstance(obstacle, Box) else shapes.least_half_width(obstacle)
     drawn = shapes.region(obstacle, place, size + (reach if np.isfinite(reach) else 0.0))
     return np.asarray(drawn.get_extents().get_points())
@@ -221,16 +241,11 @@ def _verdict(decision: SafetyDecision) -> str:
 
 def _add_others(axes: Axes, record: SafetyRecord, decision: SafetyDecision) -> None:
     """Draw those who can move, and how far they can have come when the robot rests."""
-    obstacles = record.trajectory.scenario.obstacles
-    for index, (obstacle, look) in enumerate(zip(obstacles, shapes.looks(obstacles), strict=True)):
-        place = decision.obstacle_position[index]
-        if not shapes.is_mobile(obstacle) or not np.isfinite(place).all():
-            continue
-        shapes.add_obstacle(axes, obstacle, place, look.color, regions=False)
-        reach = float(decision.obstacle_reach[index])
+    for obstacle, color, place, reach in _seen(record, decision):
+        shapes.add_obstacle(axes, obstacle, place, color, regions=False)
         if 0.0 < reach < np.inf:
             size = 0.0 if isinstance(obstacle, Box) else shapes.least_half_width(obstacle)
-            edge: style.Properties = {"edgecolor": look.color, "linestyle": ":", "linewidth": 1.2, "zorder": 3.1}
+            edge: style.Properties = {"edgecolor": color, "linestyle": ":", "linewidth": 1.2, "zorder": 3.1}
             shapes.add(axes, [shapes.region(obstacle, place, size + reach, fill=False, **edge)])
 
 

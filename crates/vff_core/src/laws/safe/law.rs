@@ -9,7 +9,7 @@ use crate::laws::shield::{
     Course, Decision, Deviation, Guard, ShieldLimits, Status, TwistGuard, TwistState, TwistView,
     Verifier, View,
 };
-use crate::laws::trace::Trace;
+use crate::laws::trace::{Examined, Trace};
 use crate::laws::yielding::{Outlook, Yielder};
 use crate::laws::{Command, Law, Situation};
 use crate::robots::differential::{DifferentialLimits, Twist};
@@ -19,6 +19,9 @@ use crate::world::scenario::Scenario;
 
 /// A velocity beyond a limit by less than this share of it is within: the robot shortens it itself.
 const ROUNDING: f64 = 1e-9;
+
+/// Parts of a plan between the instants that are told.
+const PARTS_OF_PLAN: u32 = 24;
 
 /// A law with its parts.
 pub struct SafeLaw {
@@ -40,6 +43,8 @@ pub struct SafeLaw {
     mass: f64,
     goal: Vector2<f64>,
     around: Surroundings,
+    /// State of the robot as measured in the last control period.
+    measured: RobotState<f64>,
     trace: Trace,
 }
 
@@ -106,6 +111,10 @@ impl SafeLaw {
             goal: scenario.goal.into(),
             around: Surroundings::new(family, &inner),
             law: family.law.at_work(gains, &inner, record)?,
+            measured: RobotState {
+                position: scenario.start.into(),
+                velocity: zero,
+            },
             trace: Trace {
                 wanted: zero,
                 command: zero,
@@ -130,6 +139,7 @@ impl Law<f64> for SafeLaw {
             .look(situation, self.guard.as_ref(), self.yielder.as_ref());
         let heading = self.head(situation);
         let (robot, now) = (situation.robot, self.now(situation));
+        self.measured = robot;
         if let (Some(local), true) = (heading.local, self.guidance.is_some()) {
             self.law.aim(local.for_law(robot.position).into());
         }
@@ -181,6 +191,26 @@ impl Law<f64> for SafeLaw {
 
     fn trace(&self) -> Option<Trace> {
         Some(self.trace)
+    }
+
+    fn examined(&self) -> Option<Examined> {
+        let guard = self.guard.filter(|_| self.twist_guard.is_none())?;
+        let (robot, command) = (self.measured, self.trace.command);
+        let plan = guard.plan(&robot, command);
+        let share = |part: u32| f64::from(part) / f64::from(PARTS_OF_PLAN);
+        let instants = (0..=PARTS_OF_PLAN).map(|part| plan.end() * share(part));
+        let time: Vec<f64> = instants.collect();
+        let view = View {
+            robot,
+            people: &self.around.people,
+            walls: self.around.walls(),
+        };
+        Some(Examined {
+            margin: guard.gap(&view, command),
+            position: time.iter().map(|at| plan.position(*at).into()).collect(),
+            reach: self.around.reaches(plan.end()),
+            time,
+        })
     }
 }
 

@@ -107,6 +107,19 @@ impl Surroundings {
         })
     }
 
+    /// How far each obstacle can have come by a time in s from where it was measured, in m; 0 for what stands.
+    pub fn reaches(&self, time: f64) -> Vec<f64> {
+        let mut people = self.people.iter();
+        let known = self.bodies.iter().zip(&self.known);
+        let reach = known.map(|(body, known)| {
+            let counts = body.state.present && known.kind == ObstacleKind::Person;
+            let person = if counts { people.next() } else { None };
+            let moving = person.filter(|person| person.max_speed > 0.0);
+            moving.map_or(0.0, |person| person.reach(time))
+        });
+        reach.collect()
+    }
+
     /// Brings everything to the present.
     pub fn look(
         &mut self,

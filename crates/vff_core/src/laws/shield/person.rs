@@ -50,7 +50,7 @@ impl Person {
 
     /// Farthest that he can have come from `o` by a time after the command takes effect, in m.
     #[inline(always)]
-    pub(super) fn reach(&self, time: f64) -> f64 {
+    pub(crate) fn reach(&self, time: f64) -> f64 {
         self.position_error + self.max_speed * (self.latency + time)
     }
 

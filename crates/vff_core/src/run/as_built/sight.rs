@@ -75,6 +75,11 @@ impl BuiltSensors {
         self.known.as_ref().unwrap_or(scenario)
     }
 
+    /// Whether a law knows the obstacles that sensors tell of, in place of those that there are.
+    pub fn tells(&self) -> bool {
+        self.known.is_some()
+    }
+
     /// Shows the scene at an instant, at the start of every motion step.
     pub fn show(&mut self, time: f64, reading: &Reading, actual: &[Body]) {
         let truth = truth_of(time, reading, actual);
