@@ -117,7 +117,7 @@ class Arm(Facts):
         Parameters
         ----------
         path_or_text : path-like or str
-            A URDF file, or the text of one. Macros (xacro) have to be expanded.
+            A URDF file, a file of macros (``.xacro``, with the extra ``arms``), or the text of a URDF.
         payload : Payload, mapping, tuple, or sequence of them, or None
             What the arm carries: link, mass, center and inertia of each.
         armature : mapping of str to float, array_like (n,), float or None

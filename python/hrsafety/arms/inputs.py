@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from hrsafety._arguments import Array, checked_text, meant, number, numbers, readable, sequence
-from hrsafety.errors import InvalidParameterError, ShapeError, Shown
+from hrsafety.errors import InvalidParameterError, MissingExtraError, ShapeError, Shown
 
 __all__ = [
     "Rows",
@@ -43,7 +43,22 @@ def urdf_text(source: object) -> tuple[str, str]:
         raise InvalidParameterError(
             path.name, "be text in UTF-8", Shown(f"byte {error.start}: {error.reason}")
         ) from None
+    if path.suffix.lower() == ".xacro":
+        text = _expanded(path)
     return text.lstrip(), path.name
+
+
+def _expanded(path: Path) -> str:
+    """Return the URDF that the macros of a file make."""
+    try:
+        from xacrodoc import XacroDoc
+    except ModuleNotFoundError:
+        raise MissingExtraError(f"{path.name} holds macros and needs xacrodoc: pip install hrsafety[arms]") from None
+    try:
+        return str(XacroDoc.from_file(path, resolve_packages=False).to_urdf_string())
+    except Exception as error:  # macros are programs, and may fail as any
+        found = Shown(" ".join(f"{type(error).__name__}: {error}".split())[:200])
+        raise InvalidParameterError(path.name, "hold macros that can be expanded", found) from None
 
 
 def locked_of(given: object) -> tuple[str, ...]:

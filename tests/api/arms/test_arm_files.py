@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ import pytest
 from api.arms.arm_models import EXAMPLE, INERTIAL, LINKS, TWO, joint, robot
 from api.spoiled_files import spoiled
 from hrsafety import arms, standards
-from hrsafety.errors import HrsafetyError
+from hrsafety.errors import HrsafetyError, MissingExtraError
 
 MIMIC = robot(*LINKS, joint("one", "base", "a"), joint("two", "a", "b", '<axis xyz="0 1 0"/><mimic joint="one"/>'))
 PLACE = {"direction": (0.6, -0.48, 0.64), "check_limits": False}
@@ -124,3 +125,29 @@ def test_damaged_limits_are_refused_or_are_limits(text: str, suffix: str, tmp_pa
             assert limit.status in {"limited", "not_permitted", "not_checked"}
             assert json.dumps(str(limit))
     assert read > 100
+
+
+MACROS = """<robot name="m" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:property name="load" value="3"/>
+<link name="base"/><link name="upper"><inertial><mass value="${load + 1}"/><origin xyz="0.2 0 0"/>
+<inertia ixx="0.01" iyy="0.05" izz="0.05" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 0 1"/>
+<limit lower="-1" upper="1" effort="10" velocity="1"/></joint></robot>
+"""
+
+
+def test_macros_are_expanded(tmp_path: Path) -> None:
+    pytest.importorskip("xacrodoc")
+    path = tmp_path / "arm.urdf.xacro"
+    path.write_text(MACROS, encoding="utf-8")
+    assert arms.Arm.from_urdf(path).moving_mass == 4.0
+    path.write_text(MACROS.replace("${load", "${lod"), encoding="utf-8")
+    with pytest.raises(arms.InvalidParameterError, match=r"arm.urdf.xacro must hold macros that can be expanded"):
+        arms.Arm.from_urdf(path)
+
+
+def test_macros_name_the_extra_that_expands_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "xacrodoc", None)
+    path = tmp_path / "arm.xacro"
+    path.write_text(MACROS, encoding="utf-8")
+    with pytest.raises(MissingExtraError, match=r"pip install hrsafety\[arms\]"):
+        arms.Arm.from_urdf(path)
