@@ -4,7 +4,8 @@
 scores how well and how safely they reach their goal. `impact` gives the loads of a foam-covered
 manipulator that hits a head, and designs the foam; `reactive` follows a sound and avoids what
 ultrasonic sensors see. `arms` reads arms from URDF and gives the masses of their points, `standards` holds
-limits of contact and separation distances, `records` judges measured contacts. `io` reads and writes the files of
+limits of contact and separation distances, `records` judges measured contacts, `program` finds how fast a robot
+program may be beside people. `io` reads and writes the files of
 others,
 `zones` designs and attacks the zones of a collision monitor, `ros` puts people around a robot of ROS 2. Sub-modules
 load on first use, so importing the package costs little more than importing numpy.
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
         pages,
         plausibility,
         plotting,
+        program,
         reactive,
         records,
         reproduce,
@@ -68,6 +70,7 @@ __all__ = [
     "pages",
     "plausibility",
     "plotting",
+    "program",
     "reactive",
     "records",
     "reproduce",

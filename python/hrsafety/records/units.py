@@ -29,6 +29,7 @@ _BY_DIMENSION = {
         "psi": _POUND_FORCE / _INCH**2,
     },
     "length": {"mm": 1e-3, "m": 1.0},
+    "angle": {"rad": 1.0, "deg": math.pi / 180.0},
     "rate": {"deg/s": math.pi / 180.0, "rad/s": 1.0},
 }
 _UNITS = {name: (dimension, factor) for dimension, units in _BY_DIMENSION.items() for name, factor in units.items()}

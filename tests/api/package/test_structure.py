@@ -30,7 +30,7 @@ PACKAGE = REPOSITORY / "python" / "hrsafety"
 CORES = ("vff_core", "impact_core")
 PYTHON_CRATES = {"pyo3", "numpy", "pyo3-ffi"}
 NATIVE = "hrsafety._hrsafety"
-NATIVE_USERS = ("navigation", "impact", "reactive", "arms", "contact", "standards", "gym")
+NATIVE_USERS = ("navigation", "impact", "reactive", "arms", "contact", "standards", "program", "gym")
 COMPUTING = {
     *("simulate", "simulate_batch", "evaluate", "force_field", "force_terms", "lyapunov", "region_radii"),
     *("optimize_gains", "pareto_front", "gain_sensitivity", "gain_gradient"),
@@ -199,6 +199,12 @@ def test_users_of_the_native_module_do_not_import_each_other(path: Path) -> None
         own.append("standards")  # forces along a motion are held against limits; nothing goes the other way
     if own == ["contact"]:
         own += ["arms", "standards"]  # a study of a cell asks both for masses and limits; nothing goes the other way
+    if own == ["program"]:
+        own += [
+            "arms",
+            "contact",
+            "standards",
+        ]  # limits of contacts along the path of an arm; nothing goes the other way
     if own == ["gym"]:
         own.append("navigation")  # environments are made of its worlds; nothing goes the other way
     others = [f"hrsafety.{user}" for user in NATIVE_USERS if own and user not in own]

@@ -1,0 +1,14 @@
+"""Robot programs: how fast a robot may move along its path beside people, and what that costs in cycle time.
+
+Every number here is a model: a measurement on the finished machine must confirm it.
+"""
+
+from typing import TYPE_CHECKING
+
+from hrsafety._namespace import names_of
+
+if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
+    from hrsafety.program.motion import ArmMotion as ArmMotion, Retimed as Retimed
+    from hrsafety.program.moves import Move as Move
+else:
+    __all__, __getattr__, __dir__ = names_of(__name__)

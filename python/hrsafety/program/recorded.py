@@ -1,0 +1,270 @@
+"""Joint logs as paths: standstill becomes dwells, what is between them splines of the chord length."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+from os import PathLike
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety import records
+from hrsafety._arguments import Array, numbers, vector
+from hrsafety.arms import Arm
+from hrsafety.arms.inputs import poses_of
+from hrsafety.errors import FileError, InvalidParameterError, ShapeError, Shown
+from hrsafety.program.curves import JointCurve
+from hrsafety.records.units import dimension_of
+
+__all__ = ["MOST_WAYPOINTS", "FollowedLog", "JointLog", "followed", "read_log"]
+
+MOST_WAYPOINTS = 10**6
+LARGEST_TURN = 7.0
+"""Values of turning joints in rad beyond which degrees are meant."""
+STILL = 1e-3
+"""Share of the speed of its joint below which a robot stands."""
+SHORTEST_DWELL = 0.05
+"""Time in s for which it has to."""
+THINNED = 0.25
+"""Samples nearer to each other than this share of the tolerance are one place of the path."""
+FIRST_KNOTS = 4
+SAME = 1e-9
+"""Poses that are no farther apart are the same."""
+
+
+class JointLog(NamedTuple):
+    """A recorded motion: instants in s, joint values (m, joints) with their rates, and the digest of its file."""
+
+    time: Array
+    joints: Array
+    rates: Array
+    sha256: str = ""
+
+
+class FollowedLog(NamedTuple):
+    """A log as a path.
+
+    Attributes
+    ----------
+    curves : list of JointCurve
+        Pieces between which the robot stands.
+    dwells : list of float
+        Time in s that it stands before each piece, and behind the last one.
+    place : ndarray (m,)
+        Path parameter of each sample.
+    residual : float
+        Largest distance of a joint from its sample, in rad or m.
+    """
+
+    curves: list[JointCurve]
+    dwells: list[float]
+    place: Array
+    residual: float
+
+
+def read_log(path: str | PathLike[str], arm: Arm) -> JointLog:
+    """Return a joint log: a table with a column of times and one for each joint, by its name.
+
+    Raises
+    ------
+    FileError
+        If a column is missing, times do not increase, or values are hardly radians.
+    """
+    record = records.load(path)
+    name = Path(path).name
+    columns = []
+    for joint in arm.joint_names:
+        if joint not in record.columns:
+            if joint in arm.locked:
+                columns.append(np.zeros(len(record.time)))
+                continue
+            remedy = f"name a column {joint}, in rad or m"
+            raise FileError(name, f"have a column for each joint: {joint}", Shown(", ".join(record.columns)), remedy)
+        unit = record.units[joint]
+        if unit is not None and dimension_of(unit) not in ("angle", "length"):
+            raise FileError(f"{name}, column {joint}", "be values of a joint in rad, deg, m or mm", unit)
+        columns.append(record.columns[joint])
+    try:
+        log = checked_log(arm, record.time, np.column_stack(columns), f"{name}, column ")
+    except InvalidParameterError as error:
+        raise error.renamed(f"{name}, column of times") if error.argument == "time" else error from None
+    return log._replace(sha256=record.source.sha256)
+
+
+def checked_log(arm: Arm, time: object, joints: object, prefix: str = "joints.") -> JointLog:
+    """Return a recorded motion with its rates.
+
+    Raises
+    ------
+    InvalidParameterError, ShapeError
+        If times do not increase, or values are not finite or hardly radians.
+    """
+    clock = vector("time", time)
+    poses = joints if isinstance(joints, np.ndarray) else poses_of(joints, arm.joint_names)
+    poses = numbers("joints", poses)
+    if poses.shape != (len(clock), len(arm.joint_names)):
+        raise ShapeError("joints", f"({len(clock)}, {len(arm.joint_names)})", poses.shape)
+    if not 3 <= len(clock) <= MOST_WAYPOINTS:
+        raise InvalidParameterError("time", f"hold 3 to {MOST_WAYPOINTS} instants", len(clock))
+    if not np.isfinite(clock).all():
+        raise InvalidParameterError("time", "be finite", float(clock[~np.isfinite(clock)][0]))
+    back = np.flatnonzero(np.diff(clock) <= 0.0)
+    if len(back):
+        rule = f"increase from line to line; behind {float(clock[back[0]])!r} it does not"
+        raise InvalidParameterError("time", rule, float(clock[back[0] + 1]))
+    for place, (joint, kind) in enumerate(zip(arm.joint_names, arm.joint_kinds, strict=True)):
+        values = poses[:, place]
+        if not np.isfinite(values).all():
+            raise InvalidParameterError(f"{prefix}{joint}", "be finite", float(values[~np.isfinite(values)][0]))
+        if kind == "turning" and np.isfinite(arm.limits[place]).all() and np.abs(values).max() > LARGEST_TURN:
+            rule = f"be within {LARGEST_TURN:g} rad of 0 on a joint that turns"
+            worst = float(values[np.argmax(np.abs(values))])
+            raise InvalidParameterError(f"{prefix}{joint}", rule, worst, "degrees? write radians, or the unit [deg]")
+    return JointLog(clock, poses, np.gradient(poses, clock, axis=0, edge_order=2))
+
+
+def followed(log: JointLog, velocity: Array, tolerance: float) -> FollowedLog:
+    """Return the path of a log.
+
+    Parameters
+    ----------
+    log : JointLog
+        Recorded motion.
+    velocity : ndarray (joints,)
+        Largest rates: chords are measured in them.
+    tolerance : float
+        Largest distance of a joint from a sample in rad or m.
+
+    Raises
+    ------
+    InvalidParameterError
+        If nothing moves.
+    """
+    steps = np.diff(log.time)
+    rates = np.abs(np.diff(log.joints, axis=0)) / steps[:, np.newaxis]
+    curves: list[JointCurve] = []
+    dwells, worst = [0.0], 0.0
+    place = np.zeros(len(log.time))
+    length = 0.0
+    for first, last, still in _stretches(np.asarray((rates <= STILL * velocity).all(axis=1)), steps):
+        if still:
+            dwells[-1] += float(log.time[last] - log.time[first])
+            place[first : last + 1] = length
+            continue
+        for begin, end in _between_turns(log.joints[first : last + 1], velocity, tolerance):
+            rows = slice(first + begin, first + end + 1)
+            joints, added = _from(curves, log.joints[rows])
+            curve, own, residual = _fitted(joints, velocity, tolerance)
+            place[rows] = length + own[added:]
+            if curve is not None:
+                curves.append(curve)
+                dwells.append(0.0)
+                length += curve.length
+                worst = max(worst, residual)
+            else:
+                dwells[-1] += float(log.time[rows.stop - 1] - log.time[rows.start])
+    if not curves:
+        raise InvalidParameterError("log", "hold a motion", Shown("a robot that stands"))
+    return FollowedLog(curves, dwells, place, worst)
+
+
+def _from(curves: list[JointCurve], joints: Array) -> tuple[Array, int]:
+    """Return samples that begin where the path ends so far, and how many were added: a robot may creep as it stands."""
+    if not curves:
+        return joints, 0
+    end = curves[-1].end[0]
+    if np.abs(joints[0] - end).max() > SAME:
+        return np.vstack([end, joints]), 1
+    return np.vstack([end, joints[1:]]), 0
+
+
+def _stretches(still: npt.NDArray[np.bool_], steps: Array) -> Iterator[tuple[int, int, bool]]:
+    """Yield first and last sample of each stretch, and whether the robot stands in it for long enough."""
+    edges = np.flatnonzero(np.diff(still.astype(np.int8))) + 1
+    runs = list(zip([0, *edges], [*edges, len(still)], strict=True))
+    moving: int | None = None
+    for first, last in runs:
+        if still[first] and float(steps[first:last].sum()) >= SHORTEST_DWELL * (1.0 - 1e-9):
+            if moving is not None:
+                yield moving, first, False
+                moving = None
+            yield first, last, True
+        elif moving is None:
+            moving = first
+    if moving is not None:
+        yield moving, len(still), False
+
+
+def _between_turns(joints: Array, velocity: Array, tolerance: float) -> Iterator[tuple[int, int]]:
+    """Yield first and last sample of the pieces between which chords turn by more than 90 degrees."""
+    kept = _thinned(joints, tolerance)
+    chords = np.diff(joints[kept] / velocity, axis=0)
+    turns = kept[1:-1][np.einsum("ij,ij->i", chords[:-1], chords[1:]) < 0.0]
+    edges = [0, *turns.tolist(), len(joints) - 1]
+    yield from pairwise(edges)
+
+
+def _thinned(joints: Array, tolerance: float) -> Array:
+    """Return the samples, first and last among them, that are apart from the one before."""
+    apart = THINNED * tolerance
+    kept = [0]
+    rows = joints.tolist()
+    here = rows[0]
+    for place, row in enumerate(rows):
+        if any(abs(a - b) > apart for a, b in zip(row, here, strict=True)):
+            kept.append(place)
+            here = row
+    if kept[-1] != len(rows) - 1:
+        # The last one stays; one just before it would be a corner of noise.
+        if len(kept) > 1:
+            kept.pop()
+        kept.append(len(rows) - 1)
+    return np.array(kept)
+
+
+def _fitted(joints: Array, velocity: Array, tolerance: float) -> tuple[JointCurve | None, Array, float]:
+    """Return the spline of a piece, the place of each sample and the residual; no curve where nothing moves."""
+    residual = float("inf")
+    for kept in (_thinned(joints, tolerance), np.arange(len(joints))):
+        chords = np.linalg.norm(np.diff(joints[kept] / velocity, axis=0), axis=1)
+        moved = np.concatenate([[True], chords > 1e-12])
+        kept, chords = kept[moved], chords[moved[1:]]
+        if len(kept) < 2:
+            return None, np.zeros(len(joints)), 0.0
+        way = np.concatenate([[0.0], np.cumsum(chords)])
+        # Samples between those that count lie at their share of the way in the record.
+        own = np.interp(np.arange(len(joints)), kept, way)
+        knots = FIRST_KNOTS
+        while True:
+            even = np.linspace(0.0, way[-1], knots + 1)
+            chosen = np.unique(np.clip(np.searchsorted(way, even - 1e-12 * way[-1]), 0, len(way) - 1))
+            if len(chosen) >= len(way) or knots >= 4 * len(way):
+                chosen = np.arange(len(way))
+            curve = JointCurve.spline(way[chosen], joints[kept[chosen]])
+            residual = float(np.abs(curve.at(own)[0] - joints).max())
+            if residual <= tolerance or len(chosen) == len(way):
+                break
+            knots *= 2
+        if residual <= tolerance:
+            break
+    return curve, own, residual
+
+
+def joint_values(name: str, given: object, arm: Arm) -> Array:
+    """Return numbers for each joint of an arm: one for all, an array, or a mapping that names every free joint."""
+    if isinstance(given, Mapping):
+        for joint in given:
+            if joint not in arm.joint_names:
+                rule = f"name joints of the arm: {', '.join(arm.joint_names)}"
+                raise InvalidParameterError(name, rule, joint)
+        for joint in arm.free_joints:
+            if joint not in given:
+                raise InvalidParameterError(f"{name}.{joint}", "be given", Shown("nothing"))
+        given = [given.get(joint, 1.0) for joint in arm.joint_names]
+    values = numbers(name, given)
+    if values.shape not in {(), (len(arm.joint_names),)}:
+        raise ShapeError(name, f"({len(arm.joint_names)},)", values.shape)
+    return np.broadcast_to(values, len(arm.joint_names)).copy()
