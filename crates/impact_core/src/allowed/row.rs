@@ -8,7 +8,7 @@ use crate::covering::{GibsonAshby, Material, Table};
 use crate::error::{Result, positive};
 
 /// Count of the numbers of a row.
-pub const COUNT: usize = 34;
+pub const COUNT: usize = 36;
 
 macro_rules! places {
     ($($place:ident = $index:literal: $name:literal, $called:literal;)+) => {
@@ -49,14 +49,16 @@ places! {
     HORIZON = 23: "horizon", "horizon";
     STOP_TIME = 24: "stop_time", "stop.time";
     STOP_DECELERATION = 25: "stop_deceleration", "stop.deceleration";
-    FORCE_LIMIT = 26: "force_limit", "limits.force";
-    PRESSURE_LIMIT = 27: "pressure_limit", "limits.pressure";
-    MAX_STRAIN = 28: "max_strain", "max_strain";
-    FIRST_MATERIAL = 29: "material_0", "covering.material.0";
-    MATERIAL_1 = 30: "material_1", "covering.material.1";
-    MATERIAL_2 = 31: "material_2", "covering.material.2";
-    MATERIAL_3 = 32: "material_3", "covering.material.3";
-    MATERIAL_4 = 33: "material_4", "covering.material.4";
+    DETECTION_FORCE = 26: "detection_force", "detection_force";
+    PUSH_LIMIT = 27: "push_limit", "push_limit";
+    FORCE_LIMIT = 28: "force_limit", "limits.force";
+    PRESSURE_LIMIT = 29: "pressure_limit", "limits.pressure";
+    MAX_STRAIN = 30: "max_strain", "max_strain";
+    FIRST_MATERIAL = 31: "material_0", "covering.material.0";
+    MATERIAL_1 = 32: "material_1", "covering.material.1";
+    MATERIAL_2 = 33: "material_2", "covering.material.2";
+    MATERIAL_3 = 34: "material_3", "covering.material.3";
+    MATERIAL_4 = 35: "material_4", "covering.material.4";
 }
 
 /// Law of a covering without its numbers.
@@ -124,10 +126,12 @@ pub struct Kind {
 pub struct Row(pub [f64; COUNT]);
 
 /// Numbers that may be absent; all others have to be there.
-pub(super) const OPTIONAL: [usize; 6] = [
+pub(super) const OPTIONAL: [usize; 8] = [
     AREA,
     SECOND_RADIUS,
     STOP_TIME,
+    DETECTION_FORCE,
+    PUSH_LIMIT,
     FORCE_LIMIT,
     PRESSURE_LIMIT,
     MAX_STRAIN,

@@ -4,14 +4,14 @@ use numeric::threads::Interrupted;
 
 use super::row::{
     AREA, BACKING, BODY_DAMPING, BODY_MASS, BODY_STIFFNESS, BOTTOMING, CLOSING_SPEED, DAMPING,
-    FORCE_LIMIT, HORIZON, Kind, LENGTH, Outline, RADIUS, RATE_BASE, RATE_REFERENCE, RATE_SLOPE,
-    RETAINED, ROBOT_DAMPING, ROBOT_MASS, ROBOT_STIFFNESS, Row, SECOND_RADIUS, STOP_DECELERATION,
-    STOP_TIME, THICKNESS, UNLOADING_EXPONENT, given,
+    DETECTION_FORCE, FORCE_LIMIT, HORIZON, Kind, LENGTH, Outline, PUSH_LIMIT, RADIUS, RATE_BASE,
+    RATE_REFERENCE, RATE_SLOPE, RETAINED, ROBOT_DAMPING, ROBOT_MASS, ROBOT_STIFFNESS, Row,
+    SECOND_RADIUS, STOP_DECELERATION, STOP_TIME, THICKNESS, UNLOADING_EXPONENT, given,
 };
 use super::{
     Allowed, LimitedContact, Limits, SpeedStatus, Stored, Thickness, least_thickness, numeric_speed,
 };
-use crate::collision::{Braking, Collision, Outcome, Region, Wanted, simulate};
+use crate::collision::{Braking, Collision, Driven, Outcome, Region, Wanted, simulate};
 use crate::covering::{Bottoming, Covering, Material, Pad, Rate, Shape, Unloading};
 use crate::error::{Failure, Given as Shown, Result, positive};
 
@@ -105,6 +105,10 @@ impl Setup {
             time,
             deceleration: row.0[STOP_DECELERATION],
         });
+        let driven = given(row.0[DETECTION_FORCE]).map(|detection_force| Driven {
+            detection_force,
+            push_limit: given(row.0[PUSH_LIMIT]).unwrap_or(f64::INFINITY),
+        });
         let collision = Collision {
             robot: row.body([ROBOT_MASS, ROBOT_DAMPING, ROBOT_STIFFNESS]),
             body: row.body([BODY_MASS, BODY_DAMPING, BODY_STIFFNESS]),
@@ -112,6 +116,7 @@ impl Setup {
             pad,
             closing_speed: row.0[CLOSING_SPEED],
             stop,
+            driven,
             horizon: row.0[HORIZON],
             tolerance: self.tolerance,
         };

@@ -21,16 +21,22 @@ pub enum CollisionEvent {
     Largest,
     /// The measured points end.
     End,
+    /// The force is noticed.
+    Noticed,
+    /// The bodies meet again.
+    Meeting,
 }
 
 /// Every event.
-const EVENTS: [CollisionEvent; 6] = [
+const EVENTS: [CollisionEvent; 8] = [
     CollisionEvent::Release,
     CollisionEvent::Turn,
     CollisionEvent::Kink { upwards: true },
     CollisionEvent::Kink { upwards: false },
     CollisionEvent::Largest,
     CollisionEvent::End,
+    CollisionEvent::Noticed,
+    CollisionEvent::Meeting,
 ];
 
 /// Compressions that matter, and on which side of them the motion is.
@@ -72,6 +78,12 @@ impl Marks {
         let depth = [local.compression, local.compression_rate];
         let above = |mark: f64| [depth[0] - mark, depth[1]];
         let below = |mark: f64| [mark - depth[0], -depth[1]];
+        if let Some(parted) = past.apart {
+            return match event {
+                CollisionEvent::Meeting => [parted - state[TOTAL], -state[SPEED]],
+                _ => NEVER,
+            };
+        }
         match event {
             CollisionEvent::Release => release(mechanics, state, local),
             CollisionEvent::Turn => {
@@ -91,6 +103,13 @@ impl Marks {
                 None => NEVER,
             },
             CollisionEvent::End => self.end.map_or(NEVER, below),
+            CollisionEvent::Noticed => match mechanics.collision.driven {
+                Some(driven) if past.stop_time.is_infinite() => {
+                    [driven.detection_force - local.force, -local.force_rate]
+                }
+                _ => NEVER,
+            },
+            CollisionEvent::Meeting => NEVER,
         }
     }
 }
@@ -179,6 +198,7 @@ fn size_of<const N: usize>(
 ) -> f64 {
     let by = match event {
         CollisionEvent::Turn => sizes.speed,
+        CollisionEvent::Noticed => sizes.force,
         CollisionEvent::Release if mechanics.carried == Carried::Nothing => {
             if mechanics
                 .collision

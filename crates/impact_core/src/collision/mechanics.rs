@@ -1,6 +1,6 @@
 //! Forces and rates of a collision.
 
-use super::{Braking, Collision, MotionSample, Region};
+use super::{Collision, MotionSample, Region};
 use crate::covering::{Pad, Shape};
 
 /// Place of `eps` in a state.
@@ -28,7 +28,7 @@ pub enum Carried {
     Damped,
 }
 
-/// History of the motion: its direction, the last reversal, braking.
+/// History of the motion: its direction, the last reversal, braking, a release.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct History {
     /// Whether `eps` rises.
@@ -39,6 +39,10 @@ pub struct History {
     pub largest_work: f64,
     /// Whether the set point brakes, or rests.
     pub braking: bool,
+    /// Time from which it brakes, in s; infinite while the contact is not noticed.
+    pub stop_time: f64,
+    /// `eps` at which the bodies parted, while they are apart.
+    pub apart: Option<f64>,
 }
 
 /// Force and rates at a state.
@@ -172,8 +176,11 @@ impl<'a, const N: usize> Mechanics<'a, N> {
         let speed = state[SPEED] + body_speed;
         let robot = &collision.robot;
         let body = &collision.body;
-        let push =
-            force + robot.damping * (speed - set_speed) + robot.stiffness * (place - set_point);
+        let mut drive = robot.damping * (speed - set_speed) + robot.stiffness * (place - set_point);
+        if let Some(driven) = collision.driven {
+            drive = drive.clamp(-driven.push_limit, driven.push_limit);
+        }
+        let push = force + drive;
         let held = force - body.damping * body_speed - body.stiffness * state[BODY];
         let body_acceleration = held * self.body_share;
         [
@@ -193,6 +200,10 @@ impl<'a, const N: usize> Mechanics<'a, N> {
             [local.acceleration, local.body_acceleration] =
                 self.accelerations(time, state, force, past);
         };
+        if past.apart.is_some() {
+            move_by(&mut local, 0.0);
+            return local;
+        }
         let Some(pad) = self.collision.pad else {
             let [force, slope] = region.force(total);
             move_by(&mut local, force);
@@ -368,16 +379,10 @@ fn steep(slope: f64, rate: f64) -> f64 {
 /// Set point of the robot and its speed.
 fn set_point(collision: &Collision<'_>, time: f64, past: &History) -> [f64; 2] {
     let speed = collision.closing_speed;
-    let Some(Braking {
-        time: start,
-        deceleration,
-    }) = collision.stop
-    else {
+    let (Some(stop), true) = (collision.stop, past.braking) else {
         return [speed * time, speed];
     };
-    if !past.braking {
-        return [speed * time, speed];
-    }
+    let (start, deceleration) = (past.stop_time, stop.deceleration);
     let since = time - start;
     let left = speed - deceleration * since;
     if left <= 0.0 {

@@ -10,6 +10,9 @@
 //! C_c d' = g(eps - d) - F(d) R U                           with one
 //! f = F(eps) R U + C_c eps'                                on a rigid region
 //! ```
+//!
+//! A driven contact pushes at most with a limit, brakes from when the force was noticed on, and goes on beyond a
+//! release: the drive brings the robot back.
 
 mod curve;
 mod events;
@@ -89,6 +92,15 @@ pub struct Braking {
     pub deceleration: f64,
 }
 
+/// What a drive does beside a spring and a damper, and how it notices a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Driven {
+    /// Force at which the robot notices the contact, in N: the time of the stop counts from there.
+    pub detection_force: f64,
+    /// Largest force of spring and damper of the robot, in N; infinite without one.
+    pub push_limit: f64,
+}
+
 /// A collision.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Collision<'a> {
@@ -104,6 +116,8 @@ pub struct Collision<'a> {
     pub closing_speed: f64,
     /// Stop of the set point.
     pub stop: Option<Braking>,
+    /// Limits of the drive, of a contact that is followed to the horizon.
+    pub driven: Option<Driven>,
     /// Horizon of the simulation, in s.
     pub horizon: f64,
     /// Relative tolerance.
@@ -148,6 +162,12 @@ impl Collision<'_> {
         if let Some(stop) = self.stop {
             not_negative("stop.time", stop.time)?;
             positive("stop.deceleration", stop.deceleration)?;
+        }
+        if let Some(driven) = self.driven {
+            not_negative("detection_force", driven.detection_force)?;
+            if driven.push_limit != f64::INFINITY {
+                positive("push_limit", driven.push_limit)?;
+            }
         }
         if self.pad.is_none() && self.region == Region::Rigid {
             let given = Given::Found("none on a rigid region".into());

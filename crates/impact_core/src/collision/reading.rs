@@ -139,6 +139,7 @@ pub fn collision<'a>(input: &Value, pad: Option<&'a Pad>, tolerance: f64) -> Col
             time: pair[0],
             deceleration: pair[1],
         }),
+        driven: None,
         horizon: number_or(input, "horizon", 0.2),
         tolerance,
     }

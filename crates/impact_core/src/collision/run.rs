@@ -172,6 +172,11 @@ impl<'a, const N: usize> Run<'a, N> {
             largest_strain: 0.0,
             largest_work: 0.0,
             braking: false,
+            stop_time: match (collision.stop, collision.driven) {
+                (Some(_), Some(driven)) if driven.detection_force > 0.0 => f64::INFINITY,
+                (stop, _) => stop.map_or(f64::INFINITY, |stop| stop.time),
+            },
+            apart: None,
         };
         let mut state = [0.0; N];
         state[SPEED] = speed;
@@ -240,8 +245,9 @@ impl<'a, const N: usize> Run<'a, N> {
         let collision = self.mechanics.collision;
         let mut breaks = Vec::with_capacity(3);
         if let Some(stop) = collision.stop {
-            let rest = stop.time + collision.closing_speed / stop.deceleration;
-            breaks.extend([(stop.time, true), (rest, true)]);
+            let start = self.past.stop_time;
+            let rest = start + collision.closing_speed / stop.deceleration;
+            breaks.extend([(start, true), (rest, true)]);
         }
         breaks.retain(|(time, _)| *time < collision.horizon);
         breaks.push((collision.horizon, false));
@@ -249,8 +255,7 @@ impl<'a, const N: usize> Run<'a, N> {
     }
 
     fn travel(&mut self, interrupted: Interrupted<'_>) -> CollisionStatus {
-        let breaks = self.breaks();
-        let mut next = breaks.iter().copied();
+        let mut next = self.breaks().into_iter();
         let Some((mut until, mut changes)) = next.next() else {
             return CollisionStatus::Horizon;
         };
@@ -317,8 +322,19 @@ impl<'a, const N: usize> Run<'a, N> {
             };
             self.accept(taken, used, end, event);
             match event {
-                Some(CollisionEvent::Release) => return CollisionStatus::Released,
+                Some(CollisionEvent::Release) if self.mechanics.collision.driven.is_none() => {
+                    return CollisionStatus::Released;
+                }
                 Some(CollisionEvent::End) => return CollisionStatus::BeyondData,
+                Some(CollisionEvent::Noticed) => {
+                    let stop = self.mechanics.collision.stop;
+                    self.past.stop_time = self.time + stop.map_or(0.0, |stop| stop.time);
+                    next = self.breaks().into_iter();
+                    let Some(following) = next.next() else {
+                        return CollisionStatus::Horizon;
+                    };
+                    (until, changes) = following;
+                }
                 Some(event) => self.pass(event),
                 None => (),
             }
@@ -427,9 +443,23 @@ impl<'a, const N: usize> Run<'a, N> {
                     *below = !*below;
                 }
             }
-            CollisionEvent::Release | CollisionEvent::End => (),
+            CollisionEvent::Release => self.past.apart = Some(self.state[TOTAL]),
+            CollisionEvent::Meeting => self.meet(),
+            CollisionEvent::End | CollisionEvent::Noticed => (),
         }
         self.refresh();
+    }
+
+    /// The touch after a release: compression rises from where it was.
+    fn meet(&mut self) {
+        self.past.apart = None;
+        self.past.loading = true;
+        let mechanics = &self.mechanics;
+        if mechanics.carried == Carried::Series && rests_at_touch(mechanics.collision) {
+            self.state[TOTAL] = self.state[TOTAL].max(FIRST * self.sizes.length);
+            let (total, speed) = (self.state[TOTAL], self.state[SPEED]);
+            self.state[PART] = mechanics.share(total, speed, &self.past);
+        }
     }
 
     /// Keeps the strain of a reversal if it is the largest so far.

@@ -124,6 +124,7 @@ fn slow(horizon: f64) -> Collision<'static> {
         pad: None,
         closing_speed: 0.5,
         stop: None,
+        driven: None,
         horizon,
         tolerance: 1e-8,
     }
@@ -232,6 +233,7 @@ fn free(pad: &Pad, region: Region, closing_speed: f64) -> Collision<'_> {
         pad: Some(pad),
         closing_speed,
         stop: None,
+        driven: None,
         horizon: 2.0,
         tolerance: 1e-10,
     }
