@@ -137,3 +137,84 @@ def _mobility(
     mujoco.mj_jac(model, data, jacobian, None, data.xpos[body], body)
     columns = [model.joint(name).dofadr[0] for name in free]
     return jacobian[:, columns] @ np.linalg.solve(masses[np.ix_(columns, columns)], jacobian[:, columns].T)
+
+
+@pytest.mark.parametrize("robot", ["panda", "ur5", "ur10"])
+def test_masses_and_weights_are_those_of_pinocchio(robot: str, cases: dict[str, Any]) -> None:
+    pin = pytest.importorskip("pinocchio", reason="pin is not installed")
+    row = next(row for row in cases["rows"] if row["robot"] == robot)
+    arm = arm_of(row, cases)
+    oracle = pin.buildModelFromUrdf(str(robots() / row["source"].split()[1]))
+    oracle.gravity.linear = np.array([0.0, 0.0, -9.80665])
+    data = oracle.createData()
+    frame = oracle.getFrameId(row["link"])
+    draws = np.random.default_rng(8)
+    count = 340
+    poses = draws.uniform(-1.5, 1.5, (count, len(arm.joint_names)))
+    poses[:, [name not in arm.free_joints for name in arm.joint_names]] = 0.0
+    along, rates = draws.normal(size=(count, 3)), draws.normal(size=(count, len(arm.free_joints)))
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    place = {"link": row["link"], "check_limits": False}
+    masses = arm.mass_matrix(poses, check_limits=False)
+    weights = arm.gravity_torques(poses, check_limits=False)
+    along_normal = arm.effective_mass(poses, direction=along, **place).mass
+    mobility = arm.mobility(poses, **place)
+    free = [index for index, name in enumerate(oracle.names[1:]) if name in arm.free_joints]
+    every = np.zeros((count, len(arm.joint_names)))
+    every[:, [name in arm.free_joints for name in arm.joint_names]] = rates
+    velocity = arm.velocity(poses, every, **place)
+    for index in range(count):
+        values = np.array(
+            [dict(zip(arm.joint_names, poses[index], strict=True)).get(name, 0.0) for name in oracle.names[1:]]
+        )
+        upper = pin.crba(oracle, data, values)
+        expected = (np.triu(upper) + np.triu(upper, 1).T)[np.ix_(free, free)]
+        assert np.allclose(masses[index], expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+        holding = pin.computeGeneralizedGravity(oracle, data, values)[free]
+        assert np.allclose(-weights[index], holding, rtol=0, atol=1e-12 * max(1.0, np.abs(holding).max()))
+        jacobian = pin.computeFrameJacobian(oracle, data, values, frame, pin.LOCAL_WORLD_ALIGNED)[:3, free]
+        directional = 1.0 / (along[index] @ jacobian @ np.linalg.solve(expected, jacobian.T @ along[index]))
+        # Rounding grows with the condition of the matrices.
+        worse = np.linalg.cond(expected) * 1e-16 + 1e-12
+        assert along_normal[index] == pytest.approx(directional, rel=worse)
+        # Along the motion, worst normal, all kinetic energy.
+        speed = np.linalg.norm(velocity[index])
+        unit = velocity[index] / speed
+        lowest = 1.0 / (unit @ mobility[index] @ unit)
+        worst = unit @ np.linalg.solve(mobility[index], unit)
+        most = rates[index] @ masses[index] @ rates[index] / speed**2
+        assert lowest <= worst * (1.0 + 1e-9)
+        assert worst <= most * (1.0 + 1e-9)
+
+
+def test_an_inertia_that_is_repaired_lowers_no_mass() -> None:
+    pin = pytest.importorskip("pinocchio", reason="pin is not installed")
+    draws = np.random.default_rng(9)
+    text = """<robot name="r"><link name="o"/><link name="a"><inertial><origin xyz="0.2 0.1 0"/><mass value="3"/>
+    <inertia ixx="{}" ixy="0" ixz="0" iyy="{}" iyz="0" izz="{}"/></inertial></link><link name="b"><inertial>
+    <origin xyz="0.1 0 0.1"/><mass value="2"/><inertia ixx=".02" ixy="0" ixz="0" iyy=".02" iyz="0" izz=".02"/>
+    </inertial></link><joint name="one" type="continuous"><parent link="o"/><child link="a"/><axis xyz="0 0 1"/></joint>
+    <joint name="two" type="continuous"><parent link="a"/><child link="b"/><origin xyz="0.4 0 0" rpy="0.3 0.2 0"/>
+    <axis xyz="0 1 0"/></joint></robot>"""
+    for _ in range(50):
+        least, middle = draws.uniform(0.01, 0.1, 2)
+        moments = (least, middle, (least + middle) * draws.uniform(1.0, 1.2))
+        given = text.format(*draws.permutation(moments))
+        arm = arms.Arm.from_urdf(given)
+        oracle = pin.buildModelFromXML(given)
+        data = oracle.createData()
+        frame = oracle.getFrameId("b")
+        turns, along = draws.uniform(-3.0, 3.0, 2), draws.normal(size=3)
+        along /= np.linalg.norm(along)
+        # Continuous joints are cosine and sine there.
+        values = np.stack([np.cos(turns), np.sin(turns)], axis=1).ravel()
+        pin.framesForwardKinematics(oracle, data, values)
+        point = data.oMf[frame].act(np.array([0.2, 0.1, 0.3]))
+        whole = pin.computeFrameJacobian(oracle, data, values, frame, pin.LOCAL_WORLD_ALIGNED)
+        away = point - data.oMf[frame].translation
+        jacobian = whole[:3] + np.cross(whole[3:].T, away).T
+        upper = pin.crba(oracle, data, values)
+        masses = np.triu(upper) + np.triu(upper, 1).T
+        before = 1.0 / (along @ jacobian @ np.linalg.solve(masses, jacobian.T @ along))
+        found = arm.effective_mass(turns, link="b", point=(0.2, 0.1, 0.3), direction=along, check_limits=False).mass
+        assert found >= before * (1.0 - 1e-9)

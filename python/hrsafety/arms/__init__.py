@@ -10,6 +10,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.arms.inertias import NearestInertia as NearestInertia, nearest_inertia as nearest_inertia
     from hrsafety.arms.masses import EffectiveMass as EffectiveMass, Extremes as Extremes, PointMasses as PointMasses
     from hrsafety.arms.payload import Payload as Payload
+    from hrsafety.arms.rolling import RollingBase as RollingBase
     from hrsafety.arms.workspaces import Workspace as Workspace, workspace as workspace
     from hrsafety.errors import InvalidParameterError as InvalidParameterError, ShapeError as ShapeError
 else:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, checked_text, count, flag, positive, sequence, thread_count, word
+from hrsafety._arguments import Array, checked_text, count, flag, instance, positive, sequence, thread_count, word
 from hrsafety._bounds import MOST_MASSES, MOST_POINT_STATES
 from hrsafety._records import dataclass
 from hrsafety.arms.doubts import doubts_of_point, doubts_of_poses, for_rule
@@ -27,10 +27,14 @@ from hrsafety.arms.inputs import (
 )
 from hrsafety.arms.masses import RULES, EffectiveMass, Extremes, PointMasses, mass_by_rule
 from hrsafety.arms.payload import Payload, payloads_of
+from hrsafety.arms.rolling import RollingBase
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning, telling
 
-__all__ = ["Arm"]
+__all__ = ["MASS_SOURCES", "Arm"]
+
+MASS_SOURCES = ("links", "type_plate", "scaled")
+GRAVITY = 9.80665
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -54,6 +58,12 @@ class Arm(Facts):
         Whether every inertia that no rigid body has is replaced by the nearest one, see `from_urdf`.
     type_plate_mass : float or None
         Mass on the type plate, without payload and controller, in kg.
+    mass_source : {"links", "type_plate", "scaled"}
+        Where masses are from, see `from_urdf`.
+    link_masses : tuple of (str, float)
+        Masses in kg of links whose URDF has none.
+    base : RollingBase, "fixed" or None
+        What the arm stands on; ``None``: it is taken to stand still, and doubted where it looks like one that rolls.
 
     Raises
     ------
@@ -80,6 +90,9 @@ class Arm(Facts):
     locked: tuple[str, ...] = ()
     repair_inertia: bool = False
     type_plate_mass: float | None = None
+    mass_source: str = "links"
+    link_masses: tuple[tuple[str, float], ...] = ()
+    base: RollingBase | str | None = None
     _native: _hrsafety.Arm = field(init=False, repr=False, compare=False)
     _facts: dict[str, Any] = field(init=False, repr=False, compare=False)
     _doubts: tuple[ResultWarning, ...] = field(init=False, repr=False, compare=False)
@@ -95,8 +108,18 @@ class Arm(Facts):
         )
         if self.type_plate_mass is not None:
             self._set(type_plate_mass=positive("type_plate_mass", self.type_plate_mass))
+        word("mass_source", self.mass_source, MASS_SOURCES)
+        if self.mass_source != "links" and self.type_plate_mass is None:
+            raise InvalidParameterError("type_plate_mass", f"be given for mass_source {self.mass_source!r}", None)
+        self._set(link_masses=motors_of(self.link_masses, "link_masses", "a link and its mass"))
+        if self.base != "fixed" and self.base is not None:
+            instance("base", self.base, RollingBase)
+        rolls = self.base.native if isinstance(self.base, RollingBase) else None
+        scaled = self.type_plate_mass if self.mass_source == "scaled" else None
+        masses = list(self.link_masses)
         loads = [(each.link, each.mass, each.center, each.inertia) for each in self.payloads]
-        native = _hrsafety.Arm(self.urdf, loads, list(self.armature), list(self.locked), self.repair_inertia)
+        options = (loads, list(self.armature), list(self.locked), self.repair_inertia, masses, scaled, rolls)
+        native = _hrsafety.Arm(self.urdf, *options)
         self._set(_native=native, _facts=dict(native.facts()))
         self._set(_doubts=self._doubted())
 
@@ -111,6 +134,9 @@ class Arm(Facts):
         *,
         repair_inertia: bool = False,
         type_plate_mass: float | None = None,
+        mass_source: str = "links",
+        link_masses: object = None,
+        base: RollingBase | str | None = None,
     ) -> Arm:
         """Read an arm.
 
@@ -135,6 +161,14 @@ class Arm(Facts):
         type_plate_mass : float or None
             Mass of the arm on its type plate, without payload and controller, in kg: masses of links that do not fit
             it are doubted.
+        mass_source : {"links", "type_plate", "scaled"}
+            Masses of the URDF; or the mass of ISO/TS 15066 from half of the type plate; or masses and inertias of the
+            URDF in proportion, so that they weigh what the type plate says.
+        link_masses : mapping of str to float or None
+            Masses in kg of links whose URDF has none: their collision shape filled evenly if that is of primitives,
+            else a solid cylinder from the joint to the middle of the next ones with a tenth of that for a radius.
+        base : RollingBase, "fixed" or None
+            What the arm stands on.
 
         Returns
         -------
@@ -149,10 +183,12 @@ class Arm(Facts):
         text, name = urdf_text(path_or_text)
         try:
             motors = armature_of(armature, () if armature is None else tuple(_hrsafety.urdf_joint_names(text)))
-            return cls(text, payloads_of(payload), motors, locked_of(locked), repair_inertia, type_plate_mass)
+            masses = armature_of(link_masses, (), "link_masses")
+            more = (repair_inertia, type_plate_mass, mass_source, masses, base)
+            return cls(text, payloads_of(payload), motors, locked_of(locked), *more)
         except InvalidParameterError as error:
             options = ("payload", "armature", "locked", "repair_inertia", "type_plate_mass")
-            if not name or error.argument.startswith(options):
+            if not name or error.argument.startswith((*options, "mass_source", "link_masses", "base")):
                 raise
             raise error.renamed(f"{name}: {error.argument}") from None
 
@@ -347,6 +383,51 @@ class Arm(Facts):
         poses, points = poses_of(joints, self.joint_names), vectors_of("point", point)
         return self._states(poses, points, link, check_limits, threads)["position"]
 
+    def mass_matrix(self, joints: object = None, *, check_limits: bool = True, threads: int | None = None) -> Array:
+        """Return the joint-space mass matrix M of the free joints, motors and payload with it.
+
+        Parameters
+        ----------
+        joints, check_limits, threads
+            As for `effective_mass`.
+
+        Returns
+        -------
+        ndarray (..., n, n)
+            In kg m^2, or kg where joints slide, in the order of `free_joints`.
+        """
+        shape, lower, _ = self._dynamics(joints, check_limits, threads)
+        size = len(self.free_joints)
+        found = np.zeros((*shape, size, size))
+        rows, columns = np.tril_indices(size)
+        found[..., rows, columns] = lower
+        found[..., columns, rows] = lower
+        return found
+
+    def gravity_torques(self, joints: object = None, *, check_limits: bool = True, threads: int | None = None) -> Array:
+        """Return the torque of the weight on each free joint, for gravity along -z of the world.
+
+        Parameters
+        ----------
+        joints, check_limits, threads
+            As for `effective_mass`.
+
+        Returns
+        -------
+        ndarray (..., n)
+            In N m, or N where a joint slides, in the order of `free_joints`.
+        """
+        return self._dynamics(joints, check_limits, threads)[2]
+
+    def _dynamics(self, joints: object, check_limits: object, threads: object) -> tuple[tuple[int, ...], Array, Array]:
+        """Return the shape of the poses, the lower triangles of mass matrices, and torques of the weight."""
+        poses = poses_of(joints, self.joint_names)
+        shape, (rows, spots) = broadcast(MOST_POINT_STATES, joints=poses, point=np.zeros(3))
+        given = self._given(self.link_names[0], rows, spots, shape, check_limits, threads)
+        masses, torques = self._native.dynamics(given, GRAVITY)
+        size = len(self.free_joints)
+        return shape, masses.reshape((*shape, size * (size + 1) // 2)), torques.reshape((*shape, size))
+
     def velocity(
         self,
         joints: object,
@@ -411,7 +492,8 @@ class Arm(Facts):
         word("rule", rule, RULES)
         poses, points = poses_of(joints, self.joint_names), vectors_of("point", point)
         mass = self._along(poses, points, vectors_of("direction", direction), link, check_limits, threads)
-        doubts = (*for_rule(self.warnings, rule, mass, self.iso_mass), *self._placed(poses, points))
+        told = for_rule(self.warnings, rule, mass, self.iso_mass, self.mass_source)
+        doubts = (*told, *self._placed(poses, points))
         chosen = mass_by_rule(rule, mass, self.iso_mass)
         return EffectiveMass(chosen if chosen.ndim else float(chosen), rule, self.iso_mass, doubts)
 

@@ -17,6 +17,7 @@ from hrsafety.plausibility import ResultWarning
 __all__ = [
     "DIRECTIONAL",
     "NO_MOTOR_INERTIA",
+    "doubts_of_given",
     "doubts_of_motors",
     "doubts_of_payloads",
     "doubts_of_plate",
@@ -29,8 +30,12 @@ __all__ = [
 
 NO_MOTOR_INERTIA = "no motor inertia given{}: effective masses are lower bounds, on the unsafe side; give armature"
 
-DIRECTIONAL = frozenset({"no_motor_inertia", "armature_suspicious", "inertia_projected"})
+DIRECTIONAL = frozenset({"no_motor_inertia", "armature_suspicious", "estimated_inertia", "inertia_projected"})
 """Doubts about the mass along a direction that do not touch the mass of ISO/TS 15066."""
+OF_LINKS = frozenset(
+    {"density", "link_without_mass", "mass_below_type_plate", "moving_mass_small", "placeholder_inertial"}
+)
+"""Doubts about masses of links, which a mass of ISO/TS 15066 from the type plate does not depend on."""
 
 MOST_MOTOR = 10.0
 """A motor inertia of so many times the largest inertia that any joint moves is hardly meant."""
@@ -67,7 +72,9 @@ def governs(rule: str, directional: Any, iso: float) -> npt.NDArray[np.bool_]:
     return np.asarray((mass >= least) & np.isfinite(mass))
 
 
-def for_rule(warnings: Iterable[ResultWarning], rule: str, directional: Any, iso: float) -> tuple[ResultWarning, ...]:
+def for_rule(
+    warnings: Iterable[ResultWarning], rule: str, directional: Any, iso: float, source: str = "links"
+) -> tuple[ResultWarning, ...]:
     """Return the doubts of an arm for the mass of a rule: those that cannot touch it lie on the safe side.
 
     Parameters
@@ -76,6 +83,8 @@ def for_rule(warnings: Iterable[ResultWarning], rule: str, directional: Any, iso
         Of the arm.
     rule, directional, iso
         As for `governs`.
+    source : {"links", "type_plate", "scaled"}
+        Where masses are from.
 
     Returns
     -------
@@ -83,9 +92,10 @@ def for_rule(warnings: Iterable[ResultWarning], rule: str, directional: Any, iso
         In their order.
     """
     counts = bool(governs(rule, directional, iso).any())
+    apart = DIRECTIONAL | OF_LINKS if source == "type_plate" else DIRECTIONAL
 
     def beside(doubt: ResultWarning) -> ResultWarning:
-        if counts or doubt.safe_side or doubt.code not in DIRECTIONAL:
+        if counts or doubt.safe_side or doubt.code not in apart:
             return doubt
         why = "the mass of the rule does not depend on it in these poses"
         return replace(doubt, message=f"{doubt.message} ({why})", safe_side=True)
@@ -120,7 +130,8 @@ def doubts_of_motors(
     if without:
         named = "" if without == tuple(free) else f" for {', '.join(without)}"
         yield ResultWarning("no_motor_inertia", "armature", NO_MOTOR_INERTIA.format(named))
-    own = dict(zip(free, np.asarray(facts["largest_own"]).tolist(), strict=True))
+    # Joints of a base that rolls come last.
+    own = dict(zip(free, np.asarray(facts["largest_own"]).tolist(), strict=False))
     small = [name for name in free if any(given.values()) and given.get(name, np.inf) < SMALL * own[name]]
     if small:
         first = small[0]
@@ -142,6 +153,28 @@ def doubts_of_motors(
                 f"{given[first]:g}, at most {most:.3g} {unit}): kg cm^2 or g m^2 given for kg m^2?"
             )
             yield ResultWarning("implausible", f"armature[{first!r}]", message, safe_side=True)
+
+
+def doubts_of_given(link_masses: Sequence[tuple[str, float]]) -> Iterator[ResultWarning]:
+    """Return the doubt about links of which only the mass was given.
+
+    Parameters
+    ----------
+    link_masses : sequence of (str, float)
+        Mass by link in kg.
+
+    Yields
+    ------
+    ResultWarning
+        ``estimated_inertia``.
+    """
+    if link_masses:
+        names = [name for name, _ in link_masses]
+        message = (
+            f"{links_with_verb(names)} a mass that was given and an inertia that was estimated from a shape: masses "
+            "along a direction may be too low"
+        )
+        yield ResultWarning("estimated_inertia", subject_of(names), message)
 
 
 def doubts_of_plate(total: float, moving: float, plate: float | None) -> Iterator[ResultWarning]:

@@ -10,6 +10,7 @@ from hrsafety._arguments import Array, Parameters
 from hrsafety.arms import doubts
 from hrsafety.arms.link_doubts import doubts_of_links
 from hrsafety.arms.payload import Payload
+from hrsafety.arms.rolling import BASE_JOINTS, RollingBase
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Facts"]
@@ -25,6 +26,9 @@ class Facts(Parameters):
     armature: tuple[tuple[str, float], ...]
     payloads: tuple[Payload, ...]
     type_plate_mass: float | None
+    mass_source: str
+    link_masses: tuple[tuple[str, float], ...]
+    base: RollingBase | str | None
 
     @property
     def name(self) -> str:
@@ -83,7 +87,13 @@ class Facts(Parameters):
 
     @property
     def iso_mass(self) -> float:
-        """Mass of the robot by ISO/TS 15066, M/2 + m_L, in kg: neither always above nor always below the others."""
+        """Mass of the robot by ISO/TS 15066, M/2 + m_L, in kg: neither always above nor always below the others.
+
+        M is that of all moving links, those of a base that rolls with them, or the mass of the type plate.
+        """
+        if self.mass_source == "type_plate" and self.type_plate_mass is not None:
+            rolling = self.base.mass if isinstance(self.base, RollingBase) else 0.0
+            return 0.5 * (self.type_plate_mass + rolling) + self.payload_mass
         return float(self._facts["iso_mass"])
 
     @property
@@ -106,11 +116,16 @@ class Facts(Parameters):
         return self._doubts
 
     def _doubted(self) -> tuple[ResultWarning, ...]:
-        facts = self._facts
+        facts, rolling = self._facts, isinstance(self.base, RollingBase)
+        # Wheels have their motors in the mass of the base; the type plate is that of the arm.
+        driven = tuple(name for name in self.free_joints if not (rolling and name in BASE_JOINTS))
+        below = self.base.mass if isinstance(self.base, RollingBase) else 0.0
+        plate = None if rolling and self.mass_source == "scaled" else self.type_plate_mass
         return (
-            *doubts.doubts_of_motors(self.armature, facts, self.free_joints),
-            *doubts_of_links(facts),
-            *doubts.doubts_of_plate(self.total_mass, self.moving_mass, self.type_plate_mass),
+            *doubts.doubts_of_motors(self.armature, facts, driven),
+            *(each for each in doubts_of_links(facts) if self.base is None or each.code != "base_assumed_fixed"),
+            *doubts.doubts_of_given(self.link_masses),
+            *doubts.doubts_of_plate(self.total_mass - below, self.moving_mass - below, plate),
             *doubts.doubts_of_payloads(self.payloads, self.moving_mass),
             *doubts.doubts_of_reading(facts),
         )

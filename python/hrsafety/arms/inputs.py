@@ -69,31 +69,32 @@ def locked_of(given: object) -> tuple[str, ...]:
     return tuple(checked_text("locked", name, "be names of joints") for name in found)
 
 
-def armature_of(given: object, joint_names: Sequence[str]) -> tuple[tuple[str, float], ...]:
-    """Return the motor inertias by joint from a mapping, a sequence in the order of the joints, or one number."""
+def armature_of(given: object, joint_names: Sequence[str], argument: str = "armature") -> tuple[tuple[str, float], ...]:
+    """Return numbers such as motor inertias by joint from a mapping, a sequence in their order, or one number."""
     if given is None:
         return ()
     if isinstance(given, Mapping):
-        rule = "have names of joints as keys"
-        return tuple((checked_text("armature", name, rule), _inertia(name, value)) for name, value in given.items())
-    values = numbers("armature", given)
+        rule = "have names as keys"
+        return tuple(
+            (checked_text(argument, name, rule), number(f"{argument}[{name!r}]", value))
+            for name, value in given.items()
+        )
+    values = numbers(argument, given)
     if values.shape not in {(), (len(joint_names),)}:
-        raise ShapeError("armature", f"({len(joint_names)},)", values.shape)
+        raise ShapeError(argument, f"({len(joint_names)},)", values.shape)
     every = np.broadcast_to(values, len(joint_names)).tolist()
-    return tuple((name, _inertia(name, value)) for name, value in zip(joint_names, every, strict=True))
+    return tuple((name, number(f"{argument}[{name!r}]", each)) for name, each in zip(joint_names, every, strict=True))
 
 
-def motors_of(given: object) -> tuple[tuple[str, float], ...]:
-    """Return the motor inertias of pairs of a joint and a number."""
-    rule = "be a tuple of pairs of a joint and its motor inertia"
-    pairs = [sequence("armature", rule, each) for each in sequence("armature", rule, given)]
+def motors_of(
+    given: object, argument: str = "armature", pair: str = "a joint and its motor inertia"
+) -> tuple[tuple[str, float], ...]:
+    """Return the numbers of pairs of a name and a number."""
+    rule = f"be a tuple of pairs of {pair}"
+    pairs = [sequence(argument, rule, each) for each in sequence(argument, rule, given)]
     if not all(len(each) == 2 and isinstance(each[0], str) for each in pairs):
-        raise InvalidParameterError("armature", rule, given)
-    return tuple((checked_text("armature", name, rule), _inertia(name, value)) for name, value in pairs)
-
-
-def _inertia(name: object, value: object) -> float:
-    return number(f"armature[{name!r}]", value)
+        raise InvalidParameterError(argument, rule, given)
+    return tuple((checked_text(argument, name, rule), number(f"{argument}[{name!r}]", each)) for name, each in pairs)
 
 
 def poses_of(given: object, joint_names: tuple[str, ...], argument: str = "joints") -> Array:

@@ -3,6 +3,7 @@
 use impact_core::arm::batch::PointState;
 use impact_core::arm::body::Body;
 use impact_core::arm::mobility::Extremes;
+use impact_core::arm::sources::Base;
 use impact_core::arm::{self, Broadcast, JointKind, Options, Places};
 use impact_core::bare;
 use nalgebra::{Matrix3, Vector3};
@@ -26,15 +27,22 @@ pub struct Arm(pub(crate) arm::Arm);
 /// Link, mass, center and inertia by rows.
 type Load = (String, f64, [f64; 3], [[f64; 3]; 3]);
 
+/// A base that rolls: whether to its left, too, mass, inertia, axle, heading.
+type Rolling = (bool, f64, Option<f64>, [f64; 2], f64);
+
 #[pymethods]
 impl Arm {
     #[new]
+    #[allow(clippy::too_many_arguments)] // extracted from Python objects
     fn new(
         urdf: &str,
         payloads: Vec<Load>,
         armature: Vec<(String, f64)>,
         locked: Vec<String>,
         repair_inertia: bool,
+        link_masses: Vec<(String, f64)>,
+        scaled_to: Option<f64>,
+        base: Option<Rolling>,
     ) -> PyResult<Self> {
         let payload = |(link, mass, center, rows): Load| arm::Payload {
             link,
@@ -49,6 +57,15 @@ impl Arm {
             armature,
             locked,
             repair_inertia,
+            link_masses,
+            scaled_to,
+            base: base.map(|(omni, mass, inertia, axle, heading)| Base {
+                omni,
+                mass,
+                inertia,
+                axle,
+                heading,
+            }),
         };
         let arm = arm::Arm::from_urdf(urdf, &options).map_err(CoreError::from)?;
         Ok(Self(arm))
@@ -179,6 +196,25 @@ impl Arm {
         let least = vectors(|state| state.extremes.least_direction);
         fields.array("least_direction", least, [count, 3])?;
         Ok(fields.finish())
+    }
+
+    /// Lower triangles of mass matrices, and weights, of the free joints in each pose.
+    fn dynamics<'py>(
+        &self,
+        py: Python<'py>,
+        given: PointArguments<'py>,
+        gravity: f64,
+    ) -> PyResult<[Bound<'py, PyArray1<f64>>; 2]> {
+        let found = given.compute(py, &self.0, |places, work| {
+            self.0.dynamics(places, gravity, work)
+        })?;
+        Ok([0, 1].map(|part| {
+            let numbers: Vec<f64> = found
+                .iter()
+                .flat_map(|row| row[part].iter().copied())
+                .collect();
+            numbers.into_pyarray(py)
+        }))
     }
 
     /// Velocities of points for rates of all joints.

@@ -121,6 +121,25 @@ impl Arm {
         sized!(self, SIZE => self.each_velocity::<SIZE>(places, rates, work))
     }
 
+    /// Mass matrices (lower triangles, kg m^2 or kg) and weights (N m or N) of the free joints in each pose.
+    ///
+    /// # Errors
+    /// Errors of `effective_masses`, but for singular matrices.
+    pub fn dynamics(
+        &self,
+        places: &Places<'_>,
+        gravity: f64,
+        work: Work<'_>,
+    ) -> Result<Vec<[Vec<f64>; 2]>> {
+        self.check(places)?;
+        let spots = Spots::new(places, None);
+        sized!(self, SIZE => each_block(spots.count, work, |range| {
+            let mut pose = Pose::<SIZE>::new(self);
+            let rows = range.map(|element| places.joints.row(spots.rows(element)[0]));
+            Ok(rows.map(|joints| pose.dynamics(joints, gravity)).collect())
+        }))
+    }
+
     fn each_velocity<const N: usize>(
         &self,
         places: &Places<'_>,

@@ -132,6 +132,16 @@ impl Body {
         (self.mass > 0.0).then(|| (largest.max(0.0) / self.mass).sqrt())
     }
 
+    /// The same shape of another mass.
+    #[must_use]
+    pub fn weighing(&self, mass: f64) -> Self {
+        Self {
+            mass,
+            inertia: self.inertia * (mass / self.mass),
+            ..*self
+        }
+    }
+
     /// The body in outer coordinates, in which `frame` is the pose of its own frame.
     #[must_use]
     pub fn placed(&self, frame: &Isometry3<f64>) -> Self {

@@ -7,6 +7,7 @@ use super::body::{Body, LEAST_GYRATION, ROUNDING, Symmetric};
 use super::description::{Description, JointType, LinkText, about};
 use super::model::{Arm, ArmJoint, JointKind, Link, MOST_MOVING, Projected, Segment, sized};
 use super::pose;
+use super::sources::Base;
 use super::survey::Survey;
 use super::tree::Tree;
 
@@ -36,6 +37,12 @@ pub struct Options {
     pub locked: Vec<String>,
     /// Whether any inertia that no rigid body has is replaced by the nearest one.
     pub repair_inertia: bool,
+    /// Masses of links whose inertial has none (kg).
+    pub link_masses: Vec<(String, f64)>,
+    /// Mass of all links that theirs are scaled to (kg).
+    pub scaled_to: Option<f64>,
+    /// Base that the root rolls on.
+    pub base: Option<Base>,
 }
 
 /// Names of the joints of a URDF that take values, in the order of the file.
@@ -58,7 +65,14 @@ impl Arm {
     /// # Errors
     /// An element of the URDF or an option breaks a rule, which the error names.
     pub fn from_urdf(text: &str, options: &Options) -> Result<Self> {
-        let description = Description::read(text)?;
+        let mut description = Description::read(text)?;
+        description.give_masses(&options.link_masses)?;
+        if let Some(plate) = options.scaled_to {
+            description.scale_to(plate)?;
+        }
+        if let Some(base) = &options.base {
+            description.put_on(base)?;
+        }
         let tree = Tree::of(&description)?;
         let mut builder = Builder::new(&description, &tree, options)?;
         builder.hang()?;

@@ -26,6 +26,8 @@ pub struct LinkText {
     pub shaped: bool,
     /// Size of that shape, if it is of primitives.
     pub size: Option<Size>,
+    /// A body of 1 kg that fills the collision shape, if that is of primitives.
+    pub solid: Option<Body>,
 }
 
 /// Type of a joint's motion.
@@ -232,6 +234,7 @@ fn link(node: Node<'_, '_>, notes: &mut Vec<String>) -> Result<LinkText> {
         body,
         shaped,
         size: shape::size(node),
+        solid: shape::solid(node),
     })
 }
 

@@ -7,7 +7,7 @@
 //! the velocity of the point. Joints that mimic others fold both: `M' = G^T M G`, `J' = J G`.
 //!
 //! `element` reads XML elements, `foreign` knows other formats, `description` holds the contents of a URDF,
-//! `shape` the sizes of its links, `tree` checks how they hang together, `body` holds inertias, `build` makes
+//! `shape` the sizes of its links, `sources` masses and a base that a URDF does not hold, `tree` checks how they hang together, `body` holds inertias, `build` makes
 //! the `model` of the arm; `survey` finds signs that it may not be real, `pose` is the kernel, `mobility`
 //! gives effective masses from `L`, `batch` does both for arrays.
 
@@ -21,6 +21,7 @@ pub mod mobility;
 pub mod model;
 pub mod pose;
 pub mod shape;
+pub mod sources;
 pub mod survey;
 mod tree;
 

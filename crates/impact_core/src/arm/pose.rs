@@ -69,6 +69,26 @@ impl<'a, const N: usize> Pose<'a, N> {
         self.eliminate()
     }
 
+    /// Moves the arm; of its mass matrix the lower triangle, row after row without zeros, and the force (N) or torque (N m)
+    /// of its weight on each free joint, for an acceleration of gravity along -z.
+    #[must_use]
+    pub fn dynamics(&mut self, joints: &[f64], gravity: f64) -> [Vec<f64>; 2] {
+        self.place(joints);
+        let free = self.arm.free;
+        let rows = (0..free).flat_map(|row| (0..=row).map(move |column| (row, column)));
+        let masses = rows.map(|place| self.masses[place]).collect();
+        let down = Vector3::new(0.0, 0.0, -gravity);
+        let mut weights = vec![0.0; free];
+        for (segment, frame) in self.arm.segments.iter().zip(&self.frames) {
+            if let Some(column) = segment.column {
+                let moment = frame.moment.cross(&down);
+                let own = component(segment, frame, &(down * frame.mass), &moment);
+                weights[column] += segment.multiplier * own;
+            }
+        }
+        [masses, weights]
+    }
+
     /// Moves the arm, without its mass matrix.
     fn place(&mut self, joints: &[f64]) {
         self.place_segments(joints);
@@ -439,7 +459,7 @@ pub fn singular(arm: &Arm, column: usize, pose: &str) -> Failure {
         found,
     )
     .mended_by(
-        "give its links the masses and inertias that they have, or lock it; an armature alone leaves the arm without \
-         mass",
+        "give its links the masses and inertias that they have, masses alone as link_masses, or lock it; an armature \
+         alone leaves the arm without mass",
     )
 }

@@ -1,11 +1,12 @@
 //! Shapes of links, as far as they are primitives: what volume a body has for its mass.
 //!
-//! Shapes do not take part in any mass. They are read to tell whether masses may be real, so that a shape which
+//! Shapes take part in no mass but that of a link whose mass alone is given. They are read to tell whether masses may be real, so that a shape which
 //! cannot be read is not known, and no error.
 
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
+use super::body::Body;
 use super::element::elements;
 
 /// Volume and extent of a shape of primitives.
@@ -36,7 +37,12 @@ fn of_kind(link: Node<'_, '_>, kind: &str) -> Option<Size> {
         Vector3::repeat(f64::NEG_INFINITY),
     ];
     for part in elements(link).filter(|each| each.tag_name().name() == kind) {
-        let (own, half, place) = primitive(part)?;
+        let Primitive {
+            volume: own,
+            half,
+            place,
+            ..
+        } = primitive(part)?;
         volume += own;
         found = true;
         let middle = place.translation.vector;
@@ -53,8 +59,38 @@ fn of_kind(link: Node<'_, '_>, kind: &str) -> Option<Size> {
     })
 }
 
-/// Volume, half of the extents along the axes of the link, and place of one primitive.
-fn primitive(part: Node<'_, '_>) -> Option<(f64, Vector3<f64>, Isometry3<f64>)> {
+/// A body of 1 kg that fills the collision shape of a link evenly, if that is made of primitives.
+#[must_use]
+pub fn solid(link: Node<'_, '_>) -> Option<Body> {
+    let mut whole = Body::default();
+    for part in elements(link).filter(|each| each.tag_name().name() == "collision") {
+        let found = primitive(part)?;
+        let own = Body {
+            mass: found.volume,
+            center: Vector3::zeros(),
+            inertia: Matrix3::from_diagonal(&(found.moments * found.volume)),
+        };
+        whole = whole.joined(&own.placed(&found.place));
+    }
+    let body = Body {
+        mass: 1.0,
+        inertia: whole.inertia / whole.mass,
+        ..whole
+    };
+    (whole.mass > 0.0).then_some(body)?.finite().ok()
+}
+
+/// One primitive.
+struct Primitive {
+    volume: f64,
+    /// Half of the extents along the axes of the link.
+    half: Vector3<f64>,
+    place: Isometry3<f64>,
+    /// Principal moments of 1 kg of it, along its own axes.
+    moments: Vector3<f64>,
+}
+
+fn primitive(part: Node<'_, '_>) -> Option<Primitive> {
     let geometry = elements(part).find(|each| each.tag_name().name() == "geometry")?;
     let form = elements(geometry).next()?;
     let place = place(part)?;
@@ -65,26 +101,53 @@ fn primitive(part: Node<'_, '_>) -> Option<(f64, Vector3<f64>, Isometry3<f64>)> 
     };
     let axis: Vector3<f64> = turn.column(2).into();
     let kind = form.tag_name().name();
-    let (volume, half) = if kind == "box" {
+    let (volume, half, moments) = if kind == "box" {
         let edges = vector(form.attribute("size")?).filter(|edges| edges.min() > 0.0)?;
-        (edges.product(), turn.abs() * edges * 0.5)
+        let squares = edges.component_mul(&edges);
+        let moments = (Vector3::repeat(squares.sum()) - squares) / 12.0;
+        (edges.product(), turn.abs() * edges * 0.5, moments)
     } else if kind == "sphere" {
         let radius = positive("radius")?;
-        (ball(radius), Vector3::repeat(radius))
+        let moment = 0.4 * radius * radius;
+        (
+            ball(radius),
+            Vector3::repeat(radius),
+            Vector3::repeat(moment),
+        )
     } else if kind == "cylinder" || kind == "capsule" {
         let (radius, length) = (positive("radius")?, positive("length")?);
         let tube = std::f64::consts::PI * radius * radius * length;
         let half = axis.abs() * (0.5 * length);
         let across = axis.map(|along| radius * (1.0 - along * along).max(0.0).sqrt());
+        let [wide, long] = rod_moments(radius, length);
         if kind == "capsule" {
-            (tube + ball(radius), half.add_scalar(radius))
+            let whole = tube + ball(radius);
+            let [tube, ends] = [tube / whole, ball(radius) / whole];
+            let square = radius * radius;
+            // Both half balls, with their centers 3/8 of the radius beyond the tube.
+            let away = 0.4 * square + 0.25 * length * length + 0.375 * length * radius;
+            let moments = [tube * wide + ends * away, tube * long + ends * 0.4 * square];
+            let moments = Vector3::new(moments[0], moments[0], moments[1]);
+            (whole, half.add_scalar(radius), moments)
         } else {
-            (tube, half + across)
+            (tube, half + across, Vector3::new(wide, wide, long))
         }
     } else {
         return None;
     };
-    Some((volume, half, place))
+    Some(Primitive {
+        volume,
+        half,
+        place,
+        moments,
+    })
+}
+
+/// Moments of 1 kg of a solid cylinder across its axis and along it.
+#[must_use]
+pub fn rod_moments(radius: f64, length: f64) -> [f64; 2] {
+    let square = radius * radius;
+    [(3.0 * square + length * length) / 12.0, 0.5 * square]
 }
 
 /// Volume of a sphere (m^3).
