@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from hrsafety._namespace import names_of
 
 if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
+    from hrsafety.contact.annex import Annex as Annex, Assumption as Assumption, Hazard as Hazard, annex_of as annex_of
     from hrsafety.contact.base import DifferentialBase as DifferentialBase, HolonomicBase as HolonomicBase
     from hrsafety.contact.catalogs import CatalogMaterial as CatalogMaterial, load_materials as load_materials
     from hrsafety.contact.cell.cell import Cell as Cell, PlannedContact as PlannedContact
@@ -20,6 +21,18 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
         CompressedCovering as CompressedCovering,
         Covering as Covering,
         Region as Region,
+    )
+    from hrsafety.contact.drive import (
+        Drive as Drive,
+        drive_of as drive_of,
+        push_limit_of_torques as push_limit_of_torques,
+    )
+    from hrsafety.contact.driven import (
+        DrivenLoads as DrivenLoads,
+        DrivenSpeed as DrivenSpeed,
+        driven_loads as driven_loads,
+        driven_speed as driven_speed,
+        driven_speeds as driven_speeds,
     )
     from hrsafety.contact.least_thickness import LeastThickness as LeastThickness
     from hrsafety.contact.margins import (
@@ -37,6 +50,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
         StressTable as StressTable,
         material as material,
     )
+    from hrsafety.contact.plan import MeasurementPlan as MeasurementPlan, PlannedMeasurement as PlannedMeasurement
     from hrsafety.contact.simulation import ContactBatch as ContactBatch, ContactImpact as ContactImpact
     from hrsafety.contact.speed import (
         AllowedSpeed as AllowedSpeed,

@@ -12,6 +12,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
         Quantity as Quantity,
         Verdict as Verdict,
     )
+    from hrsafety.standards.fields import FieldDistances as FieldDistances, field_distances as field_distances
     from hrsafety.standards.guards import GuardDistance as GuardDistance, minimum_distance as minimum_distance
     from hrsafety.standards.limit_sets import LimitRow as LimitRow, LimitSet as LimitSet
     from hrsafety.standards.robot_classes import RobotClass as RobotClass, robot_class as robot_class

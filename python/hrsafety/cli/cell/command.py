@@ -46,10 +46,11 @@ def report_cell(options: argparse.Namespace) -> None:
     print(terminal.told(report))
     held = [each["drive"]["holds_for"] for each in study.verdicts if each["drive"] is not None]
     print("\n".join(f"clamped contacts hold for {words}" for words in dict.fromkeys(held)))
-    page = cell_page.html(report, cell_pictures.drawings(cell, study))
+    page = cell_page.html(report, cell_pictures.drawings(cell, study), study.annex.tables())
     place = output.folder(options.out)
     texts = {"report.json": report.json(sort=True), "report.html": page}
-    output.say_written([output.write_text(place / name, text) for name, text in texts.items()], report, options)
+    files = [output.write_text(place / name, text) for name, text in texts.items()]
+    output.say_written([*files, study.plan.to_csv(place / "plan.csv")], report, options)
     output.report_warnings(study.warnings, strict=False)
     verdict.leave(study.verdict, _said(study))
     output.leave_if_strict(study.warnings, options.strict)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from hrsafety.cli.cell.pictures import PARTS, Drawing
 from hrsafety.cli.cell.report import at_path
+from hrsafety.contact.plan import LAYERS
 from hrsafety.pages import DASH, shown
 from hrsafety.standards.verdicts import VERDICT_WORDS
 
@@ -26,13 +27,19 @@ STATUS_WORDS = {
     "not_checked": "no limit is checked",
     "unfinished": "a simulation did not end: nothing is known",
     "not_permitted": "not permitted",
+    "ok": "with the drive",
+    "threshold_above_limit": "the robot notices no force below the limit",
+    "push_above_half_limit": "the drive alone presses too hard",
+    "outside_table": "no stop was measured from a faster speed",
 }
 LOOKS = {"not_permitted": "bad", "exceeds": "bad", "not_checked": "unsure", "within_limits": "good"}
 """Class of style of each verdict: red, yellow, green."""
 CONTACT_WORDS = {"quasi_static": "clamped", "transient": "free (transient)"}
 
 
-def html(report: Report, drawings: Sequence[Drawing]) -> str:
+def html(
+    report: Report, drawings: Sequence[Drawing], annex: Sequence[tuple[str, Sequence[str], Sequence[Sequence[str]]]]
+) -> str:
     """Return the page.
 
     Parameters
@@ -41,6 +48,8 @@ def html(report: Report, drawings: Sequence[Drawing]) -> str:
         With the values of report.json.
     drawings : sequence of Drawing
         Pictures.
+    annex : sequence of tuple
+        Heading, titles and rows of the tables of the annex.
 
     Returns
     -------
@@ -78,6 +87,8 @@ def html(report: Report, drawings: Sequence[Drawing]) -> str:
         contact_words=CONTACT_WORDS,
         looks=LOOKS,
         inputs=list(_paths(values["inputs"], "inputs")),
+        layers=LAYERS,
+        annex=annex,
     )
 
 

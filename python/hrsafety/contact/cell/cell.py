@@ -12,10 +12,12 @@ from hrsafety import _keys as kind
 from hrsafety._arguments import checked_text, count, flag, instance, number, sequence
 from hrsafety._records import dataclass
 from hrsafety._words import meant
+from hrsafety.contact.annex import annex_of
 from hrsafety.contact.cell.robot import ContactRobot
 from hrsafety.contact.cell.stops import separation_of
 from hrsafety.contact.contact import Contact
 from hrsafety.contact.covering import Covering
+from hrsafety.contact.drive import Drive
 from hrsafety.contact.materials import StressTable
 from hrsafety.errors import InvalidParameterError
 from hrsafety.standards.contact_limits import ContactLimit
@@ -104,6 +106,8 @@ class Cell:
         Source of the material of a covering.
     human_speed : float
         Speed of the person towards the robot in m/s.
+    drive : Drive or None
+        What presses clamped contacts on; without it none of them is within limits.
     separation : dict or None
         Rules of the stop by name, as in a cell file; measured stops as a table of arrays.
     uncertain : dict
@@ -114,6 +118,8 @@ class Cell:
         Chance of being too fast that is still within limits.
     confirmed : dict of str to str
         Doubts by code that were confirmed not to hold here, with reason and name.
+    annex : dict
+        Texts, hazards and assumptions of the annex for Regulation (EU) 2023/1230, see `contact.annex_of`.
     title : str
         Heading of the page.
     given : dict
@@ -147,12 +153,14 @@ class Cell:
     strains: Mapping[str, float | None] = field(default_factory=dict)
     materials: Mapping[str, str] = field(default_factory=dict)
     human_speed: float = 0.0
+    drive: Drive | None = None
     separation: Mapping[str, Any] | None = None
     uncertain: Mapping[str, Any] = field(default_factory=dict)
     draws: int = 100_000
     seed: int = 0
     allowed_chance: float = ALLOWED_CHANCE
     confirmed: Mapping[str, str] = field(default_factory=dict)
+    annex: Mapping[str, Any] = field(default_factory=dict)
     title: str = "Contact of a robot with people"
     given: Mapping[str, Any] = field(default_factory=dict)
     files: Mapping[str, str] = field(default_factory=dict)
@@ -163,7 +171,8 @@ class Cell:
         instance("robot", self.robot, ContactRobot)
         instance("limits", self.limits, LimitSet)
         checked_text("title", self.title, "be a text")
-        for name in ("coverings", "strains", "materials", "uncertain", "confirmed", "given", "files"):
+        mappings = ("coverings", "strains", "materials", "uncertain", "confirmed", "annex", "given", "files")
+        for name in mappings:
             if not isinstance(getattr(self, name), Mapping):
                 raise InvalidParameterError(name, "be a mapping", getattr(self, name))
         rule = f"be 1 to {MOST_CONTACTS} planned contacts"
@@ -186,7 +195,10 @@ class Cell:
         count("seed", self.seed, least=0, most=2**63 - 1)
         made = {"contacts": contacts, "human_speed": human_speed, "allowed_chance": chance}
         made["separation"] = separation_of(self.separation)
+        if self.drive is not None:
+            made["drive"] = _pushing(instance("drive", self.drive, Drive), self.robot)
         made["confirmed"] = _confirmed(self.confirmed)
+        annex_of(self.annex)
         for name, value in made.items():
             object.__setattr__(self, name, value)
         object.__setattr__(self, "inputs", kind.canonical({**self.given, **self._defaults()}))
@@ -205,7 +217,10 @@ class Cell:
             ],
             "robot": {**self.given.get("robot", {}), **self.robot.inputs},
         }
-        more = {"separation": self.separation, "uncertain": self.uncertain, "confirmed": self.confirmed}
+        more: dict[str, Any] = {"separation": self.separation, "uncertain": self.uncertain}
+        more |= {"confirmed": self.confirmed, "annex": self.annex}
+        if self.drive is not None:
+            more["drive"] = self.drive.fields()
         return found | {name: value for name, value in more.items() if value}
 
 
@@ -231,6 +246,16 @@ def checked_fit(path: str, covering: str | None, own_area: float | None, coverin
     if own_area is not None and coverings[covering].shape != "flat":
         rule = f"be left out beside covering {covering!r}, whose area follows from its shape"
         raise InvalidParameterError(f"{path}.contact_area", rule, own_area)
+
+
+def _pushing(drive: Drive, robot: ContactRobot) -> Drive:
+    """Return a drive whose joint torques are a push limit: the largest one in the poses of its arm."""
+    if drive.joint_torques is None:
+        return drive
+    if robot.push_limit is None:
+        rule = "be left out for a robot that is no arm from URDF made with them"
+        raise InvalidParameterError("drive.joint_torques", rule, dict(drive.joint_torques), "give push_limit")
+    return drive.with_push_limit(robot.push_limit)
 
 
 def _confirmed(table: Mapping[str, Any]) -> dict[str, str]:

@@ -23,6 +23,7 @@ from hrsafety.contact.cell.cell import (
 )
 from hrsafety.contact.cell.robot import ContactRobot, robot_of
 from hrsafety.contact.covering import Covering
+from hrsafety.contact.drive import drive_of
 from hrsafety.errors import InvalidParameterError
 from hrsafety.standards.contact_limits import CONTACTS
 from hrsafety.standards.limit_sets import LimitSet
@@ -32,7 +33,7 @@ from hrsafety.standards.user_sets import load_limits
 
 __all__ = ["BASE_REGIONS", "load_cell"]
 
-_PLAIN = ("title", "human_speed", "separation", "uncertain", "draws", "seed", "allowed_chance", "confirmed")
+_PLAIN = ("title", "human_speed", "separation", "uncertain", "draws", "seed", "allowed_chance", "confirmed", "annex")
 """Keys that are arguments of a cell as they are."""
 BASE_REGIONS = ("lower_leg", "thigh_knee")
 """Regions that a mobile base meets, unless the file names others."""
@@ -50,11 +51,13 @@ _TOP: Keys = MappingProxyType(
         "contacts": kind.tables,
         "coverings": kind.tables,
         "separation": kind.table,
+        "drive": kind.table,
         "uncertain": kind.table,
         "draws": kind.integer,
         "seed": kind.integer,
         "allowed_chance": kind.number,
         "confirmed": kind.table,
+        "annex": kind.table,
     }
 )
 _CONTACT: Keys = MappingProxyType(
@@ -115,8 +118,9 @@ def load_cell(path: str | PathLike[str]) -> Cell:
     given = checked("", parsed(place), _TOP, required=("robot",))
     read: dict[str, str] = {}
     limits = _limits(given.get("limits", SETS[0]), place.parent, read)
+    drive = drive_of(given["drive"]) if "drive" in given else None
     with located("robot"):
-        robot = robot_of(given["robot"], place.parent)
+        robot = robot_of(given["robot"], place.parent, None if drive is None else drive.joint_torques)
     if robot.file is not None:
         read["robot"] = str(robot.sha256)
     coverings, strains, materials = _coverings(given, place.parent, read)
@@ -127,6 +131,7 @@ def load_cell(path: str | PathLike[str]) -> Cell:
         coverings=coverings,
         strains=strains,
         materials=materials,
+        drive=drive,
         **{name: given[name] for name in _PLAIN if name in given},
         given=given,
         files=read,

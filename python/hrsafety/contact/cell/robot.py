@@ -21,8 +21,10 @@ from hrsafety.arms.doubts import doubts_of_point, doubts_of_poses, for_rule
 from hrsafety.arms.inputs import poses_of
 from hrsafety.arms.masses import RULES, mass_by_rule
 from hrsafety.arms.payload import Payload
+from hrsafety.arms.rolling import BASE_JOINTS, RollingBase
 from hrsafety.arms.workspaces import workspace
 from hrsafety.contact.base import Base, DifferentialBase, HolonomicBase
+from hrsafety.contact.drive import push_limit_of_torques
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import RANGES, ResultWarning
 
@@ -63,8 +65,14 @@ _ARM: Keys = MappingProxyType(
         "robot_mass": kind.word,
         "type_plate_mass": kind.number,
         "repair_inertia": kind.boolean,
+        "mass_source": kind.word,
+        "link_masses": kind.table,
+        "base": kind.word,
+        "base_axle": kind.pair,
+        **dict.fromkeys(("base_mass", "base_inertia", "base_heading"), kind.number),
     }
 )
+_OPTIONS = ("armature", "locked", "type_plate_mass", "repair_inertia", "mass_source")
 _PAYLOAD: Keys = MappingProxyType({"link": kind.word, "mass": kind.number, "center": kind.triple})
 _BASE: Keys = MappingProxyType(
     {
@@ -96,6 +104,10 @@ class ContactRobot:
         Of an arm, in kg: all links, those that joints move, and what it carries.
     quantile_mass : float or None
         Of drawn poses, 99 % have at most this directional mass, in kg.
+    held_mass : float or None
+        Of an arm on a base that rolls: the largest directional mass if the base stood still, in kg.
+    push_limit : float or None
+        Largest push of given joint torques in the poses, in N.
     near_singular : bool
         Whether the worst pose was drawn and weighs more than ten times the median of the draws.
     pose : dict of str to float or None
@@ -121,6 +133,8 @@ class ContactRobot:
     moving_mass: Annotated[float | None, "kg"] = None
     payload_mass: Annotated[float | None, "kg"] = None
     quantile_mass: Annotated[float | None, "kg"] = None
+    held_mass: Annotated[float | None, "kg"] = None
+    push_limit: Annotated[float | None, "N"] = None
     near_singular: bool = False
     pose: Mapping[str, float] | None = None
     position: tuple[float, ...] | None = None
@@ -216,6 +230,7 @@ class ContactRobot:
         poses: npt.ArrayLike | None = None,
         samples: int = 2000,
         seed: int = 0,
+        joint_torques: Mapping[str, float] | None = None,
     ) -> Self:
         """Return an arm whose worst pose counts.
 
@@ -235,6 +250,8 @@ class ContactRobot:
             Poses of the task, rad or m; drawn between the limits of the joints when ``None``.
         samples, seed : int
             Of drawn poses.
+        joint_torques : mapping of str to float or None
+            Largest torque of each joint in N m (N where it slides), for a push limit.
 
         Returns
         -------
@@ -276,7 +293,7 @@ class ContactRobot:
         quantile = float(np.quantile(masses, QUANTILE, method="higher"))
         singular = bool(more) and not masses[worst] <= SINGULAR * median
         doubts = [
-            *for_rule(arm.warnings, rule, masses[worst], arm.iso_mass),
+            *for_rule(arm.warnings, rule, masses[worst], arm.iso_mass, arm.mass_source),
             *(() if more else doubts_of_poses(rows, arm.joint_names, arm.joint_kinds)),
             *doubts_of_point(place["point"], arm.reach),
             *(() if singular else _unlikely(mass)),
@@ -293,6 +310,8 @@ class ContactRobot:
             moving_mass=arm.moving_mass,
             payload_mass=arm.payload_mass,
             quantile_mass=quantile if more else None,
+            held_mass=_held(arm, rows, direction, place),
+            push_limit=_push(arm, rows, joint_torques, directions, place),
             near_singular=singular,
             pose=dict(zip(arm.joint_names, rows[worst].tolist(), strict=True)),
             position=tuple(arm.position(rows[worst], **place).tolist()),
@@ -325,6 +344,24 @@ def _masses(arm: Arm, poses: Array, direction: Sequence[float] | None, place: Ma
     masses = np.atleast_1d(arm.effective_mass(poses, direction=direction, **place).mass)
     length = float(np.linalg.norm(direction))
     return masses, np.broadcast_to(np.asarray(direction) / length, (len(poses), 3))
+
+
+def _held(arm: Arm, poses: Array, direction: Sequence[float] | None, place: Mapping[str, Any]) -> float | None:
+    """Return the largest directional mass if a base that rolls stood still."""
+    if not isinstance(arm.base, RollingBase):
+        return None
+    joints = tuple(name for name in arm.free_joints if name in BASE_JOINTS)
+    return float(_masses(replace(arm, locked=(*arm.locked, *joints)), poses, direction, place)[0].max())
+
+
+def _push(
+    arm: Arm, poses: Array, torques: Mapping[str, float] | None, directions: Array, place: Mapping[str, Any]
+) -> float | None:
+    """Return the largest push of joint torques in some poses, each in its own direction."""
+    if torques is None:
+        return None
+    with kind.located("joint_torques"):
+        return float(np.max(push_limit_of_torques(arm, poses, torques, direction=directions, **place)))
 
 
 def _near_singular(worst: float, quantile: float, poses: int) -> ResultWarning:
@@ -365,7 +402,7 @@ def _doubts_of_base(base: Base, point: Pair, mass: float) -> Iterator[ResultWarn
 # ---- tables of files ------------------------------------------------------------------------------
 
 
-def robot_of(table: Mapping[str, Any], folder: Path) -> ContactRobot:
+def robot_of(table: Mapping[str, Any], folder: Path, joint_torques: Mapping[str, float] | None = None) -> ContactRobot:
     """Return the robot of a table.
 
     Parameters
@@ -374,6 +411,8 @@ def robot_of(table: Mapping[str, Any], folder: Path) -> ContactRobot:
         ``[robot]`` of the file.
     folder : Path
         Where the file is.
+    joint_torques : mapping of str to float or None
+        Of the drive of an arm.
 
     Returns
     -------
@@ -381,7 +420,7 @@ def robot_of(table: Mapping[str, Any], folder: Path) -> ContactRobot:
         With the mass that contacts feel.
     """
     if "urdf" in table:
-        return _arm(checked("", table, _ARM, required=("urdf",)), folder)
+        return _arm(checked("", table, _ARM, required=("urdf",)), folder, joint_torques)
     if "base" in table:
         return _base(checked("", table, _BASE, required=("base", "mass", "inertia", "point", "normal")))
     mass = checked("", table, _GIVEN, required=("mass",))["mass"]
@@ -404,16 +443,33 @@ def _read(values: Mapping[str, Any], folder: Path) -> Arm:
     payload = None
     if "payload" in values:
         payload = Payload(**checked("payload", values["payload"], _PAYLOAD, required=("link", "mass")))
-    options: dict[str, Any] = {name: values.get(name) for name in ("armature", "locked", "type_plate_mass")}
+    options: dict[str, Any] = {name: values[name] for name in _OPTIONS if name in values}
     options = {name: None if each in ({}, ()) else each for name, each in options.items()}
-    repair = values.get("repair_inertia", False)
+    options |= {"payload": payload, "base": _rolling(values)}
+    if "link_masses" in values:
+        masses = values["link_masses"]
+        options["link_masses"] = {name: kind.number(f"link_masses.{name}", each) for name, each in masses.items()}
     try:
-        arm = Arm.from_urdf(folder / values["urdf"], payload=payload, repair_inertia=repair, **options)
+        arm = Arm.from_urdf(folder / values["urdf"], **options)
     except InvalidParameterError as error:
         raise error.renamed("urdf" if error.argument == "path_or_text" else error.argument) from None
     if not arm.moved_links:
         raise InvalidParameterError("urdf", "have a link that some joint moves", values["urdf"])
     return arm
+
+
+def _rolling(values: Mapping[str, Any]) -> RollingBase | str | None:
+    """Return what an arm stands on."""
+    given = {key: values[f"base_{key}"] for key in ("mass", "inertia", "axle", "heading") if f"base_{key}" in values}
+    word = values.get("base")
+    if word is None or one_of("base", word, ("fixed", "differential", "omni")) == "fixed":
+        if given:
+            name = f"base_{next(iter(given))}"
+            raise InvalidParameterError(name, "come with a base that rolls", values[name], 'base = "differential"')
+        return word
+    if "mass" not in given:
+        raise kind.missing("base_mass", "of all that rolls below the arm, in kg")
+    return RollingBase(kind=word, **given)
 
 
 def _rule(values: Mapping[str, Any]) -> str:
@@ -423,7 +479,7 @@ def _rule(values: Mapping[str, Any]) -> str:
     return one_of(name, values.get(name, "larger"), RULES)
 
 
-def _arm(values: dict[str, Any], folder: Path) -> ContactRobot:
+def _arm(values: dict[str, Any], folder: Path, joint_torques: Mapping[str, float] | None) -> ContactRobot:
     arm, rule = _read(values, folder), _rule(values)
     given: dict[str, Any] = {
         name: values[name] for name in ("link", "point", "direction", "samples", "seed") if name in values
@@ -440,4 +496,5 @@ def _arm(values: dict[str, Any], folder: Path) -> ContactRobot:
                 numbers = {name: kind.number(name, value) for name, value in each.items()}
                 rows.append(poses_of(numbers, arm.joint_names))
         given["poses"] = np.array(rows).reshape(len(rows), len(arm.joint_names))
-    return replace(ContactRobot.of_arm(arm, mass_rule=rule, **given), file=values["urdf"])
+    made = ContactRobot.of_arm(arm, mass_rule=rule, joint_torques=joint_torques, **given)
+    return replace(made, file=values["urdf"])

@@ -12,10 +12,12 @@ import numpy as np
 
 from hrsafety._arguments import Array, callback, instance
 from hrsafety._records import dataclass
+from hrsafety.contact.annex import Annex
 from hrsafety.contact.cell.cell import Cell, PlannedContact, contact_of
 from hrsafety.contact.cell.chances import chance_doubts, chance_of
-from hrsafety.contact.cell.driven import drive_doubts, drive_fields, driven_of
+from hrsafety.contact.cell.driven import drive_doubts, driven_of, driven_row
 from hrsafety.contact.cell.file import load_cell
+from hrsafety.contact.cell.handover import annex_of_cell, distances_fields, distances_of, plan_of
 from hrsafety.contact.cell.judgement import (
     FASTEST,
     Judged,
@@ -27,6 +29,7 @@ from hrsafety.contact.cell.judgement import (
 )
 from hrsafety.contact.cell.stops import speed_over_distance
 from hrsafety.contact.covering import covering_of
+from hrsafety.contact.plan import MeasurementPlan
 from hrsafety.contact.simulation import ContactImpact
 from hrsafety.contact.speed import AllowedSpeed
 from hrsafety.errors import InvalidParameterError
@@ -84,6 +87,10 @@ class ContactStudy(Table):
         Peak force over closing speed by region.
     speeds : SpeedCurve or None
         Allowed speed over distance.
+    plan : MeasurementPlan
+        What to measure on the finished machine.
+    annex : Annex
+        For the technical file.
     warnings : tuple of ResultWarning
         Of every result.
     """
@@ -94,6 +101,8 @@ class ContactStudy(Table):
     impacts: Mapping[str, Mapping[str, ContactImpact]]
     curves: Mapping[str, list[Curve]]
     speeds: SpeedCurve | None
+    plan: MeasurementPlan
+    annex: Annex
     warnings: tuple[ResultWarning, ...]
 
     def columns(self) -> Columns:
@@ -150,7 +159,10 @@ def study(cell: Cell | str | PathLike[str], *, progress: Callable[[int, int], ob
     judged, loads, chances = verdicts_of(cell)
     curves = _over_speed(cell, judged)
     least = governing(judged)
-    speeds = _over_distance(cell, judged)
+    contact_speed = _least(judged)
+    speeds = _over_distance(cell, contact_speed)
+    distances = distances_of(cell, contact_speed)
+    plan, annex = plan_of(cell, judged, loads), annex_of_cell(cell, judged, distances)
     drawn = _by_region(judged, loads)
     verdicts = [each.verdict for each in judged]
     verdict = strictest(each["verdict"] for each in verdicts)
@@ -167,6 +179,9 @@ def study(cell: Cell | str | PathLike[str], *, progress: Callable[[int, int], ob
         "speed_over_distance": None if speeds is None else _speed_fields(cell, speeds),
         "sensitivity": None if least is None else _sensitivity(cell, least),
         "probability": [_named(each) | chance for each, chance in zip(judged, chances, strict=True)],
+        "distances": None if distances is None else distances_fields(distances),
+        "plan": plan.fields(),
+        "annex": annex.fields(),
     }
     return ContactStudy(
         verdict=verdict,
@@ -175,6 +190,8 @@ def study(cell: Cell | str | PathLike[str], *, progress: Callable[[int, int], ob
         impacts=drawn,
         curves=curves,
         speeds=speeds,
+        plan=plan,
+        annex=annex,
         warnings=(*_warnings(cell, judged, drawn), *(() if speeds is None else speeds.warnings)),
     )
 
@@ -199,17 +216,14 @@ def verdicts_of(
     chances = [chance_of(cell, each.planned, each.chosen) for each in found]
     judged = []
     for each, impacts, chance in zip(found, loads, chances, strict=True):
-        closing = each.verdict["planned_closing_speed"]
-        driven = None if _yields(each) else driven_of(cell, each.planned, closing)
+        pressed = each._replace(verdict=each.verdict | {"drive": None})
+        more: tuple[ResultWarning, ...] = ()
+        if not _yields(each):
+            driven = driven_of(cell, each.planned, each.verdict["planned_closing_speed"])
+            pressed, more = driven_row(cell, each, driven), drive_doubts(cell, driven)
         chosen = impacts.get(each.planned.covering)
-        doubts = (
-            *(() if chosen is None else chosen.warnings),
-            *(() if _yields(each) else drive_doubts(cell, each.planned, driven)),
-            *chance_doubts(cell, chance),
-        )
-        decision = decided(cell, each, doubts)
-        drive = None if _yields(each) else drive_fields(cell, each.planned, closing, driven)
-        judged.append(decision._replace(verdict=decision.verdict | {"drive": drive}))
+        doubts = (*(() if chosen is None else chosen.warnings), *more, *chance_doubts(cell, chance))
+        judged.append(decided(cell, pressed, doubts))
     return judged, loads, chances
 
 
@@ -440,25 +454,19 @@ def _map(cell: Cell, judged: Judged, progress: Callable[[int, int], object] | No
     }
 
 
-def _over_distance(cell: Cell, judged: list[Judged]) -> SpeedCurve | None:
+def _least(judged: list[Judged]) -> float | None:
+    """Return the speed at which every contact may happen, ``None`` where one has none."""
+    # A contact that is not permitted, or of which something is not known, allows none at all; one that is planned too
+    # fast has an allowed speed, if every limit behind it was checked.
+    speeds = [None if each.verdict["doubts"] else each.verdict["allowed_speed"] for each in judged]
+    return None if None in speeds else min(each for each in speeds if each is not None)
+
+
+def _over_distance(cell: Cell, least: float | None) -> SpeedCurve | None:
     if cell.separation is None:
         return None
-    # A contact that is not permitted, or of which something is not known, allows none at all; one that is planned too
-    # fast, with a drive too, has an allowed speed, if every limit behind it was checked.
-    speeds = [_usable(cell, each) for each in judged]
-    least = None if None in speeds else min(each for each in speeds if each is not None)
     distances = np.linspace(0.0, cell.separation["farthest"], CURVE_POINTS)
     return speed_over_distance(distances, cell.separation, contact_speed=least)
-
-
-def _usable(cell: Cell, judged: Judged) -> float | None:
-    """Return the speed at which a contact may happen, with the drive that the cell knows; ``None`` for none."""
-    row = judged.verdict
-    speed: float | None = row["allowed_speed"]
-    if row["doubts"] == ["drive_not_given"]:
-        driven: float | None = row["drive"]["allowed_closing_speed"]
-        return None if driven is None else max(driven - cell.human_speed, 0.0)
-    return None if row["doubts"] else speed
 
 
 def _speed_fields(cell: Cell, curve: SpeedCurve) -> dict[str, Any]:

@@ -1,0 +1,183 @@
+"""What a cell hands over beside its verdict: the plan of measurements, the annex, distances for a scanner."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from hrsafety.contact.annex import Annex, Assumption, Hazard, annex_of
+from hrsafety.contact.cell.cell import Cell
+from hrsafety.contact.cell.judgement import Judged
+from hrsafety.contact.cell.stops import stopping_of
+from hrsafety.contact.plan import MeasurementPlan, PlannedMeasurement
+from hrsafety.contact.simulation import ContactImpact
+from hrsafety.errors import InvalidParameterError
+from hrsafety.standards.fields import FieldDistances, field_distances
+
+__all__ = ["annex_of_cell", "distances_fields", "distances_of", "plan_of"]
+
+CLASSES = {"quasi_static": "clamped", "transient": "free"}
+
+
+def plan_of(cell: Cell, judged: Sequence[Judged], loads: Sequence[dict[str | None, ContactImpact]]) -> MeasurementPlan:
+    """Return what to measure: every contact that is permitted and known, the load that governs it.
+
+    Parameters
+    ----------
+    cell : Cell
+        What was asked.
+    judged : sequence of Judged
+        Its contacts.
+    loads : sequence of dict
+        Collisions at the planned speed by covering.
+
+    Returns
+    -------
+    MeasurementPlan
+        With predictions, the drive with them where the cell has one.
+    """
+    rows = []
+    robot = cell.robot
+    for each, impacts in zip(judged, loads, strict=True):
+        planned, row = each.planned, each.verdict
+        limit = planned.limit
+        if not limit.permitted:
+            continue
+        load = "pressure" if row["governs"] == "pressure" else "force"
+        found = impacts.get(planned.covering)
+        value = None if found is None else getattr(found, f"peak_{load}")
+        if found is not None and load == "pressure" and planned.covering is None and planned.area:
+            value = None if found.peak_force is None else found.peak_force / planned.area
+        driven = (row["drive"] or {}).get(f"peak_{load}")
+        region = limit.region if limit.area is None else f"{limit.region} ({limit.area})"
+        rows.append(
+            PlannedMeasurement(
+                place=str(robot.inputs.get("link", robot.kind)),
+                region=region,
+                contact=limit.contact,
+                speed=planned.speed + cell.human_speed,
+                spring=limit.spring_constant,
+                limit=getattr(limit, load),
+                load=load,
+                prediction=value if driven is None else driven,
+                pose=robot.pose,
+                direction=robot.direction,
+                payload=robot.payload_mass or 0.0,
+                covering=planned.covering,
+            )
+        )
+    return MeasurementPlan(rows=tuple(rows))
+
+
+def distances_of(cell: Cell, contact_speed: float | None) -> FieldDistances | None:
+    """Return the distances for the field of a scanner from the largest speed of the robot.
+
+    Parameters
+    ----------
+    cell : Cell
+        With its separation.
+    contact_speed : float or None
+        Allowed contact speed in m/s; ``None`` where contact has none.
+
+    Returns
+    -------
+    FieldDistances or None
+        ``None`` without separation, or where the stop was not measured from that speed.
+    """
+    if cell.separation is None:
+        return None
+    rules = {name: value for name, value in cell.separation.items() if name not in ("farthest", "max_speed")}
+    if "stopping" in rules:
+        rules["stopping"] = stopping_of(cell.separation)
+    try:
+        return field_distances(cell.separation["max_speed"], contact_speed=contact_speed, **rules)
+    except InvalidParameterError:
+        # The curve of speeds says that nothing is known of faster stops.
+        return None
+
+
+def distances_fields(found: FieldDistances) -> dict[str, Any]:
+    """Return both distances with their terms as the report holds them."""
+    names = ("stop", "slow_down", "robot_speed", "contact_speed", "stop_terms", "slow_down_terms", "said")
+    return {name: getattr(found, name) for name in names}
+
+
+def annex_of_cell(cell: Cell, judged: Sequence[Judged], distances: FieldDistances | None) -> Annex:
+    """Return the annex of a cell: what it says itself, and what its verdict rests on.
+
+    Parameters
+    ----------
+    cell : Cell
+        With its annex.
+    judged : sequence of Judged
+        Its contacts.
+    distances : FieldDistances or None
+        For the field of a scanner.
+
+    Returns
+    -------
+    Annex
+        To be filled.
+    """
+    hazards, limits = [], []
+    for each in judged:
+        planned, limit = each.planned, each.planned.limit
+        region = f"{limit.region} ({limit.area})" if limit.area else limit.region
+        kind = CLASSES[limit.contact]
+        covering = "bare" if planned.covering is None else f"covering {planned.covering!r}"
+        measure = f"speed at most {planned.speed:g} m/s, {covering}"
+        hazards.append(Hazard(hazard=f"contact with {region}".replace("_", " "), contact=kind, measures=measure))
+        loads = [
+            f"{name} {value:g} {unit}"
+            for name, value, unit in (("force", limit.force, "N"), ("pressure", limit.pressure, "Pa"))
+            if value is not None
+        ]
+        words = ", ".join(loads) if limit.permitted else "not permitted"
+        limits.append(
+            f"{region}, {kind}: {words} ({cell.limits.title}, edition {cell.limits.edition})".replace("_", " ")
+        )
+    return annex_of(
+        cell.annex,
+        hazards=hazards,
+        assumptions=list(_assumptions(cell, distances)),
+        limits=list(dict.fromkeys(limits)),
+        hashes=dict(cell.files),
+    )
+
+
+def _assumptions(cell: Cell, distances: FieldDistances | None) -> list[Assumption]:
+    def told(name: str, value: str, broken_by: str) -> Assumption:
+        return Assumption(name=name, value=value, broken_by=broken_by)
+
+    speeds = [each.speed for each in cell.contacts]
+    robot = cell.robot
+    mass = "unbounded" if math.isinf(robot.mass) else f"{robot.mass:.4g} kg"
+    found = [
+        told("speed of the robot in a contact", f"at most {max(speeds):g} m/s", "another program, a changed override"),
+        told("mass of the robot", mass, "a heavier payload or tool, other poses"),
+        told("speed of the person towards the robot", f"at most {cell.human_speed:g} m/s", "people who walk there"),
+    ]
+    if robot.payload_mass is not None:
+        found.append(told("payload", f"at most {robot.payload_mass:g} kg", "another tool or workpiece"))
+    for name, pad in cell.coverings.items():
+        value = f"{1e3 * pad.thickness:g} mm, {pad.material.law.replace('_', ' ')}"
+        found.append(told(f"covering {name!r}", value, "wear, dirt, another material, a place without it"))
+    if cell.drive is not None and cell.drive.model != "none":
+        drive = cell.drive
+        if drive.reaction_time is not None:
+            found.append(told("reaction time of the drive", f"{drive.reaction_time:g} s", "filters, a slower bus"))
+            found.append(told("detection force", f"{drive.detection_force:g} N", "a coarser setting"))
+        if drive.deceleration is not None:
+            found.append(
+                told("deceleration of the drive", f"{drive.deceleration:g} m/s^2", "worn brakes, more payload")
+            )
+        if drive.push_limit is not None:
+            found.append(told("push limit of the drive", f"{drive.push_limit:g} N", "other settings, another pose"))
+    if distances is not None:
+        slow = "" if distances.slow_down is None else f", {distances.slow_down:.3f} m to slow down"
+        value = f"{distances.stop:.3f} m to stop{slow}"
+        found.append(told("distance of the scanner field", value, "faster people, objects that hide somebody"))
+    for code, reason in cell.confirmed.items():
+        found.append(told(f"confirmed: {code.replace('_', ' ')}", reason, "a change of the machine"))
+    return found
