@@ -41,6 +41,11 @@ NO_CONSTRUCTORS: dict[type, str] = {
 
 _FOAM = contact.Linear(modulus=1e5)
 _PLANNED = contact.PlannedContact(limit=standards.limits().contact("chest", "transient"), speed=0.2)
+_MEASUREMENT: Right = {
+    **{"place": "tool", "region": "chest", "contact": "transient", "speed": 0.2},
+    **{"spring": 25e3, "limit": 280.0},
+}
+_MEASURED = contact.PlannedMeasurement(**_MEASUREMENT)
 _SAMPLES = np.linspace(0.0, 1.0, 5)
 _SQUARE = np.stack([_SAMPLES, np.zeros(5)], axis=1)
 _WORLD = nav.World(robots=[nav.Robot(start=(0.0, 0.0), goal=(3.0, 0.0))])
@@ -70,12 +75,18 @@ REQUIRED: dict[Callable[..., Any], Right] = {
     },
     arms.Arm: {"urdf": arms.Arm.example().urdf},
     arms.Payload: {"link": "tool", "mass": 1.0},
+    arms.RollingBase: {"kind": "omni", "mass": 40.0},
+    contact.Assumption: {"name": "payload", "value": "2 kg"},
     contact.Avalle: {"plateau": 4e4, "modulus": 1e5, "falloff": 0.1, "densification": 1e3, "exponent": 3.0},
     contact.Cell: {"robot": contact.ContactRobot.of_mass(8.0), "contacts": [_PLANNED]},
     contact.Contact: {"robot": 8.0, "body": 40.0, "region": 25e3},
     nav.Controller: {"law": nav.VirtualForceField(), "robot": nav.HolonomicRobot(), "goal": (3.0, 0.0)},
     contact.Covering: {"material": _FOAM, "thickness": 0.02, "area": 1e-3},
     contact.DifferentialBase: {"mass": 20.0, "inertia": 0.5},
+    contact.Drive: {"reaction_time": 0.02, "deceleration": 8.0},
+    contact.Hazard: {"hazard": "hand below the tool"},
+    contact.MeasurementPlan: {"rows": [_MEASURED]},
+    contact.PlannedMeasurement: _MEASUREMENT,
     contact.GibsonAshby: {"modulus": 1e5, "plateau": 1e4, "lock": 0.7},
     contact.HolonomicBase: {"mass": 20.0, "inertia": 0.5},
     contact.Linear: {"modulus": 1e5},

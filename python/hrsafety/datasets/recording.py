@@ -122,6 +122,8 @@ class Recording(Played):
         if self.velocity is not None:
             object.__setattr__(self, "velocity", checked_velocity(self.velocity, position.shape))
         object.__setattr__(self, "notes", tuple(checked_doubts("notes", self.notes)))
+        if self.robot is not None:
+            instance("robot", self.robot, RecordedRobot)
         object.__setattr__(self, "time_origin", finite("time_origin", self.time_origin))
         if self.frame_rate is not None:
             object.__setattr__(self, "frame_rate", positive("frame_rate", self.frame_rate))

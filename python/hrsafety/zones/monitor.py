@@ -29,6 +29,7 @@ from hrsafety._arguments import (
     word,
 )
 from hrsafety._display import displayed
+from hrsafety._doubts import checked_doubts
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.plausibility import ResultWarning
@@ -173,6 +174,8 @@ class MonitorPolygon(Parameters):
         if self.type == "velocity_polygon" and not given:
             raise InvalidParameterError("ranges", "hold at least one VelocityRange", Shown("none"))
         self._set(ranges=tuple(instance(f"ranges[{index}]", each, VelocityRange) for index, each in enumerate(given)))
+        named = sequence("sources_names", "be a list of names", self.sources_names)
+        self._set(sources_names=tuple(checked_text("sources_names", each, "be a list of names") for each in named))
         count("min_points", self.min_points, least=0)
         for name in ("trigger_consecutive_points", "release_consecutive_points"):
             count(name, getattr(self, name))
@@ -341,6 +344,7 @@ class CollisionMonitor:
             self, "sources", tuple(checked_text(f"sources[{place}]", each, rule) for place, each in enumerate(names))
         )
         assign(self, "source_timeout", not_negative("source_timeout", self.source_timeout))
+        assign(self, "warnings", tuple(checked_doubts("warnings", self.warnings)))
 
     def restart(self) -> None:
         """Forget the commands so far: shapes of velocity polygons, and counts of points in a row."""
