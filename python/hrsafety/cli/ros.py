@@ -45,10 +45,10 @@ def serve_world(options: argparse.Namespace) -> None:
         world = _with_body(world, options.params)
     settings = settings_of(options)
     if options.drive:
-        from hrsafety.ros.drive import Drive
+        from hrsafety.ros.drive import LawNode
 
         with _stoppable(), connected("hrsafety_drive") as bus:
-            Drive(
+            LawNode(
                 world,
                 bus,
                 lockstep=settings.lockstep,

@@ -14,7 +14,7 @@ from hrsafety._arguments import Array, callback, count, instance, numbers, posit
 from hrsafety._bounds import MOST_LANES
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.impact.criteria.declared import CRITERIA, Loads, with_criteria
+from hrsafety.impact.criteria.declared import CRITERIA, CriterionValues, with_criteria
 from hrsafety.impact.criteria.loads import Doubts
 from hrsafety.impact.parameters import (
     LINEAR_RANGE,
@@ -44,7 +44,7 @@ _BEYOND, _BOTTOMED, _INVALID_THICKNESS = (
 
 @with_criteria("ndarray")
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
-class ImpactMetricsBatch(Loads[Array], Table):
+class ImpactMetricsBatch(CriterionValues[Array], Table):
     """Loads of many impacts: the fields of `ImpactMetrics` as arrays of the broadcast shape.
 
     Criteria that were not asked for are NaN.

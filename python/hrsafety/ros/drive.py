@@ -21,7 +21,7 @@ from hrsafety.ros.bus import EVENTS, SENSOR, Bus, Message, Quality
 from hrsafety.ros.messages import Pose, pose_in, seconds, stamp, twist_in
 from hrsafety.ros.steering import STAMPED, TWIST
 
-__all__ = ["SILENT", "Drive"]
+__all__ = ["SILENT", "LawNode"]
 
 SILENT = 0.5
 """The robot brakes after so many seconds without its odometry or without people."""
@@ -37,7 +37,7 @@ class _Known(NamedTuple):
     velocity: tuple[float, float]
 
 
-class Drive:
+class LawNode:
     """A law on a robot that is seen and told over a bus.
 
     It starts when it has received the robot and people once, for a person who was not seen is not away, and commands

@@ -12,7 +12,7 @@ from api.ros.worlds import Wire, empty, hall, served
 from hrsafety import navigation as nav
 from hrsafety.errors import InvalidParameterError
 from hrsafety.ros import messages
-from hrsafety.ros.drive import Drive
+from hrsafety.ros.drive import LawNode
 from hrsafety.ros.messages import Pose, Seen
 
 
@@ -36,7 +36,7 @@ def test_whoever_is_not_listed_has_left_where_lists_are_complete() -> None:
     seen = Seen("a", 2.0, 0.0, 0.0, 0.0, 0.25)
     for complete in (False, True):
         bus = FakeBus()
-        drive = Drive(hall(), bus, complete=complete)
+        drive = LawNode(hall(), bus, complete=complete)
         for step in range(20):
             told_of(bus, 0.05 * step, *([seen] if step < 10 else []), speed=0.0)
         assert drive.last is not None
@@ -79,7 +79,7 @@ def told_of(drive: FakeBus, now: float, *people: Seen, x: float = 0.0, speed: fl
 
 def test_it_stands_until_it_has_heard_of_people() -> None:
     bus = FakeBus()
-    Drive(hall(), bus)
+    LawNode(hall(), bus)
     for step in range(10):
         bus.say("/odom", told(messages.odometry(0.05 * step, Pose(0.0, 0.0, 0.0), (0.0, 0.0, 0.0))))
     assert sent(bus) == [(0.0, 0.0)] * 10
@@ -89,7 +89,7 @@ def test_it_stands_until_it_has_heard_of_people() -> None:
 
 def test_it_brakes_without_people_and_without_odometry() -> None:
     bus = FakeBus()
-    drive = Drive(hall(), bus)
+    drive = LawNode(hall(), bus)
     x = 0.0
     for step in range(40):
         x += 0.3 * 0.05
@@ -124,7 +124,7 @@ def test_in_lock_step_a_world_that_thinks_for_long_is_not_silent() -> None:
 
 def test_what_is_not_finite_is_not_measured() -> None:
     bus = FakeBus()
-    drive = Drive(hall(), bus)
+    drive = LawNode(hall(), bus)
     told_of(bus, 0.0, Seen("a", math.nan, 0.0, 0.0, 0.0, 0.3), Seen("b", 3.0, 0.0, 0.0, 0.0, 0.3))
     assert drive.counts["people_not_finite"] == 1
     bus.say("/odom", told(messages.odometry(0.1, Pose(math.nan, 0.0, 0.0), (0.0, 0.0, 0.0))))
@@ -138,7 +138,7 @@ def test_what_is_not_finite_is_not_measured() -> None:
 
 def test_a_person_in_the_way_is_not_driven_into() -> None:
     bus = FakeBus()
-    drive = Drive(hall(), bus)
+    drive = LawNode(hall(), bus)
     told_of(bus, 0.0, Seen("a", 0.9, 0.0, 0.0, 0.0, 0.25), speed=0.0)
     assert drive.last is not None
     assert drive.last.speed is not None
@@ -148,14 +148,14 @@ def test_a_person_in_the_way_is_not_driven_into() -> None:
 @pytest.mark.parametrize("given", [pose(math.nan, 0.0), pose(1.0, 0.0, frame="odom")])
 def test_goals_that_are_none_are_refused(given: Any) -> None:
     bus = FakeBus()
-    drive = Drive(hall(), bus)
+    drive = LawNode(hall(), bus)
     bus.say("/goal_pose", given)
     assert drive.counts["goal_pose_refused"] == 1
 
 
 def test_another_goal_is_driven_to() -> None:
     bus = FakeBus()
-    drive = Drive(empty(), bus)
+    drive = LawNode(empty(), bus)
     told_of(bus, 0.0, speed=0.0)
     assert sent(bus)[-1][0] > 0.0
     bus.say("/goal_pose", pose(-6.0, 0.0))
@@ -166,7 +166,7 @@ def test_another_goal_is_driven_to() -> None:
 
 def test_a_clock_that_is_set_back_does_not_stop_it_for_good() -> None:
     bus = FakeBus()
-    drive = Drive(empty(), bus)
+    drive = LawNode(empty(), bus)
     for step in range(20):
         told_of(bus, 100.0 + 0.05 * step, speed=0.0)
     before = len(sent(bus))
@@ -180,4 +180,4 @@ def test_a_clock_that_is_set_back_does_not_stop_it_for_good() -> None:
 def test_a_world_needs_a_law() -> None:
     world = nav.World(robots=[nav.Robot(start=(0, 0), goal=(1, 0))])
     with pytest.raises(InvalidParameterError, match="one robot with a law"):
-        Drive(world, FakeBus())
+        LawNode(world, FakeBus())

@@ -9,7 +9,7 @@ from typing import Any
 from api.ros.fake_bus import FakeBus, stamped, told
 from hrsafety import navigation as nav
 from hrsafety.ros import Bridge, BusRecord, Settings
-from hrsafety.ros.drive import Drive
+from hrsafety.ros.drive import LawNode
 
 ROBOT = nav.DifferentialDriveRobot(radius=0.25, max_speed=0.8, max_acceleration=2.0, max_turn_rate=1.5)
 WALLS = [[(-2.0, -3.0), (10.0, -3.0)], [(-2.0, 3.0), (10.0, 3.0)]]
@@ -55,7 +55,7 @@ class Wire:
 
     def __init__(self, world: nav.World, bus: FakeBus, **given: Any) -> None:
         self.bus = FakeBus(types=sorted(bus.types))
-        self.drive = Drive(world, self.bus, **given)
+        self.drive = LawNode(world, self.bus, **given)
         self._passed = dict.fromkeys((*self.TOPICS, "cmd_vel"), 0)
 
     def __call__(self, bus: FakeBus) -> None:

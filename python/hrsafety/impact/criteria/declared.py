@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, NamedTuple, Self, Type
 from hrsafety import _hrsafety
 from hrsafety._records import dataclass
 
-__all__ = ["CRITERIA", "Criterion", "LoadRow", "Loads", "with_criteria"]
+__all__ = ["CRITERIA", "Criterion", "CriterionValues", "LoadRow", "with_criteria"]
 
 T_co = TypeVar("T_co", covariant=True)
 C = TypeVar("C", bound=type)
@@ -45,7 +45,7 @@ CRITERIA: Mapping[str, Criterion] = MappingProxyType({row[0]: Criterion(*row) fo
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Loads(Generic[T_co]):
+class CriterionValues(Generic[T_co]):
     """A value for each of `CRITERIA`, for type checkers: names cannot come from a module that is compiled."""
 
     peak_head_acceleration: T_co
@@ -64,7 +64,7 @@ class Loads(Generic[T_co]):
 
 if TYPE_CHECKING:
 
-    class LoadRow(Loads[float]):
+    class LoadRow(CriterionValues[float]):
         """The named tuple below."""
 
         status: str

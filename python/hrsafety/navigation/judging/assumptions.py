@@ -12,7 +12,7 @@ from hrsafety._display import displayed
 from hrsafety.navigation.judging.synchronized import Synchronized
 from hrsafety.navigation.laws.shield import Shield
 
-__all__ = ["Assumption", "assumptions"]
+__all__ = ["ShieldAssumption", "assumptions"]
 
 HELD, BROKEN, NOT_MEASURABLE = "held", "broken", "not_measurable"
 SURE = 3.0
@@ -28,7 +28,7 @@ LEAST_ROWS = 20
 
 
 @displayed
-class Assumption(NamedTuple):
+class ShieldAssumption(NamedTuple):
     """Assumption of a shield beside the measured value.
 
     Attributes
@@ -66,7 +66,7 @@ class Assumption(NamedTuple):
 
 def assumptions(
     both: Synchronized, log: Any, shield: Shield, *, deceleration: float | None, control_period: float | None
-) -> list[Assumption]:
+) -> list[ShieldAssumption]:
     """Return the assumptions of a shield that concern this log.
 
     Parameters
@@ -93,13 +93,13 @@ def assumptions(
 
 def _found(
     name: str, limit: float | None, values: Array, times: Array, error: float, unit: str, note: str
-) -> Assumption:
+) -> ShieldAssumption:
     """Return what values say about a limit: broken beyond it and the error, held below it with the error."""
     bound = float("nan") if limit is None else float(limit)
     good = np.isfinite(values)
     values, times = values[good], times[good]
     if len(values) == 0:
-        return Assumption(
+        return ShieldAssumption(
             name, NOT_MEASURABLE, bound, np.nan, np.nan, error, unit, np.nan, note or "nothing was recorded"
         )
     worst = int(np.argmax(values))
@@ -113,10 +113,10 @@ def _found(
         status = HELD
     else:
         status, note = NOT_MEASURABLE, f"noise of {error:.2g} {unit} is larger than the distance from the limit"
-    return Assumption(name, status, bound, high, most, error, unit, float(times[worst]), note)
+    return ShieldAssumption(name, status, bound, high, most, error, unit, float(times[worst]), note)
 
 
-def _of_people(both: Synchronized, shield: Shield) -> Iterator[Assumption]:
+def _of_people(both: Synchronized, shield: Shield) -> Iterator[ShieldAssumption]:
     speed = np.hypot(both.person_velocity[..., 0], both.person_velocity[..., 1])
     # Across the steps that are not bridged a person may have been fast without being noticed.
     instants = np.broadcast_to(both.time[:, None], speed.shape)
@@ -140,7 +140,7 @@ def _of_people(both: Synchronized, shield: Shield) -> Iterator[Assumption]:
     yield _found("person_acceleration", shield.person_acceleration, rate.ravel(), times, error, "m/s^2", who)
 
 
-def _latency(log: Any, shield: Shield) -> Assumption:
+def _latency(log: Any, shield: Shield) -> ShieldAssumption:
     """Return the delay of people and the age of the newest one when a command took effect."""
     delays = getattr(log, "delay", {}) or {}
     topic = getattr(log, "people_topic", "")
@@ -149,7 +149,7 @@ def _latency(log: Any, shield: Shield) -> Assumption:
     commands = np.asarray(getattr(log, "commands", np.empty((0, 4))), dtype=np.float64).reshape(-1, 4)
     if delay is None or len(reports) == 0:
         note = "the log holds no record times of people"
-        return Assumption("latency", NOT_MEASURABLE, shield.latency, np.nan, np.nan, 0.0, "s", np.nan, note)
+        return ShieldAssumption("latency", NOT_MEASURABLE, shield.latency, np.nan, np.nan, 0.0, "s", np.nan, note)
     # The newest report that had arrived by then.
     when = commands[:, 0] if len(commands) else reports + delay.median
     last = np.searchsorted(reports, when - delay.median + 1e-9, "right") - 1
@@ -161,35 +161,37 @@ def _latency(log: Any, shield: Shield) -> Assumption:
     return found
 
 
-def _position_error(both: Synchronized, shield: Shield) -> Assumption:
+def _position_error(both: Synchronized, shield: Shield) -> ShieldAssumption:
     sigma = both.person_noise.position
     note = "noise from row to row; an error that lasts is not seen in a log"
     if sigma < ROUNDING:
-        return Assumption(
+        return ShieldAssumption(
             "position_error", NOT_MEASURABLE, shield.position_error, np.nan, np.nan, 0.0, "m", np.nan, note
         )
     size = SURE * sigma
     status = BROKEN if size > shield.position_error else NOT_MEASURABLE
-    return Assumption("position_error", status, shield.position_error, size, size, 0.0, "m", float(both.time[0]), note)
+    return ShieldAssumption(
+        "position_error", status, shield.position_error, size, size, 0.0, "m", float(both.time[0]), note
+    )
 
 
-def _margin(log: Any, shield: Shield) -> Assumption:
+def _margin(log: Any, shield: Shield) -> ShieldAssumption:
     jumps = getattr(log, "pose_jumps", ())
     if not jumps:
         note = "no jump of the pose; an error that lasts is not seen in a log"
-        return Assumption("margin", NOT_MEASURABLE, shield.margin, np.nan, np.nan, 0.0, "m", np.nan, note)
+        return ShieldAssumption("margin", NOT_MEASURABLE, shield.margin, np.nan, np.nan, 0.0, "m", np.nan, note)
     lengths = np.array([each[2] for each in jumps])
     times = np.array([each[0] for each in jumps])
     return _found("margin", shield.margin, lengths, times, 0.0, "m", f"{len(jumps)} jumps of the pose")
 
 
-def _tracking(both: Synchronized, log: Any, shield: Shield) -> Assumption:
+def _tracking(both: Synchronized, log: Any, shield: Shield) -> ShieldAssumption:
     """Return how far the speed is from the one that was asked for, after the robot has had time to follow."""
     commands = np.asarray(getattr(log, "commands", np.empty((0, 4))), dtype=np.float64).reshape(-1, 4)
     absolute, share = shield.velocity_tracking
     if len(commands) < 2:
         note = "the log holds no commands"
-        return Assumption("velocity_tracking", NOT_MEASURABLE, absolute, np.nan, np.nan, 0.0, "m/s", np.nan, note)
+        return ShieldAssumption("velocity_tracking", NOT_MEASURABLE, absolute, np.nan, np.nan, 0.0, "m/s", np.nan, note)
     last = np.clip(np.searchsorted(commands[:, 0], both.time, "right") - 1, 0, None)
     asked = np.hypot(commands[:, 1], commands[:, 2])
     changed = np.append(0, np.flatnonzero(np.abs(np.diff(asked)) > 1e-3) + 1)
@@ -201,7 +203,7 @@ def _tracking(both: Synchronized, log: Any, shield: Shield) -> Assumption:
     return _found("velocity_tracking", absolute, off, both.time, SURE * both.noise.velocity, "m/s", note)
 
 
-def _deceleration(both: Synchronized, assumed: float | None) -> Assumption:
+def _deceleration(both: Synchronized, assumed: float | None) -> ShieldAssumption:
     """Return the deceleration that was reached: what is less than assumed may have been all that was asked for."""
     speed = np.hypot(*both.velocity.T)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -210,7 +212,7 @@ def _deceleration(both: Synchronized, assumed: float | None) -> Assumption:
     error = SURE * both.noise.acceleration
     limit = float("nan") if assumed is None else assumed
     if not np.isfinite(slower).any():
-        return Assumption(
+        return ShieldAssumption(
             "deceleration", NOT_MEASURABLE, limit, np.nan, np.nan, error, "m/s^2", np.nan, "too few poses"
         )
     worst = int(np.nanargmax(slower))
@@ -218,10 +220,10 @@ def _deceleration(both: Synchronized, assumed: float | None) -> Assumption:
     reached = assumed is not None and most - error >= assumed
     note = "" if reached else "the robot never braked harder, which does not say that it could not"
     status = HELD if reached else NOT_MEASURABLE
-    return Assumption("deceleration", status, limit, high, most, error, "m/s^2", float(both.time[worst]), note)
+    return ShieldAssumption("deceleration", status, limit, high, most, error, "m/s^2", float(both.time[worst]), note)
 
 
-def _period(log: Any, assumed: float | None) -> Assumption:
+def _period(log: Any, assumed: float | None) -> ShieldAssumption:
     commands = np.asarray(getattr(log, "commands", np.empty((0, 4))), dtype=np.float64).reshape(-1, 4)
     steps = np.diff(commands[:, 0])
     # Times are those of recording, or rounded.

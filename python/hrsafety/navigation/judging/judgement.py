@@ -15,7 +15,7 @@ from hrsafety._replay.played import Played
 from hrsafety._replay.record import Replay
 from hrsafety._tracks import WINDOW
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.judging.assumptions import Assumption, assumptions
+from hrsafety.navigation.judging.assumptions import ShieldAssumption, assumptions
 from hrsafety.navigation.judging.permit import Passing, PermitRules, passings
 from hrsafety.navigation.judging.replay import replay_of
 from hrsafety.navigation.judging.synchronized import Logged, Synchronized, synchronized
@@ -108,7 +108,7 @@ class Judgement(Played):
         Begin and end of that part in s.
     contacts, possible_contacts : tuple of Touch
         With people and walls; those which the error decides.
-    assumptions : tuple of Assumption
+    assumptions : tuple of ShieldAssumption
         Of the shield.
     moments : tuple of Moment
         The worst ones, worst first.
@@ -145,7 +145,7 @@ class Judgement(Played):
     scored: Annotated[tuple[float, float], "s"]
     contacts: tuple[Touch, ...]
     possible_contacts: tuple[Touch, ...]
-    assumptions: tuple[Assumption, ...]
+    assumptions: tuple[ShieldAssumption, ...]
     moments: tuple[Moment, ...]
     passings: tuple[Passing, ...]
     not_judged: tuple[NotJudged, ...]

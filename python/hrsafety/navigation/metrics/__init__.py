@@ -15,7 +15,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     )
     from hrsafety.navigation.bands import Band as Band
     from hrsafety.navigation.comparison import Comparison as Comparison, Standing as Standing, step_cost as step_cost
-    from hrsafety.navigation.judging.assumptions import Assumption as Assumption
+    from hrsafety.navigation.judging.assumptions import ShieldAssumption as ShieldAssumption
     from hrsafety.navigation.judging.judgement import Judgement as Judgement, Moment as Moment, judge as judge
     from hrsafety.navigation.judging.permit import Passing as Passing, PermitRules as PermitRules
     from hrsafety.navigation.judging.touches import Touch as Touch
