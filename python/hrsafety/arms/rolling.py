@@ -62,5 +62,5 @@ class RollingBase:
 
     @property
     def native(self) -> tuple[bool, float, float | None, list[float], float]:
-        """What the core reads."""
+        """Values that the core reads."""
         return self.kind == "omni", self.mass, self.inertia, list(self.axle), self.heading

@@ -18,7 +18,7 @@ from hrsafety.standards.robot_classes import robot_class as class_of_robot
 __all__ = ["Annex", "Assumption", "Hazard", "annex_of"]
 
 BLANK = ""
-"""What nobody has given yet; the page leaves a line for it."""
+"""Mark of a missing entry; the page leaves a line for it."""
 NOTE = (
     "Regulation (EU) 2023/1230 on machinery applies from 2027-01-20. This annex helps to fill the technical file; it "
     "is no assessment of conformity."
@@ -31,7 +31,7 @@ MACHINE = MappingProxyType(
         "foreseeable_misuse": "Reasonably foreseeable misuse",
     }
 )
-"""What is said of the machine, with its titles."""
+"""Entries about the machine, with their titles."""
 SOFTWARE = MappingProxyType(
     {
         "software": "Software",
@@ -39,7 +39,7 @@ SOFTWARE = MappingProxyType(
         "log_retention": "Retention of the logs of safety software",
     }
 )
-"""What is said of the software."""
+"""Entries about the software."""
 CLOSING = MappingProxyType({"residual_risk": "Residual risk", "signatures": "Date and signatures"})
 
 

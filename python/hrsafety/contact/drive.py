@@ -23,7 +23,7 @@ from hrsafety.standards.separation import StoppingData
 __all__ = ["FASTEST_BRAKE", "MODELS", "Drive", "drive_of", "push_limit_of_torques"]
 
 MODELS = ("any_stiffness", "rigid", "push_limit", "elastic", "none")
-"""What is known of a drive; the first one covers every spring."""
+"""Kinds of knowledge about a drive; the first one covers every spring."""
 BRAKING = ("any_stiffness", "rigid", "elastic")
 """Models that go on until they have braked."""
 FASTEST_BRAKE = 1e12
@@ -45,7 +45,7 @@ _OF_MODEL = MappingProxyType(
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Drive:
-    """What pushes a robot on against a clamped part of a body, and how it stops.
+    """Drive that pushes a robot against a clamped part of a body, and how it stops.
 
     Parameters
     ----------

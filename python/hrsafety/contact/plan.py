@@ -128,7 +128,7 @@ class PlannedMeasurement:
 
     @property
     def found(self) -> Repetitions | None:
-        """What the measurements mean for the limit; ``None`` without any, or without a limit."""
+        """Verdict of the measurements on the limit; ``None`` without any, or without a limit."""
         if not self.measured or self.limit is None:
             return None
         return repetitions(self.measured, self.limit, device_uncertainty=self.device_uncertainty)

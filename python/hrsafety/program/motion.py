@@ -36,7 +36,7 @@ LOG_STEP = 0.004
 MOST_LOGGED = 10**6
 PATH_TOLERANCE = 1e-3
 REASONS = ("acceleration", "velocity", "contact", "zone")
-"""What limits a place of the path, by the code of the core."""
+"""Limits that bind at a place of the path, by the code of the core."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)

@@ -1,4 +1,4 @@
-"""What a cell hands over beside its verdict: the plan of measurements, the annex, distances for a scanner."""
+"""Documents of a cell beside its verdict: the plan of measurements, the annex, distances for a scanner."""
 
 from __future__ import annotations
 
