@@ -12,6 +12,8 @@ import numpy as np
 from hrsafety import records
 from hrsafety.cli import output, terminal, verdict
 from hrsafety.cli.output import decimal
+from hrsafety.cli.prediction import predicted, prediction_section
+from hrsafety.contact.plan import MeasurementPlan
 from hrsafety.errors import InvalidParameterError
 from hrsafety.pages.report import Report, ReportCell, ReportTable, Section
 from hrsafety.plausibility import ResultWarning
@@ -55,11 +57,15 @@ def judge_records(options: argparse.Namespace) -> None:
     limits = _limits(options)
     judged = [_judged(path, options, limits) for path in options.files]
     word, repeated = _verdict(judged, options, limits)
-    report = _report(options, judged, word, repeated, limits)
+    plan = _plan(options, judged)
+    report = _report(options, judged, word, repeated, limits, plan)
     print(terminal.told(report))
     written: list[Path] = []
     if options.out is not None:
-        written = output.write_report(report, output.folder(options.out), _draw(judged, options, limits), [])
+        place = output.folder(options.out)
+        written = output.write_report(report, place, _draw(judged, options, limits), [])
+        if plan is not None:
+            written.append(plan.to_csv(place / "plan.csv"))
     output.say_written(written, report, options)
     output.report_warnings(report.warnings, strict=False)
     verdict.leave(word, report.said)
@@ -129,6 +135,19 @@ def _verdict(
     return strictest(words), repeated
 
 
+def _plan(options: argparse.Namespace, judged: list[_Judged]) -> MeasurementPlan | None:
+    """Return the row of the measurement plan that the records are about, filled."""
+    if options.predict is None:
+        if options.plan_row is not None:
+            raise InvalidParameterError("--plan-row", "come with --predict", options.plan_row)
+        return None
+    if options.kind == "head":
+        raise InvalidParameterError("--predict", "go with --kind force or pressure", options.predict)
+    load = "peak" if options.kind == "force" else "patch" if options.patch else "cell"
+    values = [float(getattr(each.loads, load)) for each in judged]
+    return predicted(options.predict, options.plan_row, options.kind, values, _uncertainty(options))
+
+
 def _uncertainty(options: argparse.Namespace) -> float:
     """Return the standard uncertainty of the device: the option, or what its file says."""
     if options.uncertainty is not None:
@@ -156,6 +175,7 @@ def _report(
     word: str,
     repeated: list[tuple[str, records.Repetitions]],
     limits: dict[str, float],
+    plan: MeasurementPlan | None,
 ) -> Report:
     warnings: list[ResultWarning] = [warning for each in judged for warning in each.loads.warnings]
     sections = [Section("Records", [_table(judged)])]
@@ -174,6 +194,9 @@ def _report(
         ]
         titles = ("load", "records", "mean", "largest", "expanded uncertainty", "limit", "verdict")
         sections.append(Section("Repetitions", [ReportTable(headers=[titles], rows=rows, left=(0, 6), printed=True)]))
+    if plan is not None:
+        sections.append(prediction_section(plan))
+    more = {} if plan is None else {"prediction": {"cell": options.predict, **plan.fields()[0]}}
     shown = ", ".join(f"{name} {limit:g}" for name, limit in limits.items())
     return Report(
         title=f"Measured records: {KINDS[options.kind]}",
@@ -187,7 +210,7 @@ def _report(
         good=word == "within_limits",
         sections=sections,
         warnings=warnings,
-        values={"verdict": word, "limits": limits, "records": [_values(each) for each in judged]},
+        values={"verdict": word, "limits": limits, "records": [_values(each) for each in judged], **more},
         source=options.files[0],
     )
 

@@ -569,7 +569,7 @@ def driven_speeds(hit: Contact, drive: Drive, robot_mass: npt.ArrayLike, limits:
     >>> hit = contact.Contact(robot=1.0, region=75e3)
     >>> drive = contact.Drive(reaction_time=0.005, deceleration=20.0)
     >>> contact.driven_speeds(hit, drive, [6.0, 12.0], {"force": 140.0}).round(4).tolist()
-    [0.1805, 0.1412]
+    [0.165, 0.1412]
     """
     masses = numbers("robot_mass", robot_mass)
     if masses.size and not (masses > 0.0).all():

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hrsafety import contact, standards
 from hrsafety.cli import main
 
 
@@ -58,3 +59,33 @@ def test_wrong_options_are_named(tmp_path: Path, capsys: pytest.CaptureFixture[s
     ):
         assert main(["record", file, *more]) == 2
         assert said in capsys.readouterr().err
+
+
+def test_a_prediction_stands_beside_the_records(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    time = np.arange(0.0, 0.8, 1e-3)
+    names = []
+    for index, size in enumerate((100.0, 104.0, 98.0)):
+        pulse = np.where((time >= 0.1) & (time <= 0.15), size * np.sin(np.pi * (time - 0.1) / 0.05), 0.0)
+        rows = "\n".join(f"{each:.4f};{value:.6f}" for each, value in zip(time, pulse, strict=True))
+        names.append(f"{index}.csv")
+        Path(names[-1]).write_text("t [s];force [N]\n" + rows)
+    Path("cell.toml").write_text(
+        'speed = 0.05\n[robot]\nmass = 8.0\n[[contacts]]\nregion = "chest"\n'
+        "[drive]\nreaction_time = 0.01\ndeceleration = 8.0\n"
+    )
+    command = ["record", *names, *LIMITS, "--out", "out", "--json", "out.json"]
+    assert main([*command, "--predict", "cell.toml"]) != 0
+    assert main([*command, "--predict", "cell.toml", "--plan-row", "1"]) == 0
+    found = json.loads(Path("out.json").read_text())["prediction"]
+    hit = contact.Contact(robot=8.0, body=standards.limits().contact("chest", "quasi_static"))
+    drive = contact.Drive(reaction_time=0.01, deceleration=8.0)
+    assert found["prediction"] == pytest.approx(contact.driven_loads(hit, 0.05, drive).force)
+    assert found["accept"] == "accept"
+    assert found["measured"] == pytest.approx([100.0, 104.0, 98.0], abs=0.2)
+    assert "accept" in Path("out/plan.csv").read_text()
+    assert (
+        "never tuned" in Path("out/summary.html").read_text()
+        or "nothing was tuned" in Path("out/summary.html").read_text()
+    )
+    assert main([*command, "--plan-row", "1"]) != 0

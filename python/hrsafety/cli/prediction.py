@@ -1,0 +1,84 @@
+"""Prediction of a cell beside measured records: a row of its measurement plan, filled and never tuned."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from hrsafety import contact
+from hrsafety.cli import output
+from hrsafety.contact.cell.handover import plan_of
+from hrsafety.contact.cell.study import verdicts_of
+from hrsafety.errors import InvalidParameterError
+from hrsafety.pages.report import ReportTable, Section
+
+__all__ = ["prediction_section", "predicted"]
+
+
+def predicted(
+    path: str, row: int | None, load: str, measured: Sequence[float], device_uncertainty: float
+) -> contact.MeasurementPlan:
+    """Return the row of the measurement plan of a cell file that records are about, with what they measured.
+
+    Parameters
+    ----------
+    path : str
+        The cell file.
+    row : int or None
+        Number of the row on the page of the cell, from 1; ``None`` for a plan of one row.
+    load : {"force", "pressure"}
+        Load of the records.
+    measured : sequence of float
+        Largest load of each record, in N or Pa.
+    device_uncertainty : float
+        Standard uncertainty of the device in that unit.
+
+    Returns
+    -------
+    MeasurementPlan
+        One row.
+
+    Raises
+    ------
+    InvalidParameterError
+        If the file cannot be read, or the plan has no such row or one of another load.
+    """
+    with output.located(path):
+        cell = contact.load_cell(path)
+        judged, loads, _ = verdicts_of(cell)
+        rows = plan_of(cell, judged, loads).rows
+    if row is None and len(rows) != 1:
+        raise InvalidParameterError("--plan-row", f"be given: the plan of {path} has {len(rows)} rows", row)
+    number = 1 if row is None else row
+    if not 1 <= number <= len(rows):
+        raise InvalidParameterError("--plan-row", f"be 1 to {len(rows)}, the rows of the plan of {path}", number)
+    chosen = rows[number - 1]
+    if chosen.load != load:
+        rule = f"be a row of {load}: what governs there is the {chosen.load}"
+        raise InvalidParameterError("--plan-row", rule, number)
+    return contact.MeasurementPlan(rows=[chosen]).filled({0: measured}, device_uncertainty=device_uncertainty)
+
+
+def prediction_section(plan: contact.MeasurementPlan) -> Section:
+    """Return a prediction beside what was measured, as a part of a report.
+
+    Parameters
+    ----------
+    plan : MeasurementPlan
+        Of one row.
+
+    Returns
+    -------
+    Section
+        With its table.
+    """
+    (row,) = plan.rows
+    shown = ["-" if value is None else f"{value:.4g}" for value in (row.prediction, row.limit)]
+    largest = max(row.measured)
+    share = "-" if not row.prediction else f"{largest / row.prediction:.2f}"
+    found = "-" if row.found is None else f"{row.found.expanded_uncertainty:.3g}"
+    place = f"{row.region.replace('_', ' ')}, {row.setup}, {row.covering or 'bare'}"
+    cells = (place, row.load, shown[0], f"{largest:.4g}", share, found, shown[1], row.accept)
+    titles = ("contact", "load", "prediction", "largest measured", "of the prediction", "U", "limit", "accept")
+    table = ReportTable(headers=[titles], rows=[cells], left=(0, 1, 7), printed=True)
+    words = "The prediction is that of the cell file as it is: nothing was tuned to the records."
+    return Section("Prediction beside the measurement", [words, table])
