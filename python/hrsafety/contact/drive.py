@@ -25,7 +25,7 @@ __all__ = ["FASTEST_BRAKE", "MODELS", "Drive", "drive_of", "push_limit_of_torque
 MODELS = ("any_stiffness", "rigid", "push_limit", "elastic", "none")
 """Kinds of knowledge about a drive; the first one covers every spring."""
 BRAKING = ("any_stiffness", "rigid", "elastic")
-"""Models that go on until they have braked."""
+"""Models that push until they have braked."""
 FASTEST_BRAKE = 1e12
 """Deceleration in m/s^2 of a stop without a way, as a simulation takes it."""
 GRAVITY = 9.80665

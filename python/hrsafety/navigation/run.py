@@ -51,7 +51,7 @@ class Run:
     step : float
         Motion step in s, which divides the control period; worlds have their own.
     stop_on_contact : bool
-        Whether the run ends at the first contact; worlds go on.
+        Whether the run ends at the first contact; worlds continue.
 
     Raises
     ------
@@ -142,7 +142,7 @@ class Run:
 
     @property
     def finished(self) -> bool:
-        """Whether the run has ended; a world goes on while people are on their ways."""
+        """Whether the run has ended; a world continues while people are on their ways."""
         return self._native.finished
 
     @property

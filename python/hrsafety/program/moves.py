@@ -230,7 +230,7 @@ def _line(arm: Arm, pose: Array, move: Move, link: str, path: str) -> tuple[Join
 
 
 def _ahead(poses: list[Array]) -> Array:
-    """Return the pose that follows if the last ones go on as a parabola."""
+    """Return the pose that follows if the last ones continue as a parabola."""
     if len(poses) < 3:
         return poses[-1].copy()
     return np.asarray(3.0 * (poses[-1] - poses[-2]) + poses[-3])
