@@ -55,7 +55,7 @@ def predicted(
     if chosen.load != load:
         rule = f"be a row of {load}: what governs there is the {chosen.load}"
         raise InvalidParameterError("--plan-row", rule, number)
-    return contact.MeasurementPlan(rows=[chosen]).filled({0: measured}, device_uncertainty=device_uncertainty)
+    return contact.MeasurementPlan(rows=(chosen,)).filled({0: measured}, device_uncertainty=device_uncertainty)
 
 
 def prediction_section(plan: contact.MeasurementPlan) -> Section:
