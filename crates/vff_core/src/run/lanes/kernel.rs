@@ -57,7 +57,7 @@ struct Relay<'a, R: Real> {
     plan: &'a RunPlan,
     obstacles: LaneObstacles<R>,
     felt: Option<FeltObstacles<R>>,
-    sensors: Option<LaneSensors<R>>,
+    sensors: Option<LaneSensors<'a, R>>,
     runs: LaneState<LaneScenes<'a>, R>,
     /// Motion steps since the start of the run of each lane.
     steps: R,
@@ -158,7 +158,8 @@ impl<'a, R: Real> Relay<'a, R> {
         let most = jobs.map(|job| job.scenario.obstacle_count()).max();
         let count = most.unwrap_or(0);
         let obstacles = LaneObstacles::all_in(first, count);
-        let sensors = LaneSensors::new(first, &obstacles.bodies);
+        let samples = clock.steps / clock.steps_per_sample + 1;
+        let sensors = LaneSensors::new(first, &obstacles.bodies, samples);
         let scenes = LaneScenes::all_in(first);
         let mut runs = LaneState::at_start(scenes, clock, count, maps.clone());
         runs.running = R::Mask::none();
@@ -320,7 +321,9 @@ impl<'a, R: Real> Relay<'a, R> {
             if let Some(past) = &runs.past {
                 robot.position = past.delayed(position);
             }
-            robot = sensors.measure((time, runs.running), &runs.scenario, all, robot);
+            let index = self.steps / R::splat(runs.clock.steps_per_sample as f64);
+            let when = (time, index, runs.running);
+            robot = sensors.measure(when, &runs.scenario, all, robot);
             bodies = &sensors.seen;
         } else if R::WIDTH == 1 {
             let dormant = self.dormant.as_mut();
