@@ -161,6 +161,8 @@ mod _hrsafety {
     #[pymodule_export]
     use crate::robots::differential::{ReferencePath, Tracking, VirtualTorque, track, track_batch};
     #[pymodule_export]
+    use crate::robots::footprint::Footprint;
+    #[pymodule_export]
     use crate::robots::sensing::{Camera, ErrorSource, Estimator, Sensor, Vision, steady_gains};
     #[pymodule_export]
     use crate::robots::wheels::{
@@ -180,7 +182,7 @@ mod _hrsafety {
         evaluate, force_field, force_terms, law_command, lyapunov, run_outcomes, simulate,
     };
     #[pymodule_export]
-    use crate::safe::{Shield, Yielding, guarded_law, shield_speed_bound};
+    use crate::safe::{Shield, Yielding, blind_corner_speeds, guarded_law, shield_speed_bound};
     #[pymodule_export]
     use crate::scenes::Scenarios;
 }

@@ -1,12 +1,13 @@
 //! Shield and yielding, and the law that holds them.
 
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 use vff_core::lanes::Vector2;
 use vff_core::laws::guide::TakeoverOptions;
 use vff_core::laws::safe::SafeNavigation;
 use vff_core::laws::shield::{
-    self, Friendly, Guard, KnownVelocity, Person, ShieldLimits, StaticObstacles, TrackingError,
-    View,
+    self, BlindCorner, Edge, Friendly, Guard, KnownVelocity, Person, ShieldLimits, StaticObstacles,
+    TrackingError, View,
 };
 use vff_core::laws::yielding;
 use vff_core::world::geometry::RobotState;
@@ -120,6 +121,33 @@ impl Shield {
 #[pyfunction]
 pub fn shield_speed_bound(gap: f64, angle: f64, deceleration: f64, person_speed: f64) -> f64 {
     shield::speed_bound(gap, angle, deceleration, person_speed).unwrap_or(f64::NAN)
+}
+
+/// Largest speeds past corners behind which a person may be, for places (distance, offset) of an edge: of the near one,
+/// of the far one, and wherever the far one is.
+#[pyfunction]
+#[pyo3(signature = (places, **given))]
+pub fn blind_corner_speeds<'py>(
+    py: Python<'py>,
+    places: PyReadonlyArray2<'_, f64>,
+    given: Option<Keywords<'_>>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let given = given.unwrap_or_default();
+    let corner = taken!(given: BlindCorner {
+        robot_radius, person_radius, person_core, margin, wall_thickness, person_speed, latency, control_period,
+        deceleration, max_speed,
+    });
+    given.done()?;
+    let corner = corner.checked().map_err(CoreError::from)?;
+    let places = places.as_slice()?.as_chunks::<2>().0;
+    let found: Vec<f64> = places
+        .iter()
+        .flat_map(|[distance, offset]| {
+            let of = |edge| corner.speed(corner.hidden(edge, *distance, *offset));
+            [of(Edge::Near), of(Edge::Far), corner.passing_speed(*offset)]
+        })
+        .collect();
+    found.into_pyarray(py).reshape([places.len(), 3])
 }
 
 /// A law with its parts.

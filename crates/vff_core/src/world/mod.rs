@@ -1,6 +1,7 @@
 //! The world of a run: frames, motions, shapes, obstacles with their regions, scenarios.
 
 pub mod arrays;
+pub mod footprint;
 pub mod frame;
 pub mod geometry;
 pub mod map;

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from hrsafety._namespace import names_of
 
 if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
+    from hrsafety.navigation.laws.blind_corners import blind_corner_speed as blind_corner_speed
     from hrsafety.navigation.laws.force_laws import (
         BorensteinKoren as BorensteinKoren,
         GeCui as GeCui,

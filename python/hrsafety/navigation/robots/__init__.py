@@ -10,6 +10,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
         DifferentialDriveRobot as DifferentialDriveRobot,
         HolonomicRobot as HolonomicRobot,
     )
+    from hrsafety.navigation.robots.footprint import Footprint as Footprint
     from hrsafety.navigation.robots.kinematics import (
         DifferentialKinematics as DifferentialKinematics,
         OmniKinematics as OmniKinematics,

@@ -7,6 +7,7 @@
 //! executed. So at every instant the robot executes a piece of a plan that was verified at or before
 //! it, whatever people do within their bounds.
 
+mod blind;
 mod bound;
 mod course;
 mod half_disc;
@@ -19,6 +20,7 @@ mod twist;
 mod verifier;
 mod walls;
 
+pub use blind::{BlindCorner, Edge};
 pub use bound::speed_bound;
 pub use course::Course;
 pub use half_disc::half_disc_distance;

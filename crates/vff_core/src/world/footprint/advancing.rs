@@ -1,0 +1,94 @@
+//! The part of an outline that moves outward, and the room ahead of it.
+
+use nalgebra::Vector2;
+
+use super::{Footprint, Side};
+
+/// Twist of a robot at an instant: velocity ahead in m/s and turn rate in rad/s, positive to the left.
+pub type Twist = [f64; 2];
+
+impl Footprint {
+    /// Distance in m of a point from the room ahead of the outline: all places at most `depth` in m outward of a point of
+    /// the outline that moves outward, and from there inward to the middle; infinite at rest.
+    #[must_use]
+    pub fn from_room_ahead(&self, point: Vector2<f64>, twist: Twist, depth: f64) -> f64 {
+        let strips = self
+            .sides
+            .iter()
+            .map(|side| side.from_strip(point, twist, depth));
+        let count = self.sides.len();
+        let sectors = (0..count).map(|index| {
+            let normals = [
+                self.sides[index].normal,
+                self.sides[(index + 1) % count].normal,
+            ];
+            from_sector(
+                point - self.corners[(index + 1) % count],
+                velocity(self.corners[(index + 1) % count], twist),
+                normals,
+                depth,
+            )
+        });
+        strips.chain(sectors).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Velocity of a point of the body in m/s.
+fn velocity(point: Vector2<f64>, [ahead, turn]: Twist) -> Vector2<f64> {
+    Vector2::new(ahead - turn * point.y, turn * point.x)
+}
+
+impl Side {
+    /// Distance of a point in m from the strip ahead of the part of the side that moves outward.
+    fn from_strip(&self, point: Vector2<f64>, twist: Twist, depth: f64) -> f64 {
+        let outward =
+            |share: f64| velocity(self.start + self.along * share, twist).dot(&self.normal);
+        let (first, last) = (outward(0.0), outward(self.length));
+        let zero = self.length * first / (first - last);
+        let [from, to] = match (first > 0.0, last > 0.0) {
+            (true, true) => [0.0, self.length],
+            (true, false) => [0.0, zero],
+            (false, true) => [zero, self.length],
+            (false, false) => return f64::INFINITY,
+        };
+        let start = self.start.dot(&self.along);
+        let (along, beyond) = (point.dot(&self.along) - start, point.dot(&self.normal));
+        let apart = [
+            along - along.clamp(from, to),
+            beyond - beyond.clamp(0.0, self.offset + depth),
+        ];
+        apart[0].hypot(apart[1])
+    }
+}
+
+/// Distance in m of a point, given from a corner, from the sector of those directions between the normals of its sides
+/// in which the corner moves.
+fn from_sector(
+    point: Vector2<f64>,
+    velocity: Vector2<f64>,
+    [first, last]: [Vector2<f64>; 2],
+    depth: f64,
+) -> f64 {
+    // A direction across the velocity, in which the corner moves neither out nor in, may lie between the normals.
+    let (from, to) = match (velocity.dot(&first) > 0.0, velocity.dot(&last) > 0.0) {
+        (true, true) => (first, last),
+        (true, false) => (first, across(velocity, 1.0)),
+        (false, true) => (across(velocity, -1.0), last),
+        (false, false) => return f64::INFINITY,
+    };
+    if inside(point, from, to) {
+        return (point.norm() - depth).max(0.0);
+    }
+    let ray = |end: Vector2<f64>| (point - end * point.dot(&end).clamp(0.0, depth)).norm();
+    ray(from).min(ray(to))
+}
+
+/// Unit vector a quarter turn to the left (1) or right (-1) of a velocity.
+fn across(velocity: Vector2<f64>, side: f64) -> Vector2<f64> {
+    Vector2::new(-velocity.y, velocity.x) * (side / velocity.norm())
+}
+
+/// Whether a direction lies between two others less than half a turn apart, counterclockwise.
+fn inside(direction: Vector2<f64>, from: Vector2<f64>, to: Vector2<f64>) -> bool {
+    from.perp(&direction) >= 0.0 && direction.perp(&to) >= 0.0
+}

@@ -1,0 +1,185 @@
+use nalgebra::Vector2;
+use proptest::prelude::*;
+
+use super::{Arc, Footprint};
+
+fn rectangle() -> Footprint {
+    let (a, b) = (0.254, 0.215);
+    Footprint::polygon(&[[a, b], [-a, b], [-a, -b], [a, -b]]).unwrap()
+}
+
+/// Points that turn back on the arc, seen from the body.
+fn seen_on_arc(point: Vector2<f64>, arc: Arc, share: f64) -> Vector2<f64> {
+    let (distance, angle) = (share * arc.distance, share * arc.angle);
+    let way = if arc.angle == 0.0 {
+        Vector2::new(distance, 0.0)
+    } else {
+        let radius = arc.distance / arc.angle;
+        Vector2::new(radius * angle.sin(), radius * (1.0 - angle.cos()))
+    };
+    let (sin, cos) = angle.sin_cos();
+    let apart = point - way;
+    Vector2::new(cos * apart.x + sin * apart.y, cos * apart.y - sin * apart.x)
+}
+
+fn sampled_point(outline: &Footprint, point: Vector2<f64>, arc: Arc) -> f64 {
+    let distance = |place: u32| {
+        let seen = seen_on_arc(point, arc, f64::from(place) / 4000.0);
+        outline.signed_distance(seen).max(0.0)
+    };
+    (0..=4000).map(distance).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn swept_distances_are_those_of_the_specification() {
+    let outline = rectangle();
+    for ([x, y, distance, angle], right) in [
+        ([0.5, 0.4, 1.0, 0.0], 0.185),
+        ([0.6, 0.6, 1.2, 1.6], 0.0),
+        ([0.1, 0.35, 0.0, 1.0], 0.031_227_791),
+        ([0.35, 0.1, 0.0, 3.141_592_65], 0.031_227_791),
+        ([0.9, 0.8, 1.0, 2.0], 0.189_907_310),
+        ([0.2, -0.4, 0.3, 2.5], 0.136_729_775),
+    ] {
+        let found = outline.swept_point(Vector2::new(x, y), Arc { distance, angle });
+        assert!((found - right).abs() < 1e-8, "{found} {right}");
+    }
+    for ([x0, y0, x1, y1, distance, angle], right) in [
+        ([0.7, -0.5, 0.7, 0.5, 0.3, 0.3], 0.098_287_481),
+        ([1.2, 0.35, 0.1, 0.7, 0.8, 0.3], 0.023_365_074),
+    ] {
+        let segment = [Vector2::new(x0, y0), Vector2::new(x1, y1)];
+        let found = outline.swept_segment(segment, Arc { distance, angle });
+        assert!((found - right).abs() < 1e-8, "{found} {right}");
+    }
+}
+
+#[test]
+fn rooms_ahead_are_those_of_the_specification() {
+    let outline = rectangle();
+    for ([x, y], twist, right) in [
+        ([0.1, 0.7], [1.0, 0.0], 0.240_709_368),
+        ([0.1, 0.7], [1.0, 1.0], 0.185),
+        ([-0.2, 0.7], [1.0, 1.0], 0.272_442_655),
+        ([-0.3, -0.6], [0.5, 2.0], 0.087_738_314),
+        ([0.6, 0.3], [0.0, 1.0], 0.159_799_088),
+    ] {
+        let found = outline.from_room_ahead(Vector2::new(x, y), twist, 0.3);
+        assert!((found - right).abs() < 1e-8, "{found} {right}");
+    }
+}
+
+/// A convex polygon with the origin inside: corners on an ellipse, moved a little.
+fn outlines() -> impl Strategy<Value = Footprint> {
+    let directions = prop::collection::vec(0.05..1.0f64, 3..8);
+    (
+        directions,
+        0.1..1.0f64,
+        0.1..1.0f64,
+        -0.5..0.5f64,
+        -0.5..0.5f64,
+    )
+        .prop_filter_map("origin inside", |(gaps, width, height, x, y)| {
+            let all: f64 = gaps.iter().sum();
+            let mut direction = 0.0;
+            let corners: Vec<[f64; 2]> = gaps
+                .iter()
+                .map(|gap| {
+                    direction += gap / all * std::f64::consts::TAU;
+                    [
+                        width * (direction.cos() + x),
+                        height * (direction.sin() + y),
+                    ]
+                })
+                .collect();
+            Footprint::polygon(&corners).ok()
+        })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn swept_distances_of_points_are_least_along_the_arc(
+        outline in outlines(), x in -2.0..2.0f64, y in -2.0..2.0f64, distance in -1.5..1.5f64, angle in -7.0..7.0f64
+    ) {
+        let (point, arc) = (Vector2::new(x, y), Arc { distance, angle });
+        let (found, sampled) = (outline.swept_point(point, arc), sampled_point(&outline, point, arc));
+        let step = (distance.abs() + angle.abs() * point.norm().max(2.0)) / 4000.0;
+        prop_assert!(found <= sampled + 1e-9 && sampled <= found + step, "{} {}", found, sampled);
+    }
+
+    #[test]
+    fn swept_distances_of_segments_are_least_among_their_points(
+        outline in outlines(), ends in prop::array::uniform4(-2.0..2.0f64), distance in -1.5..1.5f64,
+        angle in prop_oneof![Just(0.0), -3.0..3.0f64]
+    ) {
+        let arc = Arc { distance, angle };
+        let [start, end] = [Vector2::new(ends[0], ends[1]), Vector2::new(ends[2], ends[3])];
+        let found = outline.swept_segment([start, end], arc);
+        let place = |index: u32| start + (end - start) * (f64::from(index) / 400.0);
+        let least = (0..=400).map(|index| outline.swept_point(place(index), arc)).fold(f64::INFINITY, f64::min);
+        let step = (end - start).norm() / 400.0;
+        prop_assert!(found <= least + 1e-9 && least <= found + step, "{} {}", found, least);
+    }
+
+    #[test]
+    fn whoever_is_near_a_part_that_moves_outward_is_in_the_room_ahead(
+        outline in outlines(), ahead in -1.0..1.0f64, turn in -2.0..2.0f64, side in 0usize..8, share in 0.0..1.0f64,
+        reach in 0.0..1.0f64
+    ) {
+        let count = outline.corners().len();
+        let [from, to] = [outline.corners()[side % count], outline.corners()[(side + 1) % count]];
+        let place = from + (to - from) * share;
+        let along = (to - from).normalize();
+        let normal = Vector2::new(along.y, -along.x);
+        let moves = Vector2::new(ahead - turn * place.y, turn * place.x).dot(&normal);
+        let point = place + normal * (reach * 0.4);
+        if moves > 1e-9 {
+            prop_assert!(outline.from_room_ahead(point, [ahead, turn], 0.4) <= 1e-9);
+        }
+    }
+
+    #[test]
+    fn outlines_do_not_depend_on_the_order_of_corners(outline in outlines(), x in -2.0..2.0f64, y in -2.0..2.0f64) {
+        let corners: Vec<[f64; 2]> = outline.corners().iter().rev().map(|corner| [corner.x, corner.y]).collect();
+        let other = Footprint::polygon(&corners).unwrap();
+        let point = Vector2::new(x, y);
+        prop_assert!((outline.signed_distance(point) - other.signed_distance(point)).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn outlines_that_are_none_are_refused() {
+    let square = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
+    assert!(Footprint::polygon(&square).is_ok());
+    for corners in [
+        vec![[1.0, 1.0], [-1.0, 1.0]],
+        vec![[1.0, 1.0], [-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0]],
+        vec![
+            [1.0, 1.0],
+            [-1.0, 1.0],
+            [-1.0, -1.0],
+            [0.0, -1.0],
+            [1.0, -1.0],
+        ],
+        vec![
+            [1.0, 1.0],
+            [1.0, 1.0],
+            [-1.0, 1.0],
+            [-1.0, -1.0],
+            [1.0, -1.0],
+        ],
+        vec![[3.0, 1.0], [1.0, 1.0], [1.0, -1.0], [3.0, -1.0]],
+        vec![[1.0, f64::NAN], [-1.0, 1.0], [-1.0, -1.0]],
+        vec![
+            [0.0, 1.0],
+            [0.6, -0.8],
+            [-0.95, 0.3],
+            [0.95, 0.3],
+            [-0.6, -0.8],
+        ],
+    ] {
+        assert!(Footprint::polygon(&corners).is_err(), "{corners:?}");
+    }
+}
