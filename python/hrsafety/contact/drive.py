@@ -26,6 +26,10 @@ MODELS = ("any_stiffness", "rigid", "push_limit", "elastic", "none")
 """Kinds of knowledge about a drive; the first one covers every spring."""
 BRAKING = ("any_stiffness", "rigid", "elastic")
 """Models that push until they have braked."""
+MOST = MappingProxyType({"stiffness": 1e9, "damping": 1e6, "reaction_time": 60.0})
+"""Largest stiffness in N/m, damping in N s/m and time in s of a drive."""
+SLOWEST_BRAKE = 1e-3
+"""Deceleration in m/s^2 below which no robot brakes."""
 FASTEST_BRAKE = 1e12
 """Deceleration in m/s^2 of a stop without a way, as a simulation takes it."""
 GRAVITY = 9.80665
@@ -114,10 +118,15 @@ class Drive:
         for name in ("stiffness", "push_limit", "path_left"):
             if getattr(self, name) is not None:
                 made[name] = positive(name, getattr(self, name))
+        for name, most in MOST.items():
+            if made.get(name, 0.0) > most:
+                raise InvalidParameterError(name, f"be at most {most:g}", getattr(self, name))
         if self.deceleration is not None:
             made["deceleration"] = number("deceleration", self.deceleration)
             if not made["deceleration"] > 0.0:
                 raise InvalidParameterError("deceleration", "be positive, or inf", self.deceleration)
+            if made["deceleration"] < SLOWEST_BRAKE:
+                raise InvalidParameterError("deceleration", f"be at least {SLOWEST_BRAKE:g}", self.deceleration)
         if self.stopping is not None:
             instance("stopping", self.stopping, StoppingData)
         if self.joint_torques is not None:

@@ -32,8 +32,8 @@ FASTEST = 20.0
 """Speeds up to this one are looked at, in m/s."""
 SLOWEST = 1e-4
 SCANS = 49
-LONGEST = 60.0
-"""Longest time in s that a simulation follows."""
+SHORTEST, LONGEST = 1e-3, 60.0
+"""Shortest and longest time in s that a simulation follows."""
 LONGER = 1.137
 """Factor of a horizon at which a load is largest."""
 PRECISE = 1e-12
@@ -221,10 +221,12 @@ class _Pressing:
         period = 2.0 * np.pi * np.sqrt(self.mass / stiffness)
         noticed = noticed + self.noticed / speed
         horizon = noticed + reaction + speed / brakes + 1.1 * period + 0.02
+        # What does not come to rest in that time is not known, and not simulated.
+        beyond = ~(longer * horizon <= LONGEST)
         arrays: dict[str, npt.ArrayLike] = {
             "closing_speed": speed,
             "robot_stiffness": stiffness,
-            "horizon": np.minimum(longer * horizon, LONGEST),
+            "horizon": np.where(beyond, SHORTEST, longer * horizon),
             "stop_deceleration": brakes,
         }
         values = self.given.values | {
@@ -236,7 +238,7 @@ class _Pressing:
             values["push_limit"] = drive.push_limit
         values |= {"force_limit": math.nan, "pressure_limit": math.nan, "max_strain": math.nan}
         rows = impacts_of(self.given._replace(values=values, limits=None), arrays, False, None, None)
-        known = np.isfinite(rows.peak_force) & ~rows.rising & (rows.status == "horizon")
+        known = np.isfinite(rows.peak_force) & ~rows.rising & (rows.status == "horizon") & ~beyond
         found = []
         for row in range(len(speed)):
             force = float(rows.peak_force[row]) if known[row] else math.inf
@@ -252,7 +254,7 @@ class _Pressing:
                 )
             )
         # An oscillation at rest whose peak happens to be at the horizon has none later: another horizon shows it.
-        again = np.flatnonzero(rows.rising & np.isfinite(rows.peak_force)).tolist()
+        again = np.flatnonzero(rows.rising & np.isfinite(rows.peak_force) & ~beyond).tolist()
         if len(again) and longer < LONGER**4:
             for row, loads in zip(again, self._simulated(speed[again], stiffness[again], LONGER * longer), strict=True):
                 found[row] = loads

@@ -53,7 +53,11 @@ def driven_of(cell: Cell, planned: PlannedContact, closing: float) -> Driven | N
         return None
     hit = contact_of(cell, planned, planned.covering)
     try:
-        return Driven(drive, driven_speed(hit, drive, human_speed=cell.human_speed), driven_loads(hit, closing, drive))
+        speed = driven_speed(hit, drive, human_speed=cell.human_speed)
+        if speed.status == "threshold_above_limit":
+            # A path that goes on until such a force is noticed has no loads worth a long simulation.
+            return Driven(drive, speed, DrivenLoads(force=math.inf, pressure=math.inf, status=speed.status))
+        return Driven(drive, speed, driven_loads(hit, closing, drive))
     except InvalidParameterError as error:
         # A covering that is compressed by more than was measured has no loads.
         if "beyond_data" not in error.requirement:
