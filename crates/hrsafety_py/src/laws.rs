@@ -8,8 +8,7 @@ use vff_core::laws;
 use vff_core::laws::field::gains::Gains;
 use vff_core::laws::field::side::SideRules;
 use vff_core::laws::field::stabilizing::Stabilizing;
-use vff_core::laws::registry::law_named;
-use vff_core::run::AnyLaw;
+use vff_core::run::{AnyLaw, law_named};
 
 use crate::errors::{CoreError, InvalidParameterError};
 use crate::keywords::Keywords;

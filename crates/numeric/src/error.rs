@@ -97,6 +97,31 @@ pub enum Failure {
 /// Asked now and then whether to stop.
 pub type Interrupted<'a> = &'a (dyn Fn() -> bool + Sync);
 
+/// Asks whether to stop: a planner that thinks long looks at it now and then, and what it answers
+/// after it was told to stop counts for nothing.
+#[derive(Clone, Copy)]
+pub struct Stop<'a>(pub &'a (dyn Fn() -> bool + Sync));
+
+impl Stop<'_> {
+    /// Nobody asks to stop.
+    #[must_use]
+    pub fn never() -> Self {
+        Self(&|| false)
+    }
+
+    /// Whether to stop.
+    #[must_use]
+    pub fn asked(&self) -> bool {
+        (self.0)()
+    }
+}
+
+impl std::fmt::Debug for Stop<'_> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("Stop")
+    }
+}
+
 /// An error if the caller asked to stop.
 ///
 /// # Errors

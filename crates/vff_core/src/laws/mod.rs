@@ -1,7 +1,9 @@
 //! Navigation laws behind one interface.
 
 /// Laws that act pair by pair, by their files: [`pairwise`] compiles one time loop for all of them, and
-/// [`registry`] makes each by its name.
+/// the registry of runs makes each by its name.
+#[macro_export]
+#[doc(hidden)]
 macro_rules! pairwise_laws {
     ($list:ident) => {
         $list! {
@@ -14,6 +16,8 @@ macro_rules! pairwise_laws {
 }
 
 /// The other laws by their files: planners, and laws of their own. Each with how its runs are made.
+#[macro_export]
+#[doc(hidden)]
 macro_rules! other_laws {
     ($list:ident) => {
         $list! {
@@ -39,7 +43,6 @@ pub mod pairwise;
 pub mod planning;
 pub mod reciprocal;
 pub mod reflex;
-pub mod registry;
 pub mod safe;
 pub mod shield;
 pub mod trace;
@@ -54,37 +57,14 @@ pub use ge_cui::GeCui;
 pub use khatib::{Khatib, KhatibForm};
 pub use masoud::Masoud;
 
+pub use crate::error::Stop;
+
 use crate::error::Result;
 use crate::lanes::{Real, Vector2};
 use crate::laws::trace::{Examined, Trace};
 use crate::world::geometry::{Body, RobotState};
 use crate::world::map::StaticMap;
 use crate::world::scenario::{PlacedObstacle, Scenario};
-
-/// Asks whether to stop: a planner that thinks long looks at it now and then, and what it answers
-/// after it was told to stop counts for nothing.
-#[derive(Clone, Copy)]
-pub struct Stop<'a>(pub &'a (dyn Fn() -> bool + Sync));
-
-impl Stop<'_> {
-    /// Nobody asks to stop.
-    #[must_use]
-    pub fn never() -> Self {
-        Self(&|| false)
-    }
-
-    /// Whether to stop.
-    #[must_use]
-    pub fn asked(&self) -> bool {
-        (self.0)()
-    }
-}
-
-impl std::fmt::Debug for Stop<'_> {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.write_str("Stop")
-    }
-}
 
 /// What a law knows when it is asked for a force. `B`: numbers of the scene, which robots side by
 /// side share, or which each of them has for itself.

@@ -36,6 +36,12 @@ impl From<&AnyLaw> for AnyLaw {
     }
 }
 
+impl From<AnyLaw> for Arc<dyn LawFamily> {
+    fn from(law: AnyLaw) -> Self {
+        law.family
+    }
+}
+
 impl Deref for AnyLaw {
     type Target = dyn LawFamily;
 

@@ -15,6 +15,7 @@ mod outcome;
 mod plan;
 pub mod pursuit;
 mod record;
+mod registry;
 mod runs;
 mod scene;
 pub mod skirt;
@@ -35,6 +36,7 @@ pub use outcome::{
 };
 pub use plan::{Instructions, Width};
 pub use record::{DescentCounter, Recorder, Trajectory, TrajectoryRecorder};
+pub use registry::law_named;
 pub use table::BatchTable;
 
 pub(crate) use lanes::group::{Group, RunJob};

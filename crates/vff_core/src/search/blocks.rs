@@ -3,8 +3,7 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::error::{Failure, Result};
-use crate::laws::Stop;
+use crate::error::{Failure, Result, Stop};
 use crate::search::ask_tell::{Asker, answer_together};
 use crate::search::evaluated::Evaluated;
 use crate::search::observe::{Control, Observer, Report};

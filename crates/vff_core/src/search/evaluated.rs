@@ -1,7 +1,6 @@
 //! Values of points.
 
-use crate::error::Result;
-use crate::laws::Stop;
+use crate::error::{Result, Stop};
 use crate::search::problem::{Evaluation, Problem, Score};
 
 /// Values of some points, row by row.

@@ -3,8 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Mutex;
 
-use crate::error::{Failure, Result};
-use crate::laws::Stop;
+use crate::error::{Failure, Result, Stop};
 use crate::run::lanes::group::Keep;
 use crate::run::metrics::{Nominal, score};
 use crate::run::{AnyLaw, Group, Key, RunJob, RunPlan, Ways, Width, key_of, min_clearance};

@@ -1,7 +1,6 @@
 //! Constrained local searches from several starts, C.2, step 8.
 
-use crate::error::{Failure, Given, Result};
-use crate::laws::Stop;
+use crate::error::{Failure, Given, Result, Stop};
 use crate::search::ask_tell::Asker;
 use crate::search::blocks::Session;
 use crate::search::evaluated::Evaluated;

@@ -2,8 +2,7 @@
 
 use std::cmp::Ordering;
 
-use crate::error::{Failure, Given, Result, finite};
-use crate::laws::Stop;
+use crate::error::{Failure, Given, Result, Stop, finite};
 
 /// A constraint may miss its limit by this much, in its own unit: rounding, and the last steps
 /// of a local search towards an active constraint.

@@ -58,13 +58,16 @@ impl Sensor for RobotCamera {
 }
 
 /// A camera that sees the obstacles that move; those at rest are known.
-pub(crate) struct ObstacleCamera {
+pub struct ObstacleCamera {
     sensors: Vec<Option<VisionSensor>>,
     obstacles: Vec<PlacedObstacle>,
 }
 
 impl ObstacleCamera {
     /// Of the obstacles of a scenario.
+    ///
+    /// # Errors
+    /// An option of the camera is out of range, or a run has more frames than it may.
     pub fn new(scenario: &Scenario, vision: &Vision) -> Result<Self> {
         vision.check_frames(scenario.rules.time_limit)?;
         let of_body = |(stream, placed): (u64, &PlacedObstacle)| {
@@ -83,6 +86,9 @@ impl ObstacleCamera {
 impl ObstacleCamera {
     /// Of everything that stands or moves, with one stream for each thing from the first one on, for
     /// a time in s.
+    ///
+    /// # Errors
+    /// An option of the camera is out of range, or a run has more frames than it may.
     pub fn of_everything(
         count: usize,
         vision: &Vision,

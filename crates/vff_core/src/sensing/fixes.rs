@@ -179,7 +179,7 @@ pub struct Heard {
 
 /// Microphones on a robot, which locate the source at every burst.
 #[derive(Clone, Debug)]
-pub(crate) struct Ear {
+pub struct Ear {
     fixes: Fixes,
     normals: Normals,
     /// Samples from one burst to the next, and those left.
@@ -190,6 +190,7 @@ pub(crate) struct Ear {
 
 impl Ear {
     /// With scatter from a stream, sampled with a period in s; the first sample is a burst.
+    #[must_use]
     pub fn new(fixes: &Fixes, period: f64, scatter: Stream) -> Self {
         let between = (fixes.interval / period).round().max(1.0);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
@@ -205,6 +206,7 @@ impl Ear {
 
     /// The source, if a burst was heard at the last sample.
     #[inline]
+    #[must_use]
     pub fn heard(&self) -> Option<Heard> {
         self.heard
     }

@@ -98,13 +98,15 @@ impl Measurement {
 
 /// Errors of one measured body, a stream of its own.
 #[derive(Clone, Debug)]
-pub(crate) struct Noise {
+pub struct Noise {
     stream: Stream,
     measurement: Measurement,
 }
 
 impl Noise {
-    pub(crate) fn new(measurement: Measurement, seed: u64, stream: u64) -> Self {
+    /// Errors of a measurement, from a stream of a seed.
+    #[must_use]
+    pub fn new(measurement: Measurement, seed: u64, stream: u64) -> Self {
         Self {
             stream: Stream::new(seed, stream),
             measurement,
@@ -117,7 +119,7 @@ impl Noise {
     }
 
     /// Error of one position in m.
-    pub(crate) fn draw(&mut self) -> [f64; 2] {
+    pub fn draw(&mut self) -> [f64; 2] {
         let scale = self.measurement.scale;
         match self.measurement.distribution {
             Distribution::Uniform => {

@@ -17,7 +17,7 @@ pub mod lidar;
 mod linearized;
 mod marks;
 pub mod measurement;
-pub(crate) mod noisy;
+pub mod noisy;
 mod options;
 mod rotation;
 pub mod sampled;
@@ -28,7 +28,7 @@ pub mod ultrasonic;
 pub mod vision;
 
 pub use camera::{Camera, CameraPose, Lens};
-pub(crate) use cameras::ObstacleCamera;
+pub use cameras::ObstacleCamera;
 pub use estimator::{Estimate, Estimator, Track};
 pub use fixes::{FixNoise, Fixes, Heard};
 pub use lidar::Lidar;

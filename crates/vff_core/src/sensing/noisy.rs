@@ -10,7 +10,7 @@ use crate::world::geometry::Body;
 use crate::world::scenario::{PlacedObstacle, Scenario};
 
 /// Positions with an error once a control period.
-pub(crate) struct NoisyPositions {
+pub struct NoisyPositions {
     sensor: sampled::SampledScene,
     mark: Option<Noise>,
     mark_distance: f64,

@@ -73,7 +73,8 @@ pub fn sensor_named(name: &str, given: &dyn Arguments) -> Result<SensorOptions> 
 
 impl SensorOptions {
     /// Map around the sensor, beside the obstacles of a scenario.
-    pub(crate) fn map(&self) -> Option<&StaticMap> {
+    #[must_use]
+    pub fn map(&self) -> Option<&StaticMap> {
         if let Self::Lidar(lidar) = self {
             Some(&lidar.map)
         } else {
@@ -86,12 +87,7 @@ impl SensorOptions {
     ///
     /// # Errors
     /// An option is out of range in this scenario.
-    pub(crate) fn at_work(
-        &self,
-        scenario: &Scenario,
-        mark: f64,
-        index: u64,
-    ) -> Result<Box<dyn Sensor>> {
+    pub fn at_work(&self, scenario: &Scenario, mark: f64, index: u64) -> Result<Box<dyn Sensor>> {
         match self.place() {
             MountedSensor::AboveRobot(vision) => {
                 Ok(Box::new(RobotCamera::new(scenario, vision, mark)?))

@@ -23,7 +23,7 @@ pub struct Measured {
 impl Measured {
     /// State of robots as measured, from their own; the first velocity is the true one.
     #[inline(always)]
-    pub(crate) fn of_robot<R: Real>(
+    pub fn of_robot<R: Real>(
         &self,
         robot: RobotState<R>,
         last: &mut Option<Vector2<R>>,
@@ -44,7 +44,7 @@ impl Measured {
 
 /// Positions of robots at their last motion steps, from which those of some time ago are read.
 #[derive(Clone, Debug)]
-pub(crate) struct Past<R: Real> {
+pub struct Past<R: Real> {
     /// Whole motion steps of the latency.
     whole: usize,
     /// Share of the motion step before.
@@ -54,6 +54,7 @@ pub(crate) struct Past<R: Real> {
 
 impl<R: Real> Past<R> {
     /// Of robots that are measured late, with the motion step in s.
+    #[must_use]
     pub fn new(scenario: &Scenario, step: f64) -> Option<Self> {
         let late = |measured: &Measurement| measured.of_robot() && measured.latency() > 0.0;
         let steps = scenario.measurement.filter(late)?.latency() / step;

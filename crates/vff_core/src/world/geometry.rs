@@ -224,7 +224,7 @@ impl<R: Real> NearestPoint<R> {
 
 /// Where both components are zero, of either sign.
 #[inline(always)]
-pub(crate) fn at_rest<B: Real>([x, y]: [B; 2]) -> B::Mask {
+pub fn at_rest<B: Real>([x, y]: [B; 2]) -> B::Mask {
     let zero = B::zero();
     x.le(zero) & x.ge(zero) & y.le(zero) & y.ge(zero)
 }

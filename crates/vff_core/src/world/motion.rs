@@ -7,7 +7,7 @@ use crate::lanes::{Mask, Real, Truth};
 const STOP_OFFSET: f64 = 5e-7;
 
 /// Whatever is faster in a recording has not moved but is somewhere else, in m/s: a loop that begins again.
-pub(crate) const JUMP_SPEED: f64 = 100.0;
+pub const JUMP_SPEED: f64 = 100.0;
 
 /// Position, velocity and acceleration of a body at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +24,7 @@ pub struct BodyState<B: Real = f64> {
 
 impl<B: Real> BodyState<B> {
     /// The state of one lane.
-    pub(crate) fn of_lane(&self, lane: usize) -> BodyState {
+    pub fn of_lane(&self, lane: usize) -> BodyState {
         BodyState {
             position: self.position.map(|axis| axis.lane(lane)),
             velocity: self.velocity.map(|axis| axis.lane(lane)),
@@ -34,7 +34,7 @@ impl<B: Real> BodyState<B> {
     }
 
     /// Replaces the state of one lane.
-    pub(crate) fn set_lane(&mut self, lane: usize, state: &BodyState) {
+    pub fn set_lane(&mut self, lane: usize, state: &BodyState) {
         for axis in 0..2 {
             self.position[axis].set(lane, state.position[axis]);
             self.velocity[axis].set(lane, state.velocity[axis]);
@@ -49,7 +49,7 @@ impl<B: Real> BodyState<B> {
 
 /// A piece of motion with constant acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Piece<B = f64> {
+pub struct Piece<B = f64> {
     /// When it begins, in s.
     pub start: B,
     /// Position then, in m.
@@ -355,7 +355,8 @@ impl Motion {
     }
 
     /// The piece of an index, and when the next one begins; infinite for the last one.
-    pub(crate) fn piece(&self, index: usize) -> (&Piece, f64) {
+    #[must_use]
+    pub fn piece(&self, index: usize) -> (&Piece, f64) {
         let next = self.later.get(index);
         let until = next.map_or(f64::INFINITY, |next| next.start);
         (self.at_index(index), until)
@@ -370,7 +371,8 @@ impl Motion {
     }
 
     /// Whether the body is put elsewhere between two instants in s: faster than [`JUMP_SPEED`].
-    pub(crate) fn jumps(&self, [from, to]: [f64; 2]) -> bool {
+    #[must_use]
+    pub fn jumps(&self, [from, to]: [f64; 2]) -> bool {
         (0..=self.later.len()).any(|index| {
             let (piece, until) = self.piece(index);
             let (_, [u, v]) = piece.at(from.max(piece.start));
@@ -379,7 +381,8 @@ impl Motion {
     }
 
     /// First and last instant of presence, in s.
-    pub(crate) fn presence(&self) -> (f64, f64) {
+    #[must_use]
+    pub fn presence(&self) -> (f64, f64) {
         self.presence
     }
 

@@ -6,7 +6,7 @@ use crate::error::{Result, finite, finite_pair, not_negative, positive};
 use crate::lanes::{Planar, Real};
 
 /// More than what rounding adds to a distance, as a share.
-pub(crate) const SLACK: f64 = 1.0 + 1e-9;
+pub const SLACK: f64 = 1.0 + 1e-9;
 
 /// A convex outline around a center.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +65,7 @@ impl Shape {
 
 impl<B: Real> Shape<B> {
     /// Gives one lane another outline, and every lane if that is of another kind.
-    pub(crate) fn set_lane(&mut self, lane: usize, outline: &Shape) {
+    pub fn set_lane(&mut self, lane: usize, outline: &Shape) {
         match (self, outline) {
             (Self::Disc { radius }, Shape::Disc { radius: own }) => radius.set(lane, *own),
             (
@@ -147,13 +147,13 @@ fn clamped<R: Real>(value: R, limit: R) -> R {
 
 /// Components of a vector along and to the left of an axis.
 #[inline(always)]
-pub(crate) fn into_axes<R: Real>(vector: Vector2<R>, axis: Vector2<R>) -> Vector2<R> {
+pub fn into_axes<R: Real>(vector: Vector2<R>, axis: Vector2<R>) -> Vector2<R> {
     Vector2::new(axis.dot(&vector), axis.perp(&vector))
 }
 
 /// The vector with components along and to the left of an axis.
 #[inline(always)]
-pub(crate) fn out_of_axes<R: Real>(vector: Vector2<R>, axis: Vector2<R>) -> Vector2<R> {
+pub fn out_of_axes<R: Real>(vector: Vector2<R>, axis: Vector2<R>) -> Vector2<R> {
     axis * vector.x + axis.left_normal() * vector.y
 }
 
@@ -374,7 +374,8 @@ fn from_segment(point: Vector2<f64>, from: Vector2<f64>, to: Vector2<f64>) -> f6
 
 /// Distance along a ray to a disc at an offset from its start.
 #[inline]
-pub(crate) fn cast_on_disc(to: Vector2<f64>, radius: f64, direction: Vector2<f64>) -> f64 {
+#[must_use]
+pub fn cast_on_disc(to: Vector2<f64>, radius: f64, direction: Vector2<f64>) -> f64 {
     let outside = to.dot(&to) - radius * radius;
     if outside <= 0.0 {
         return 0.0;

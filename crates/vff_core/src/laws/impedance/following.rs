@@ -23,7 +23,7 @@ const TOUCHING: f64 = 1e-9;
 
 /// Source of the repulsion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum RepulsionSource {
+pub enum RepulsionSource {
     /// Readings of banks of three sonars.
     Echoes,
     /// Bodies that a camera sees.
@@ -34,7 +34,7 @@ pub(crate) enum RepulsionSource {
 
 /// The two forces of the law in N.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Forces {
+pub struct Forces {
     /// Toward the target.
     pub attraction: Vector2<f64>,
     /// Away from obstacles.
@@ -43,7 +43,7 @@ pub(crate) struct Forces {
 
 /// Constants of the law.
 #[derive(Clone, Debug)]
-pub(crate) struct FollowingLaw {
+pub struct FollowingLaw {
     /// Attraction to the source.
     pub attraction: Attraction,
     /// Repulsion of a collision vector.
@@ -66,7 +66,7 @@ pub(crate) struct FollowingLaw {
 
 /// The law at work; `L` refers to what does not change of it, or shares it.
 #[derive(Clone, Debug)]
-pub(crate) struct Following<L> {
+pub struct Following<L> {
     law: L,
     banks: [Bank; BANKS],
     /// Where the robot wants to be, in m.

@@ -5,7 +5,7 @@
 pub mod attraction;
 pub mod bank;
 pub mod collision;
-pub(crate) mod following;
+pub mod following;
 pub mod law;
 pub mod navigation;
 pub mod rate;

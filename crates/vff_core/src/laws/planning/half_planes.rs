@@ -9,7 +9,7 @@ use crate::lanes::{Number, Planar, Real, Truth, Vector2};
 type Vector = Vector2<f64>;
 
 /// Lines whose directions differ by less than this, as a sine, are parallel.
-pub(crate) const PARALLEL: f64 = 1e-9;
+pub const PARALLEL: f64 = 1e-9;
 
 /// Velocities on the left of a line.
 #[derive(Clone, Copy, Debug)]
@@ -66,7 +66,7 @@ impl Solver {
 
     /// Three-dimensional program: adds the half-planes from `failed` on, one after the other,
     /// and moves along the line on which two violations are equal.
-    pub(crate) fn least_violation(
+    pub fn least_violation(
         &mut self,
         planes: &[HalfPlane],
         hard: usize,

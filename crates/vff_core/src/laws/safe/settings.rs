@@ -1,12 +1,14 @@
 //! Parts of safe navigation, and the scenario that its law works in.
 
+use std::sync::Arc;
+
 use crate::error::{Failure, Given, Result, not_negative, positive};
+use crate::laws::LawFamily;
 use crate::laws::guide::{Guidance, Guide, TakeoverOptions};
 use crate::laws::safe::boundary::boundary_obstacle;
 use crate::laws::safe::plans::Plans;
 use crate::laws::shield::Shield;
 use crate::laws::yielding::Yielding;
-use crate::run::AnyLaw;
 use crate::world::map::{MOST_POINTS, StaticMap};
 use crate::world::scenario::Scenario;
 
@@ -14,7 +16,7 @@ use crate::world::scenario::Scenario;
 #[derive(Clone)]
 pub struct SafeNavigation {
     /// The law that wants a velocity.
-    pub law: AnyLaw,
+    pub law: Arc<dyn LawFamily>,
     /// Map of what stands, if it is known before.
     pub map: Option<StaticMap>,
     /// How ways are planned, if they are.
@@ -39,9 +41,9 @@ pub struct SafeNavigation {
 impl SafeNavigation {
     /// A law with nothing around it.
     #[must_use]
-    pub fn bare(law: AnyLaw) -> Self {
+    pub fn bare(law: impl Into<Arc<dyn LawFamily>>) -> Self {
         Self {
-            law,
+            law: law.into(),
             map: None,
             guide: None,
             plans: Plans::default(),

@@ -13,7 +13,7 @@ const SMALL_TURN: f64 = 1e-4;
 
 /// Angle wrapped into `(-pi, pi]`, in rad.
 #[must_use]
-pub(crate) fn wrapped(angle: f64) -> f64 {
+pub fn wrapped(angle: f64) -> f64 {
     if -PI < angle && angle <= PI {
         return angle;
     }

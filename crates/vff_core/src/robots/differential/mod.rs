@@ -14,7 +14,7 @@ mod track;
 mod tracker;
 mod velocity_drive;
 
-pub(crate) use drive::wrapped;
+pub use drive::wrapped;
 pub use drive::{DifferentialDrive, DifferentialLimits, Integration, Pose, Twist};
 pub use full_speed::FullSpeed;
 pub use goal::ExponentialGoal;

@@ -3,8 +3,7 @@
 use super::drive::{DifferentialDrive, DifferentialLimits, Pose, Twist};
 use super::reference::{Reference, ReferencePath};
 use super::tracker::{Tracker, Tracking};
-use crate::error::{Failure, Given, Result, finite_pair, positive};
-use crate::run::Interrupted;
+use crate::error::{Failure, Given, Interrupted, Result, finite_pair, positive};
 use numeric::threads::{map, on_threads};
 
 /// Largest number of motion steps of one run.

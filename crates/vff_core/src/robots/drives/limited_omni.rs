@@ -8,7 +8,7 @@ use crate::world::frame::Frame;
 
 /// Order to the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum OmniCommand {
+pub enum OmniCommand {
     /// Keep the course over ground.
     Keep,
     /// Stand and turn.
@@ -19,7 +19,7 @@ pub(crate) enum OmniCommand {
 
 /// How fast it travels.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct OmniLimits {
+pub struct OmniLimits {
     /// Speed in m/s.
     pub speed: f64,
     /// Largest acceleration in m/s^2.
@@ -30,7 +30,7 @@ pub(crate) struct OmniLimits {
 
 /// The robot.
 #[derive(Clone, Debug)]
-pub(crate) struct LimitedOmni {
+pub struct LimitedOmni {
     limits: OmniLimits,
     step: f64,
     frame: Frame,
@@ -46,6 +46,7 @@ pub(crate) struct LimitedOmni {
 
 impl LimitedOmni {
     /// At rest at the origin, about to travel at an angle in rad; with its motion step in s.
+    #[must_use]
     pub fn new(limits: OmniLimits, course: f64, step: f64) -> Self {
         let (sin, cos) = course.sin_cos();
         Self {

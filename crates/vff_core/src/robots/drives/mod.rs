@@ -8,13 +8,13 @@ mod two_wheels;
 mod velocity;
 mod virtual_velocity;
 
-pub(crate) use limited_omni::{LimitedOmni, OmniCommand, OmniLimits};
-pub(crate) use omni::OmniRobot;
-pub(crate) use point_mass::{IdealHolonomic, PointMass};
-pub(crate) use two_wheels::TwoWheels;
+pub use limited_omni::{LimitedOmni, OmniCommand, OmniLimits};
+pub use omni::OmniRobot;
+pub use point_mass::{IdealHolonomic, PointMass};
+pub use two_wheels::TwoWheels;
 pub use two_wheels::{PoseFusion, SteeringLaw};
-pub(crate) use velocity::velocity_of;
-pub(crate) use virtual_velocity::VirtualVelocity;
+pub use velocity::velocity_of;
+pub use virtual_velocity::VirtualVelocity;
 
 use crate::lanes::{Planar, Vector2};
 use crate::robots::HolonomicRobot;
@@ -26,7 +26,7 @@ pub(crate) const WHEELS: usize = 3;
 
 /// Where a run starts.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Start {
+pub struct Start {
     /// The point mass that the law drives.
     pub point: HolonomicRobot,
     /// Position in m.
@@ -62,7 +62,8 @@ pub struct Reading {
 
 impl Reading {
     /// A robot at rest.
-    pub(crate) fn at(start: &Start) -> Self {
+    #[must_use]
+    pub fn at(start: &Start) -> Self {
         let position = Vector2::splat(start.position);
         Self {
             robot: RobotState {
@@ -81,7 +82,7 @@ impl Reading {
 
 /// A measured pose.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct PoseFix {
+pub struct PoseFix {
     /// Position in m.
     pub position: Vector2<f64>,
     /// Heading in rad, if it is measured.
@@ -90,7 +91,7 @@ pub(crate) struct PoseFix {
 
 /// Order to a robot at a sample.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Order {
+pub struct Order {
     /// Commanded force in N.
     pub force: Vector2<f64>,
     /// The pose as measured now, `None` where it is known exactly.
@@ -101,7 +102,7 @@ pub(crate) struct Order {
 
 /// Where a robot without a model of its motors is at the end of a motion step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Moved {
+pub struct Moved {
     /// Place and front.
     pub frame: Frame,
     /// Velocity in m/s.
@@ -113,7 +114,7 @@ pub(crate) struct Moved {
 }
 
 /// Drive that turns the orders of a law into motion, one motion step after the other.
-pub(crate) trait Drive {
+pub trait Drive {
     /// Type of its orders.
     type Order;
     /// Type of its readings at the end of a motion step.
@@ -125,7 +126,7 @@ pub(crate) trait Drive {
 }
 
 /// A drive whose motors are modeled, under a law that asks for forces.
-pub(crate) trait MotorDrive: Drive<Order = Order, Reading = Reading> + Send {
+pub trait MotorDrive: Drive<Order = Order, Reading = Reading> + Send {
     /// Number of its wheels.
     fn wheels(&self) -> usize;
     /// True where its energy is that of ideal wheels on a point mass.

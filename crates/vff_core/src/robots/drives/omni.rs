@@ -9,7 +9,7 @@ use crate::world::geometry::RobotState;
 
 /// The robot. It takes its heading for that of the start: nothing measures it.
 #[derive(Clone, Debug)]
-pub(crate) struct OmniRobot {
+pub struct OmniRobot {
     reference: PointMass,
     kinematics: OmniKinematics,
     wheels: DrivenWheels,
@@ -20,6 +20,10 @@ pub(crate) struct OmniRobot {
 }
 
 impl OmniRobot {
+    /// A robot at rest with its wheels.
+    ///
+    /// # Errors
+    /// The kinematics, or a wheel, is out of range.
     pub fn new(
         start: &Start,
         drives: &[WheelDrive],

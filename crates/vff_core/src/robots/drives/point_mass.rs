@@ -7,7 +7,7 @@ use crate::world::geometry::RobotState;
 
 /// The point mass that a law drives.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct PointMass {
+pub struct PointMass {
     robot: HolonomicRobot,
     /// Position in m and velocity in m/s.
     pub state: RobotState<f64>,
@@ -20,6 +20,8 @@ pub(crate) struct PointMass {
 }
 
 impl PointMass {
+    /// A point mass at rest.
+    #[must_use]
     pub fn new(start: &Start) -> Self {
         Self {
             robot: start.point,
@@ -52,7 +54,7 @@ impl PointMass {
 
 /// A robot whose motion is that of the point mass, with the currents that ideal wheels take.
 #[derive(Clone, Debug)]
-pub(crate) struct IdealHolonomic {
+pub struct IdealHolonomic {
     point: PointMass,
     wheels: WheelModel,
     wheel_speeds: [f64; WHEELS],
@@ -60,6 +62,8 @@ pub(crate) struct IdealHolonomic {
 }
 
 impl IdealHolonomic {
+    /// A robot at rest.
+    #[must_use]
     pub fn new(start: &Start) -> Self {
         let heading = start.heading;
         let wheels = WheelModel::new(&start.point, heading, start.step);

@@ -72,7 +72,7 @@ enum Steering {
 
 /// The robot.
 #[derive(Clone, Debug)]
-pub(crate) struct TwoWheels {
+pub struct TwoWheels {
     ideal: DifferentialWheels,
     limits: DifferentialLimits,
     kinematics: DifferentialKinematics,
@@ -95,6 +95,10 @@ pub(crate) struct TwoWheels {
 }
 
 impl TwoWheels {
+    /// A robot at rest; its wheels have controllers where they are given.
+    ///
+    /// # Errors
+    /// A wheel, or what steers the robot, is out of range.
     pub fn new(
         start: &Start,
         robot: &DifferentialDriveRobot,

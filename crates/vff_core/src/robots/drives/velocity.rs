@@ -13,7 +13,8 @@ const STILL: f64 = 1e-12;
 const TOKEN: f64 = 1e-7;
 
 /// The velocity that commands a twist to a robot with a heading, for a control period in s.
-pub(crate) fn velocity_of(twist: Twist, heading: f64, period: f64) -> Vector2<f64> {
+#[must_use]
+pub fn velocity_of(twist: Twist, heading: f64, period: f64) -> Vector2<f64> {
     let turn = twist.turn_rate * period;
     if twist.speed.abs() < TOKEN && twist.turn_rate == 0.0 {
         return Vector2::zeros();

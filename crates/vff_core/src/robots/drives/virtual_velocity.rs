@@ -9,7 +9,7 @@ use crate::world::frame::Frame;
 
 /// The robot, at the origin at first, where it looks along x.
 #[derive(Clone, Debug)]
-pub(crate) struct VirtualVelocity {
+pub struct VirtualVelocity {
     drive: VelocityDrive,
     rule: VelocityRule,
     step: f64,
@@ -24,6 +24,7 @@ pub(crate) struct VirtualVelocity {
 
 impl VirtualVelocity {
     /// At rest, with its motion step in s.
+    #[must_use]
     pub fn new(drive: VelocityDrive, rule: VelocityRule, step: f64) -> Self {
         Self {
             drive,
@@ -40,18 +41,21 @@ impl VirtualVelocity {
     }
 
     /// Place and front.
+    #[must_use]
     pub fn frame(&self) -> Frame {
         self.frame
     }
 
     /// Virtual velocity in m/s.
     #[inline]
+    #[must_use]
     pub fn velocity(&self) -> Vector2<f64> {
         self.velocity
     }
 
     /// Speeds (left, right) of the wheels until the next sample, in m/s.
     #[inline]
+    #[must_use]
     pub fn wheels(&self) -> [f64; 2] {
         self.wheels
     }

@@ -14,7 +14,7 @@ use crate::world::obstacle::{Obstacle, PlacedShape, Regions};
 use crate::world::region::{self, Sensing};
 use crate::world::scenario::Scenario;
 
-pub(crate) use scans::Scans;
+pub use scans::Scans;
 
 /// Most beams of a scan.
 pub const MOST_BEAMS: usize = 100_000;

@@ -18,7 +18,7 @@ use crate::world::scenario::{PlacedObstacle, Scenario};
 const LIDAR_STREAM: u64 = (1 << 61) + (1 << 60);
 
 /// A lidar at work.
-pub(crate) struct Scans {
+pub struct Scans {
     options: Lidar,
     obstacles: Vec<PlacedObstacle>,
     reach: f64,
@@ -37,6 +37,9 @@ pub(crate) struct Scans {
 
 impl Scans {
     /// The lidar of a robot in a scenario, the one with an index among several.
+    ///
+    /// # Errors
+    /// An option is out of range in this scenario.
     pub fn new(scenario: &Scenario, options: &Lidar, index: u64) -> Result<Self> {
         let options = options.clone().checked()?;
         let regions = options.regions(scenario)?;
@@ -87,16 +90,19 @@ impl Sensor for Scans {
 
 impl Scans {
     /// Points as a law can know them.
+    #[must_use]
     pub fn points(&self) -> &[PlacedObstacle] {
         &self.obstacles
     }
 
     /// When each point that a law is told of was scanned, in s.
+    #[must_use]
     pub fn instants(&self) -> &[f64] {
         &self.instants
     }
 
     /// How many beams of the last scan that was told read nothing at all.
+    #[must_use]
     pub fn unknown(&self) -> usize {
         self.unknown
     }
@@ -171,6 +177,7 @@ impl Scans {
 
     /// Whether the last scan saw a place to be empty: beams go through the outline there, and none ends
     /// in or before the disc around it. Nothing is seen beyond the largest range.
+    #[must_use]
     pub fn saw_empty(&self, pose: &Frame, placed: &PlacedShape) -> bool {
         let radius = placed.shape.extent();
         let around = PlacedShape::disc(placed.center.into(), radius);

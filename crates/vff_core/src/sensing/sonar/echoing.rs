@@ -10,7 +10,7 @@ use numeric::random::Stream;
 
 /// An array on a robot that reads once a control period.
 #[derive(Clone, Debug)]
-pub(crate) struct Sonar {
+pub struct Sonar {
     array: SonarArray,
     /// Last readings in m.
     readings: Vec<f64>,
@@ -23,6 +23,7 @@ pub(crate) struct Sonar {
 
 impl Sonar {
     /// An array with noise from a stream, that reads a distance in m without echo.
+    #[must_use]
     pub fn new(array: &SonarArray, noise: Stream, silent: f64) -> Self {
         Self {
             readings: vec![silent; array.mounts().len()],
@@ -35,12 +36,14 @@ impl Sonar {
     }
 
     /// Sensors of the array.
+    #[must_use]
     pub fn array(&self) -> &SonarArray {
         &self.array
     }
 
     /// Last readings in m.
     #[inline]
+    #[must_use]
     pub fn readings(&self) -> &[f64] {
         &self.readings
     }

@@ -8,6 +8,6 @@ pub mod ring;
 
 pub use array::{Firing, SonarArray};
 pub use beam::Beam;
-pub(crate) use echoing::Sonar;
+pub use echoing::Sonar;
 pub use ranging::{DEFAULT_TEMPERATURE, Ranging, speed_of_sound};
 pub use ring::Ring;

@@ -176,7 +176,8 @@ impl Default for StaticMap {
 
 impl StaticMap {
     /// Identity of two maps, which is quicker told than their equality.
-    pub(crate) fn is(&self, other: &Self) -> bool {
+    #[must_use]
+    pub fn is(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.parts, &other.parts)
     }
 

@@ -106,12 +106,8 @@ impl StaticMap {
     }
 
     /// Distance along a ray from a point that is known to be outside of everything.
-    pub(crate) fn free_segment_keeps(
-        &self,
-        from: Vector2<f64>,
-        to: Vector2<f64>,
-        least: f64,
-    ) -> bool {
+    #[must_use]
+    pub fn free_segment_keeps(&self, from: Vector2<f64>, to: Vector2<f64>, least: f64) -> bool {
         self.segment_distance(from, to, least, least) >= least
     }
 

@@ -49,24 +49,32 @@ pub enum Mover {
     Differential(DifferentialDriveRobot),
 }
 
-/// Scenario of a simulation.
+/// Scenario of a simulation: a robot on its way to a goal among obstacles. [`Scenario::new`] checks every field; a
+/// field that is set afterwards is not checked again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
     /// Robot that a law drives: the robot, or the one that a two-wheel robot follows.
-    pub(crate) robot: HolonomicRobot,
-    pub(crate) differential: Option<DifferentialDriveRobot>,
-    pub(crate) start: [f64; 2],
-    pub(crate) goal: [f64; 2],
-    pub(crate) obstacles: Vec<PlacedObstacle>,
-    pub(crate) rules: Rules,
-    pub(crate) measurement: Option<Measurement>,
-    pub(crate) seed: u64,
+    pub robot: HolonomicRobot,
+    /// Two-wheel robot that follows, if it is one.
+    pub differential: Option<DifferentialDriveRobot>,
+    /// Start of the robot in m.
+    pub start: [f64; 2],
+    /// Goal of the robot in m.
+    pub goal: [f64; 2],
+    /// Obstacles with their regions.
+    pub obstacles: Vec<PlacedObstacle>,
+    /// Control period, limits of time, tolerances.
+    pub rules: Rules,
+    /// Noise and latency of measured positions; they are exact where it is `None`.
+    pub measurement: Option<Measurement>,
+    /// Seed of every random stream of the run.
+    pub seed: u64,
     /// Walls that planners of whole paths know.
-    pub(crate) map: Option<StaticMap>,
+    pub map: Option<StaticMap>,
     /// Walls beside the obstacles: touched, seen by sensors, and not told of to laws.
-    pub(crate) walls: Option<StaticMap>,
+    pub walls: Option<StaticMap>,
     /// Why laws that keep to regions cannot reach the goal, if they cannot.
-    pub(crate) blocked: Option<Box<Failure>>,
+    pub blocked: Option<Box<Failure>>,
 }
 
 impl Scenario {
@@ -185,7 +193,7 @@ impl Scenario {
     ///
     /// # Errors
     /// A value is out of range.
-    pub(crate) fn among(
+    pub fn among(
         robot: Mover,
         [start, goal]: [[f64; 2]; 2],
         obstacles: impl Iterator<Item = (Obstacle, Option<f64>, bool)>,
@@ -251,7 +259,7 @@ impl Scenario {
     ///
     /// # Errors
     /// Fails like [`Self::new`].
-    pub(crate) fn slowed(&self, max_speed: f64) -> Result<Self> {
+    pub fn slowed(&self, max_speed: f64) -> Result<Self> {
         let mut slowed = self.clone();
         slowed.robot.max_speed = positive("max_speed", max_speed)?;
         let limits = RobotLimits {
@@ -298,7 +306,8 @@ impl Scenario {
     }
 
     /// Whether [`Self::nominal`] of both is the same.
-    pub(crate) fn same_way(&self, other: &Self) -> bool {
+    #[must_use]
+    pub fn same_way(&self, other: &Self) -> bool {
         self.start == other.start
             && self.goal == other.goal
             && self.robot == other.robot
@@ -380,7 +389,7 @@ impl Scenario {
     ///
     /// # Errors
     /// The robot has two wheels.
-    pub(crate) fn of_point_mass(&self) -> Result<()> {
+    pub fn of_point_mass(&self) -> Result<()> {
         if self.differential.is_none() {
             return Ok(());
         }

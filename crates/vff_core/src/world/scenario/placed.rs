@@ -26,12 +26,14 @@ pub struct PlacedObstacle {
 impl PlacedObstacle {
     /// Largest speed at any time in m/s, infinite if there is none.
     #[inline]
-    pub(crate) fn fastest(&self) -> f64 {
+    #[must_use]
+    pub fn fastest(&self) -> f64 {
         self.speed_bound.unwrap_or(f64::INFINITY)
     }
 
     /// No number of its contour at the start is larger, in m; infinite if it comes or goes.
-    pub(crate) fn size(&self) -> f64 {
+    #[must_use]
+    pub fn size(&self) -> f64 {
         let Obstacle { shape, motion, .. } = &self.obstacle;
         if motion.presence() != (f64::NEG_INFINITY, f64::INFINITY) {
             return f64::INFINITY;

@@ -1,5 +1,5 @@
-//! Laws by name, from the lists in `laws/mod.rs`: what each is made of stands with the law. The engine
-//! knows no law by name.
+//! Laws by name, from the lists of the laws: what each is made of stands with the law. The engine knows no
+//! law by name.
 
 use crate::arguments::{Arguments, Named};
 use crate::error::{Failure, Given, Result};
@@ -7,7 +7,7 @@ use crate::laws::VirtualForceField;
 use crate::laws::pairwise::Pairwise;
 use crate::laws::planning::family::Planned;
 use crate::laws::safe::SafeNavigation;
-use crate::run::AnyLaw;
+use crate::run::any_law::AnyLaw;
 
 impl From<VirtualForceField> for AnyLaw {
     fn from(law: VirtualForceField) -> Self {
@@ -35,13 +35,13 @@ type Own<F> = F;
 
 macro_rules! pairwise_by_name {
     ($($module:ident::$law:ident),+ $(,)?) => {
-        $(impl From<Pairwise<crate::laws::$module::$law>> for AnyLaw {
-            fn from(law: Pairwise<crate::laws::$module::$law>) -> Self {
+        $(impl From<Pairwise<crate::laws::$law>> for AnyLaw {
+            fn from(law: Pairwise<crate::laws::$law>) -> Self {
                 Self::side_by_side(law)
             }
         })+
 
-        const PAIRWISE: &[(&str, Make)] = &[$(entry::<Pairwise<crate::laws::$module::$law>>()),+];
+        const PAIRWISE: &[(&str, Make)] = &[$(entry::<Pairwise<crate::laws::$law>>()),+];
     };
 }
 
@@ -57,8 +57,8 @@ macro_rules! others_by_name {
     };
 }
 
-pairwise_laws!(pairwise_by_name);
-other_laws!(others_by_name);
+crate::pairwise_laws!(pairwise_by_name);
+crate::other_laws!(others_by_name);
 
 /// A law with its name.
 const fn entry<L: Named + Into<AnyLaw>>() -> (&'static str, Make) {
