@@ -31,7 +31,26 @@ from hrsafety import (
 )
 from hrsafety.cli import main
 
+PROGRAM = (
+    '[robot]\nurdf = "example"\n[motion]\nacceleration = 4.0\n[[moves]]\nkind = "joint"\n'
+    "to = { turn = 0.0, shoulder = 0.4, elbow = 1.4, wrist_1 = 0.0, wrist_2 = 0.0, wrist_3 = 0.0 }\n"
+    '[[moves]]\nname = "turn"\nkind = "joint"\nto = { turn = 1.0 }\n[[points]]\nname = "gripper"\nlink = "tool"\n'
+    '[[segments]]\nfrom = "turn"\nto = "turn"\nregions = ["chest"]\n'
+)
+"""A robot program that is right."""
+DEGREES_LOG = "time,turn,shoulder,elbow,wrist_1,wrist_2,wrist_3\n" + "".join(
+    f"{0.1 * k:.1f},{3.0 * k},20,80,0,0,0\n" for k in range(9)
+)
 FILES = {
+    "far.toml": PROGRAM.replace('kind = "joint"\nto = { turn = 1.0 }', 'kind = "linear"\nto = [3.0, 0.0, 0.5]'),
+    "slow_joint.toml": PROGRAM.replace("acceleration = 4.0\n", ""),
+    "no_regions.toml": PROGRAM.replace('regions = ["chest"]\n', ""),
+    "no_reason.toml": PROGRAM.replace("regions", "clamped = false\nregions"),
+    "moves.toml": PROGRAM.replace('to = "turn"', 'to = "trun"'),
+    "joints.toml": PROGRAM.replace("to = { turn = 1.0 }", "to = { trun = 1.0 }"),
+    "log.toml": PROGRAM.replace("[motion]", '[motion]\nlog = "joints.csv"').split("[[moves]]")[0]
+    + '[[points]]\nname = "gripper"\nlink = "tool"\n[[segments]]\nfrom = 0.0\nto = 0.5\nregions = ["chest"]\n',
+    "joints.csv": DEGREES_LOG,
     "scene.toml": "start = [3.9, 0.6]\ngoal = [0.0, 0.6]\n",
     "misspelt.toml": "start = [3.9, 0.6]\ngoal = [0.0, 0.6]\ntime_limt = 30.0\n",
     "negative.toml": 'start = [4.0, 0.0]\ngoal = [0.0, 0.0]\n[[obstacles]]\ntype = "disc"\ncenter = [2.0, 1.0]\n'
@@ -462,6 +481,13 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
         "foam design without stiffness": "hrsafety foam design.toml",
         "study of an unknown configuration": "hrsafety optimize study.toml",
         "study with an unknown method": "hrsafety optimize budget.toml",
+        "line out of reach": "hrsafety program far.toml",
+        "program without acceleration": "hrsafety program slow_joint.toml",
+        "segment without regions": "hrsafety program no_regions.toml",
+        "segment without reason": "hrsafety program no_reason.toml",
+        "segment of an unknown move": "hrsafety program moves.toml",
+        "move of an unknown joint": "hrsafety program joints.toml",
+        "joint log in degrees": "hrsafety program log.toml",
         "sweep without axes": "hrsafety sweep axes.toml",
         "sweep over an unknown axis": "hrsafety sweep axis.toml",
         "unknown part of reproduce": "hrsafety reproduce --only everything",

@@ -165,6 +165,7 @@ _COMMANDS: dict[str, str | Callable[[argparse.Namespace], None]] = {
     "sweep": "sweep.command:sweep_file",
     "arm": _arm,
     "contact": "cell.command:report_cell",
+    "program": "program.command:report_program",
     "judge": _judge,
     "record": "record:judge_records",
     "benchmark": "benchmark:run_suite",

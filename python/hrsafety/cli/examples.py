@@ -12,6 +12,7 @@ __all__ = [
     "JUDGE",
     "OPTIMIZE",
     "PLAY",
+    "PROGRAM",
     "RECORD",
     "REPRODUCE",
     "ROS",
@@ -165,4 +166,14 @@ The file names a robot (an arm from URDF, a mobile base or a mass), coverings, t
 that may be touched and the planned speeds. The folder receives report.html, a page that prints on A4,
 and report.json with every number of it; the same file gives the same bytes. The date is printed only
 if it is given here or by SOURCE_DATE_EPOCH.
+"""
+
+PROGRAM = """examples:
+  hrsafety init program
+  hrsafety program robot_program.toml --out program
+
+The file names a robot (URDF), its motion (a joint log or moves), the points of it that may touch a person, and the
+regions of the body within reach of each segment. The folder receives report.html, a page that prints on A4,
+report.json, the log of the joints within the limits of contacts, the measurement plan and a table of all waypoints;
+the same file gives the same bytes.
 """

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
 
-from hrsafety import arms, contact, scenarios
+from hrsafety import arms, contact, program, scenarios
 from hrsafety._arguments import meant
 from hrsafety._keys import parsed
 from hrsafety._records import dataclass
@@ -76,11 +76,17 @@ def _cell(path: str) -> Warnings:
     return output.warnings_of(contact.load_cell(path).robot)
 
 
+def _program(path: str) -> Warnings:
+    found = program.load_program(path)
+    return output.warnings_of(found.motion, found.motion.arm)
+
+
 def _arm(path: str) -> Warnings:
     return output.warnings_of(arms.Arm.from_urdf(Path(path)))
 
 
 KINDS = {
+    "program": FileKind("robot program", "program", ("motion", "moves"), _program, "verdict of the contacts"),
     "contact": FileKind("contact cell", "contact", ("contacts", "coverings"), _cell, "plausibility of the contacts"),
     "sweep": FileKind("sweep", "sweep", ("axes", "design"), _sweep),
     "foam": FileKind("foam design", "foam", ("foams", "closing_speed"), _foam, "plausibility of the foams"),

@@ -41,6 +41,7 @@ STARTERS = {
     "gains": "gain_study.toml",
     "sweep": "impact_sweep.toml",
     "contact": "cell.toml",
+    "program": "robot_program.toml",
     "world": "people_in_a_hall.toml",
 }
 """Files to start from, by the word that ``hrsafety init`` takes."""
@@ -123,6 +124,7 @@ def parser() -> argparse.ArgumentParser:
     _add_sweep(commands)
     _add_arm(commands)
     _add_contact(commands)
+    _add_program(commands)
     _add_judge(commands)
     _add_record(commands)
     _add_benchmark(commands)
@@ -431,6 +433,21 @@ def _add_contact(commands: Any) -> None:
     parser.add_argument("cell", nargs="?", default="cell.toml", metavar="CELL.toml", help="cell file [%(default)s]")
     parser.add_argument("--init", action="store_true", help="write a commented cell file to start from")
     parser.add_argument("--out", metavar="DIR", default="report", help="folder to write into [%(default)s]")
+    parser.add_argument("--date", metavar="YYYY-MM-DD", help="date that the page prints [SOURCE_DATE_EPOCH, else none]")
+    _add_shared(parser)
+
+
+def _add_program(commands: Any) -> None:
+    parser = _add_command(
+        commands,
+        "program",
+        summary="find how fast a robot program may be beside people, and what that costs in cycle time",
+        example=examples.PROGRAM,
+    )
+    parser.add_argument(
+        "file", nargs="?", default="robot_program.toml", metavar="FILE.toml", help="program [%(default)s]"
+    )
+    parser.add_argument("--out", metavar="DIR", default="program", help="folder to write into [%(default)s]")
     parser.add_argument("--date", metavar="YYYY-MM-DD", help="date that the page prints [SOURCE_DATE_EPOCH, else none]")
     _add_shared(parser)
 

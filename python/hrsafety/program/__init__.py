@@ -8,7 +8,12 @@ from typing import TYPE_CHECKING
 from hrsafety._namespace import names_of
 
 if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
+    from hrsafety.program.exposures import ContactPoint as ContactPoint, Segment as Segment
+    from hrsafety.program.file import load_program as load_program
     from hrsafety.program.motion import ArmMotion as ArmMotion, Retimed as Retimed
     from hrsafety.program.moves import Move as Move
+    from hrsafety.program.program import Program as Program
+    from hrsafety.program.study import ProgramStudy as ProgramStudy
+    from hrsafety.program.task import ZoneRules as ZoneRules
 else:
     __all__, __getattr__, __dir__ = names_of(__name__)

@@ -46,6 +46,16 @@ def example() -> arms.Arm:
     return arms.Arm.example(armature=motors, payload=payload)
 
 
+def task(motion: program.ArmMotion, **more: object) -> program.Program:
+    """Return a program with a gripper beside a hand on the whole path."""
+    given: dict[str, object] = {
+        "motion": motion,
+        "points": [program.ContactPoint(name="gripper", link=motion.arm.moved_links[-1], area=1e-4)],
+        "segments": [program.Segment(start=0.0, end=motion.curve.length, regions=["hand_finger"])],
+    }
+    return program.Program(**(given | more))  # type: ignore[arg-type]  # checked by the class
+
+
 def sines(joints: int, seed: int) -> np.ndarray:
     """Return random poses that follow each other smoothly."""
     draw = np.random.default_rng(seed)

@@ -16,7 +16,7 @@ from hrsafety.cli.cell import report as cell_report
 from hrsafety.errors import InvalidParameterError
 from hrsafety.standards.verdicts import VERDICT_WORDS
 
-__all__ = ["report_cell"]
+__all__ = ["date_of", "report_cell"]
 
 
 def report_cell(options: argparse.Namespace) -> None:
@@ -33,7 +33,7 @@ def report_cell(options: argparse.Namespace) -> None:
     if not Path(options.cell).exists():
         remedy = "hrsafety contact --init writes one to start from"
         raise InvalidParameterError("CELL.toml", "name a file", options.cell, remedy)
-    date = _date(options.date)
+    date = date_of(options.date)
     output.planned_folder(options.out)
     output.require_page("contact")
     output.check_json(options)
@@ -72,7 +72,7 @@ def _start(path: str) -> None:
     print(f"wrote {output.write_text(place, text)}")
 
 
-def _date(given: str | None) -> str | None:
+def date_of(given: str | None) -> str | None:
     """Return the date that the page prints: the option, else SOURCE_DATE_EPOCH, else none."""
     if given is not None:
         try:

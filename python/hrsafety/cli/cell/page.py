@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from hrsafety.cli.cell.pictures import PARTS, Drawing
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from hrsafety.pages.report import Report
 
-__all__ = ["html"]
+__all__ = ["CONTACT_WORDS", "LOOKS", "html", "numbers_in", "paths_of"]
 
 STATUS_WORDS = {
     "closed_form": "exact from stored energy",
@@ -56,12 +56,33 @@ def html(
     str
         A complete HTML document without anything from elsewhere.
     """
-    from markupsafe import Markup, escape
+    from markupsafe import Markup
 
     values = {**report.values, "warnings": report.messages}
+    by_part: dict[str, list[Drawing]] = {part: [] for part in PARTS}
+    for each in drawings:
+        by_part[each.part].append(each)
+    return report.page(
+        "cell.html",
+        values=values,
+        n=numbers_in(values),
+        drawn=by_part,
+        svg=Markup,
+        verdict_words=VERDICT_WORDS,
+        status_words=STATUS_WORDS,
+        contact_words=CONTACT_WORDS,
+        looks=LOOKS,
+        inputs=list(paths_of(values["inputs"], "inputs")),
+        layers=LAYERS,
+        annex=annex,
+    )
+
+
+def numbers_in(values: Mapping[str, Any]) -> Callable[..., Markup]:
+    """Return how a page shows a number of a report: with its path, words as they are."""
+    from markupsafe import Markup, escape
 
     def number(path: str, spec: str = ".4g", scale: float = 1.0) -> Markup:
-        """Return a number of the report with its path; words as they are."""
         value = at_path(values, path)
         if value is None:
             words = DASH
@@ -73,32 +94,16 @@ def html(
         template = Markup('<data value="{}" data-path="{}" title="{}">{}</data>')
         return template.format(escape(held), escape(path), escape(path), escape(words))
 
-    by_part: dict[str, list[Drawing]] = {part: [] for part in PARTS}
-    for each in drawings:
-        by_part[each.part].append(each)
-    return report.page(
-        "cell.html",
-        values=values,
-        n=number,
-        drawn=by_part,
-        svg=Markup,
-        verdict_words=VERDICT_WORDS,
-        status_words=STATUS_WORDS,
-        contact_words=CONTACT_WORDS,
-        looks=LOOKS,
-        inputs=list(_paths(values["inputs"], "inputs")),
-        layers=LAYERS,
-        annex=annex,
-    )
+    return number
 
 
-def _paths(value: Any, path: str) -> Iterator[str]:
+def paths_of(value: Any, path: str) -> Iterator[str]:
     """Yield the path of every single value."""
     if isinstance(value, dict):
         for key in sorted(value):
-            yield from _paths(value[key], f"{path}.{key}")
+            yield from paths_of(value[key], f"{path}.{key}")
     elif isinstance(value, list):
         for index, each in enumerate(value):
-            yield from _paths(each, f"{path}[{index}]")
+            yield from paths_of(each, f"{path}[{index}]")
     else:
         yield path

@@ -16,7 +16,7 @@ from hrsafety.contact import Cell, ContactImpact, ContactStudy
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["PARTS", "Drawing", "drawings"]
+__all__ = ["PARTS", "Drawing", "drawings", "svg_of"]
 
 PARTS = ("force_over_time", "force_over_speed", "map", "speed_over_distance", "sensitivity")
 """Kinds of pictures."""
@@ -148,10 +148,10 @@ def _without_warnings(impacts: Mapping[str, ContactImpact]) -> dict[str, Contact
 
 
 def _drawing(name: str, part: str, path: str, caption: str, figure: Figure) -> Drawing:
-    return Drawing(name, part, path, caption, _svg(name, caption, figure))
+    return Drawing(name, part, path, caption, svg_of(name, caption, figure))
 
 
-def _svg(name: str, caption: str, figure: Figure) -> str:
+def svg_of(name: str, caption: str, figure: Figure) -> str:
     """Return a figure as an element of a page: the same bytes every time, and names that no other picture has."""
     from matplotlib import rc_context
 

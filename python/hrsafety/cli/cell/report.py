@@ -18,7 +18,7 @@ from hrsafety.pages import versions
 from hrsafety.pages.report import Report, ReportTable, Section
 from hrsafety.standards.verdicts import VERDICT_WORDS
 
-__all__ = ["CONFIRM", "NOT_COVERED", "at_path", "report_of"]
+__all__ = ["CONFIRM", "NOT_COVERED", "at_path", "report_of", "sha256_of"]
 
 FORMAT = 1
 CONFIRM = (
@@ -123,15 +123,16 @@ def _audit(cell: Cell, command: str) -> dict[str, Any]:
         "hrsafety": __version__,
         "versions": versions("numpy", "matplotlib", "jinja2"),
         "command": command,
-        "inputs_sha256": _sha256(cell.inputs),
-        "limits_sha256": _sha256(rows),
+        "inputs_sha256": sha256_of(cell.inputs),
+        "limits_sha256": sha256_of(rows),
         "urdf_sha256": cell.robot.sha256,
         "files_sha256": dict(cell.files),
         "canonical_form": "JSON, keys sorted, no blanks, shortest floats that read back, whole numbers as integers",
     }
 
 
-def _sha256(value: Any) -> str:
+def sha256_of(value: Any) -> str:
+    """Return the SHA-256 of a value in the canonical form."""
     text = json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
     return hashlib.sha256(text.encode("utf-8")).hexdigest()
 

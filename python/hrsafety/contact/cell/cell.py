@@ -24,7 +24,16 @@ from hrsafety.standards.contact_limits import ContactLimit
 from hrsafety.standards.limit_sets import LimitSet
 from hrsafety.standards.sets import limits as limit_set
 
-__all__ = ["MOST_CONTACTS", "MOST_COVERINGS", "NO_COVERING", "Cell", "PlannedContact", "checked_fit", "contact_of"]
+__all__ = [
+    "MOST_CONTACTS",
+    "MOST_COVERINGS",
+    "NO_COVERING",
+    "Cell",
+    "PlannedContact",
+    "checked_fit",
+    "confirmed_of",
+    "contact_of",
+]
 
 MOST_CONTACTS = 64
 MOST_COVERINGS = 16
@@ -197,7 +206,7 @@ class Cell:
         made["separation"] = separation_of(self.separation)
         if self.drive is not None:
             made["drive"] = _pushing(instance("drive", self.drive, Drive), self.robot)
-        made["confirmed"] = _confirmed(self.confirmed)
+        made["confirmed"] = confirmed_of(self.confirmed)
         annex_of(self.annex)
         for name, value in made.items():
             object.__setattr__(self, name, value)
@@ -258,7 +267,7 @@ def _pushing(drive: Drive, robot: ContactRobot) -> Drive:
     return drive.with_push_limit(robot.push_limit)
 
 
-def _confirmed(table: Mapping[str, Any]) -> dict[str, str]:
+def confirmed_of(table: Mapping[str, Any]) -> dict[str, str]:
     """Return reasons by code; what was not checked at all cannot be confirmed."""
     found = {}
     for code, reason in table.items():

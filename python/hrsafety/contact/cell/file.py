@@ -31,7 +31,7 @@ from hrsafety.standards.sets import SETS
 from hrsafety.standards.sets import limits as limit_set
 from hrsafety.standards.user_sets import load_limits
 
-__all__ = ["BASE_REGIONS", "load_cell"]
+__all__ = ["BASE_REGIONS", "coverings_of", "limits_of_file", "load_cell"]
 
 _PLAIN = ("title", "human_speed", "separation", "uncertain", "draws", "seed", "allowed_chance", "confirmed", "annex")
 """Keys that are arguments of a cell as they are."""
@@ -117,13 +117,13 @@ def load_cell(path: str | PathLike[str]) -> Cell:
     place = Path(path)
     given = checked("", parsed(place), _TOP, required=("robot",))
     read: dict[str, str] = {}
-    limits = _limits(given.get("limits", SETS[0]), place.parent, read)
+    limits = limits_of_file(given.get("limits", SETS[0]), place.parent, read)
     drive = drive_of(given["drive"]) if "drive" in given else None
     with located("robot"):
         robot = robot_of(given["robot"], place.parent, None if drive is None else drive.joint_torques)
     if robot.file is not None:
         read["robot"] = str(robot.sha256)
-    coverings, strains, materials = _coverings(given, place.parent, read)
+    coverings, strains, materials = coverings_of(given, place.parent, read)
     return Cell(
         robot=robot,
         contacts=tuple(_contacts(given, limits, coverings, robot)),
@@ -138,7 +138,7 @@ def load_cell(path: str | PathLike[str]) -> Cell:
     )
 
 
-def _limits(given: str, folder: Path, read: dict[str, str]) -> LimitSet:
+def limits_of_file(given: str, folder: Path, read: dict[str, str]) -> LimitSet:
     """Return a set of limits by name, or of a file beside the cell."""
     if given.lower().endswith((".toml", ".csv")):
         place = folder / given
@@ -154,9 +154,10 @@ def _sha256(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def _coverings(
+def coverings_of(
     given: Mapping[str, Any], folder: Path, read: dict[str, str]
 ) -> tuple[dict[str, Covering], dict[str, float | None], dict[str, str]]:
+    """Return the coverings of a file by name, the largest strain of each, and the source of its material."""
     catalog: Mapping[str, CatalogMaterial] = {}
     if "catalog" in given:
         with located("catalog"):

@@ -28,7 +28,7 @@ from hrsafety.contact.drive import push_limit_of_torques
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import RANGES, ResultWarning
 
-__all__ = ["ContactRobot", "robot_of"]
+__all__ = ["ARM_KEYS", "ContactRobot", "arm_of", "robot_of"]
 
 MOST_POSES = 10_000
 MOST_SAMPLES = 1_000_000
@@ -48,8 +48,10 @@ def _motors(name: str, value: Any) -> Any:
     return {each: kind.number(f"{name}.{each}", inertia) for each, inertia in kind.table(name, value).items()}
 
 
+EXAMPLE = "example"
+"""Word in the place of a URDF for the arm of examples."""
 _GIVEN: Keys = MappingProxyType({"mass": kind.number})
-_ARM: Keys = MappingProxyType(
+ARM_KEYS: Keys = MappingProxyType(
     {
         "urdf": kind.word,
         "link": kind.word,
@@ -420,7 +422,7 @@ def robot_of(table: Mapping[str, Any], folder: Path, joint_torques: Mapping[str,
         With the mass that contacts feel.
     """
     if "urdf" in table:
-        return _arm(checked("", table, _ARM, required=("urdf",)), folder, joint_torques)
+        return _arm(checked("", table, ARM_KEYS, required=("urdf",)), folder, joint_torques)
     if "base" in table:
         return _base(checked("", table, _BASE, required=("base", "mass", "inertia", "point", "normal")))
     mass = checked("", table, _GIVEN, required=("mass",))["mass"]
@@ -438,7 +440,7 @@ def _base(values: dict[str, Any]) -> ContactRobot:
     return ContactRobot.of_base(made(**values), point=point, normal=normal)
 
 
-def _read(values: Mapping[str, Any], folder: Path) -> Arm:
+def arm_of(values: Mapping[str, Any], folder: Path) -> Arm:
     """Return the arm of a table."""
     payload = None
     if "payload" in values:
@@ -450,7 +452,8 @@ def _read(values: Mapping[str, Any], folder: Path) -> Arm:
         masses = values["link_masses"]
         options["link_masses"] = {name: kind.number(f"link_masses.{name}", each) for name, each in masses.items()}
     try:
-        arm = Arm.from_urdf(folder / values["urdf"], **options)
+        own = values["urdf"] == EXAMPLE and not (folder / EXAMPLE).exists()
+        arm = Arm.example(**options) if own else Arm.from_urdf(folder / values["urdf"], **options)
     except InvalidParameterError as error:
         raise error.renamed("urdf" if error.argument == "path_or_text" else error.argument) from None
     if not arm.moved_links:
@@ -480,7 +483,7 @@ def _rule(values: Mapping[str, Any]) -> str:
 
 
 def _arm(values: dict[str, Any], folder: Path, joint_torques: Mapping[str, float] | None) -> ContactRobot:
-    arm, rule = _read(values, folder), _rule(values)
+    arm, rule = arm_of(values, folder), _rule(values)
     given: dict[str, Any] = {
         name: values[name] for name in ("link", "point", "direction", "samples", "seed") if name in values
     }

@@ -1,0 +1,1 @@
+"""The `program` command: from a program file to its report."""

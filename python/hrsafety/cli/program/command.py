@@ -1,0 +1,64 @@
+"""``hrsafety program FILE.toml``: cycle time of a robot program within limits of contacts, as a page and as tables."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from hrsafety import program
+from hrsafety.cli import output, terminal, verdict
+from hrsafety.cli.cell.command import date_of
+from hrsafety.cli.program import page as program_page
+from hrsafety.cli.program import pictures as program_pictures
+from hrsafety.cli.program import report as program_report
+from hrsafety.errors import InvalidParameterError
+from hrsafety.standards.verdicts import VERDICT_WORDS
+from hrsafety.tables import Columns
+
+__all__ = ["report_program"]
+
+
+def report_program(options: argparse.Namespace) -> None:
+    """Judge a robot program and write its report.
+
+    Parameters
+    ----------
+    options : argparse.Namespace
+        Of ``hrsafety program``.
+    """
+    if not Path(options.file).exists():
+        remedy = "hrsafety init program writes one to start from"
+        raise InvalidParameterError("FILE.toml", "name a file", options.file, remedy)
+    date = date_of(options.date)
+    output.check_targets(options)
+    with output.located(options.file):
+        study = program.load_program(options.file).report()
+    command = f"hrsafety program {Path(options.file).name}"
+    report = program_report.report_of(options.file, study, command=command, date=date)
+    print(terminal.told(report))
+    page = program_page.html(report, program_pictures.drawings(study))
+    place = output.folder(options.out)
+    written = [
+        output.write_text(place / "report.json", report.json(sort=True)),
+        output.write_text(place / "report.html", page),
+        _table(place / "measurement_plan.csv", study.plan.columns()),
+        _table(place / "waypoints.csv", study.columns()),
+    ]
+    if study.limited.standstill < 0:
+        written.append(_table(place / "joint_log.csv", study.limited.columns()))
+    output.say_written(written, report, options)
+    output.report_warnings(study.warnings, strict=False)
+    verdict.leave(study.verdict, _said(study))
+    output.leave_if_strict(study.warnings, options.strict)
+
+
+def _said(study: program.ProgramStudy) -> str:
+    """Return the verdict with its number of limits and, where they decide it, its doubts."""
+    held = [each.verdict for each in study.rows]
+    doubts = f" ({', '.join(study.fields['doubts'])})" if study.verdict == "not_checked" else ""
+    return f"{VERDICT_WORDS[study.verdict]}: {held.count(study.verdict)} of {len(held)} limits along the path{doubts}"
+
+
+def _table(path: Path, columns: Columns) -> Path:
+    rows = zip(*(values.tolist() for values in columns.values()), strict=True)
+    return output.write_csv(path, list(columns), rows)

@@ -1,0 +1,186 @@
+"""The report of a program: what report.json holds, and the answer in three sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from hrsafety import __version__
+from hrsafety._keys import canonical
+from hrsafety.cli.cell.report import CONFIRM, NOT_COVERED, sha256_of
+from hrsafety.contact.cell.study import numbers_of
+from hrsafety.pages import sentence, versions
+from hrsafety.pages.report import Report, ReportTable, Section
+from hrsafety.program import ProgramStudy
+from hrsafety.standards.verdicts import VERDICT_WORDS
+
+__all__ = ["report_of"]
+
+FORMAT = 1
+CLASSES = {"quasi_static": "clamped", "transient": "free"}
+OF_PROGRAMS = (
+    "Jerk and torque: times hold for limits of velocity and acceleration of joints, and a controller may be slower.",
+    "What the robot carries beyond its payload, and points of it that are not named.",
+)
+
+
+def report_of(path: str, study: ProgramStudy, *, command: str, date: str | None) -> Report:
+    """Return the report of a study.
+
+    Parameters
+    ----------
+    path : str
+        The program file, as given.
+    study : ProgramStudy
+        What was found.
+    command : str
+        How the report was made.
+    date : str or None
+        Date to print; absent when ``None``.
+    """
+    program = study.program
+    values: dict[str, Any] = numbers_of(
+        {
+            "format": "hrsafety program report",
+            "format_version": FORMAT,
+            **({} if date is None else {"date": date}),
+            "answer": list(_answer(study)),
+            **study.fields,
+            "plan": study.plan.fields(),
+            "limits": {name: getattr(program.limits, name) for name in ("id", "title", "edition", "note")},
+            "inputs": canonical(dict(program.given)),
+            "not_covered": [*OF_PROGRAMS, *NOT_COVERED],
+            "confirmation": CONFIRM,
+            "audit": {
+                "hrsafety": __version__,
+                "versions": versions("numpy", "matplotlib", "jinja2"),
+                "command": command,
+                "inputs_sha256": sha256_of(canonical(dict(program.given))),
+                "files_sha256": dict(program.files),
+            },
+        }
+    )
+    return Report(
+        title=program.title,
+        facts=[("program", path), *_facts(values)],
+        said=VERDICT_WORDS[study.verdict],
+        good=study.verdict == "within_limits",
+        sections=[Section("Cycle times", [_times(study)]), Section("Segments", [_segments(study)]), *_zones(study)],
+        warnings=study.warnings,
+        values=values,
+        source=path,
+    )
+
+
+def _facts(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    robot = values["robot"]
+    yield "robot", f"{robot['name']}, ISO/TS 15066 mass {robot['iso_mass']:.3f} kg ({robot['mass_rule']})"
+    yield "limits", f"{values['limits']['title']}, edition {values['limits']['edition']}"
+    yield "verdict", VERDICT_WORDS[values["verdict"]]
+    for each in values["answer"]:
+        yield "", each
+    yield "", CONFIRM
+
+
+def _answer(study: ProgramStudy) -> Iterator[str]:
+    """Yield the answer in three sentences: whether it may run as planned, what it takes, where the time goes."""
+    yield _as_planned(study)
+    yield _durations(study)
+    yield _slowest(study)
+
+
+def _as_planned(study: ProgramStudy) -> str:
+    program = study.program
+    moving = [each for each in study.rows if each.waypoint >= 0]
+    forbidden = next((each for each in study.rows if each.verdict == "not_permitted"), None)
+    if forbidden is not None:
+        limit = forbidden.exposure.limit
+        place = program.segment_name(forbidden.exposure.segment)
+        return (
+            f"The program may not run as planned: {limit.contact.replace('_', '-')} contact of "
+            f"{_region(limit)} is not permitted, and {place} has it within reach."
+        )
+    if not moving:
+        return "No point moves where somebody is within reach."
+    worst = moving[0]
+    place = f"{program.points[worst.exposure.point].name} in {program.segment_name(worst.exposure.segment)}"
+    speeds = f"{worst.speed:.3f} m/s where {worst.allowed_speed:.3f} m/s are allowed ({_limit(worst.exposure)})"
+    if worst.share > 1.0 + 1e-9:
+        return f"As planned the program is too fast: {place} moves at {speeds}."
+    if study.verdict == "not_checked":
+        doubts = ", ".join(study.fields["doubts"]) or "path without segment"
+        return f"As planned no limit is exceeded, hardest {place} at {speeds}, but doubts remain: {doubts}."
+    return f"As planned the program keeps every limit, hardest {place} at {speeds}."
+
+
+def _region(limit: Any) -> str:
+    return str(limit.area or limit.region).replace("_", " ")
+
+
+def _limit(exposure: Any) -> str:
+    held = "with the drive" if exposure.how == "drive" else exposure.governs
+    return f"{_region(exposure.limit)}, {CLASSES[exposure.limit.contact]}, {held}"
+
+
+def _durations(study: ProgramStudy) -> str:
+    times = {each.name: each for each in study.times}
+    base = times.get("as recorded") or times["at robot limits"]
+    words = []
+    for each in study.times:
+        if each.name.startswith("within limits of contacts, "):
+            covering = each.name.removeprefix("within limits of contacts, ")
+            words.append(
+                f"{_seconds(each.time)} {covering if covering in ('bare', 'as planned') else f'with {covering}'}"
+            )
+    typed = times.get("with typed zones")
+    zones = "" if typed is None else f", and {_seconds(typed.time)} with the zones as typed"
+    return f"Within the limits of contacts it takes {', '.join(words)}{zones}; {base.name} {_seconds(base.time)}."
+
+
+def _seconds(time: float | None) -> str:
+    return "no finite time" if time is None else f"{time:.2f} s"
+
+
+def _slowest(study: ProgramStudy) -> str:
+    first = study.segments[0]
+    if study.limited.standstill >= 0:
+        return f"In {first.name} some limit allows no motion at all."
+    if first.cost <= 0.005:
+        return "No segment is slowed down by limits of contacts."
+    return sentence(
+        f"{first.name} costs most, {first.cost:.2f} s more than at robot limits: for "
+        f"{100.0 * first.share:.0f} % of its time {first.governs} holds it back."
+    )
+
+
+def _times(study: ProgramStudy) -> ReportTable:
+    rows = [(each.name, "-" if each.time is None else f"{each.time:.3f}", each.status) for each in study.times]
+    return ReportTable(headers=[("cycle time", "time", "status"), ("", "s", "")], rows=rows, left=(0, 2), printed=True)
+
+
+def _segments(study: ProgramStudy) -> ReportTable:
+    rows = []
+    for each in study.fields["segments"]:
+        numbers = [each[name] for name in ("time_joints", "time_contact", "cost")]
+        shown = ["-" if value is None else f"{value:.3f}" for value in numbers]
+        rows.append((each["name"], ", ".join(each["regions"]) or "-", *shown, each["governs"]))
+    names = ("segment", "regions", "joint limits", "contact limits", "cost", "governs longest")
+    return ReportTable(headers=[names, ("", "", "s", "s", "s", "")], rows=rows, left=(0, 1, 5), printed=True)
+
+
+def _zones(study: ProgramStudy) -> Iterator[Section]:
+    zones = study.fields["zones"]
+    if zones is None or not zones["zones"]:
+        return
+    rows = [
+        (
+            *(f"{each[end]['move']} {each[end]['distance']:.0f} mm".strip() for end in ("from", "to")),
+            f"{each['speed']:g}",
+            each["change"].replace("_", " "),
+            each["reason"],
+        )
+        for each in zones["zones"]
+    ]
+    names = ("from", "to", "speed", "change", "reason")
+    table = ReportTable(headers=[names, ("", "", zones["unit"], "", "")], rows=rows, left=(0, 1, 3, 4), printed=True)
+    yield Section("Zones", [table])

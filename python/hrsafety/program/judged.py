@@ -1,0 +1,213 @@
+"""Verdicts of a planned program: each limit held against the waypoint that uses it most."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from hrsafety import _hrsafety
+from hrsafety._arguments import Array
+from hrsafety._records import dataclass
+from hrsafety.arms.doubts import doubts_of_point, for_rule
+from hrsafety.plausibility import ResultWarning, unsafe_doubts
+from hrsafety.program.exposures import NOT_PERMITTED, Exposure
+from hrsafety.program.runs import BLOCK, Runs, Waypoints
+from hrsafety.standards.verdicts import speed_verdict
+
+__all__ = ["JudgedExposure", "judged", "path_doubts"]
+
+EVEN = 1e-9
+"""Share by which a speed may be above its limit by rounding."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class JudgedExposure:
+    """A limit of a program with the waypoint that uses it most.
+
+    Attributes
+    ----------
+    exposure : Exposure
+        The limit.
+    waypoint : int
+        Index of the waypoint, -1 where the point never moves.
+    time, place : float
+        Instant in s and path parameter.
+    joints, velocity : tuple of float
+        The pose in rad or m, and the velocity of the point in m/s.
+    speed, allowed_speed : float
+        Planned and allowed speed of the point in m/s; inf where nothing limits it.
+    masses : dict of str to float
+        Masses in kg along the motion, of the worst normal and of all kinetic energy.
+    share : float
+        Planned over allowed speed.
+    verdict : {"not_permitted", "exceeds", "not_checked", "within_limits"}
+        Of the planned speed.
+    doubts : tuple of ResultWarning
+        Those that may lie on the unsafe side and are not confirmed.
+    confirmed : tuple of str
+        Codes that somebody has confirmed.
+    warnings : tuple of ResultWarning
+        All doubts about it.
+    """
+
+    exposure: Exposure
+    waypoint: int
+    time: float
+    place: float
+    joints: tuple[float, ...]
+    velocity: tuple[float, ...]
+    speed: float
+    allowed_speed: float
+    masses: dict[str, float]
+    share: float
+    verdict: str
+    doubts: tuple[ResultWarning, ...]
+    confirmed: tuple[str, ...]
+    warnings: tuple[ResultWarning, ...]
+
+    @property
+    def scale(self) -> float:
+        """Share of the planned speed that is allowed, at most 1."""
+        return 1.0 if self.share <= 1.0 else 1.0 / self.share
+
+
+def path_doubts(runs: Runs) -> Iterator[ResultWarning]:
+    """Yield the doubts about the path: parts that no segment speaks of, poses near singular ones."""
+    missing = runs.program.uncovered
+    if missing > 0.0:
+        message = f"{100.0 * missing:.3g} % of the path belong to no segment: nothing is checked there"
+        yield ResultWarning("path_without_segment", "segments", message)
+    yield from runs.motion.warnings
+
+
+def judged(
+    runs: Runs, waypoints: Waypoints, contact: _hrsafety.ProgramContact, rows: tuple[Exposure, ...]
+) -> list[JudgedExposure]:
+    """Return the limits of a program held against its waypoints.
+
+    Parameters
+    ----------
+    runs : Runs
+        Of the program.
+    waypoints : Waypoints
+        Planned places and rates.
+    contact : native contact
+        Of the rows.
+    rows : tuple of Exposure
+        The limits.
+    """
+    worst, share = _worst(runs, waypoints, contact, rows)
+    used = np.unique(worst[worst >= 0])
+    numbers = contact.masses(
+        waypoints.joints[used], waypoints.rates[used], body_masses=np.zeros(0), threads=runs.threads
+    )
+    directional = contact.masses(waypoints.joints, waypoints.rates, body_masses=np.zeros(0), threads=runs.threads)[
+        "mass_along_motion" if runs.program.direction == "motion" else "mass_worst_normal"
+    ]
+    about = [_about_point(runs, directional[:, place], place) for place in range(len(runs.program.points))]
+    general = tuple(path_doubts(runs))
+    found = []
+    for number, row in enumerate(rows):
+        at, doubts = int(worst[number]), (*row.warnings, *about[row.point], *general)
+        line = int(np.searchsorted(used, at)) if at >= 0 else -1
+        found.append(_row(runs, waypoints, numbers, row, at, line, float(share[number]), doubts))
+    return found
+
+
+def _worst(
+    runs: Runs, waypoints: Waypoints, contact: _hrsafety.ProgramContact, rows: tuple[Exposure, ...]
+) -> tuple[Array, Array]:
+    """Return the waypoint that uses each limit most, -1 for none, and the share."""
+    worst, most = np.full(len(rows), -1), np.zeros(len(rows))
+    points = np.array([each.point for each in rows], dtype=np.int64)
+    step = max(BLOCK // max(len(rows), 1), 1)
+    for first in range(0, len(waypoints.time), step):
+        block = slice(first, first + step)
+        found = contact.allowed(
+            waypoints.joints[block], waypoints.rates[block], waypoints.place[block], every=True, threads=runs.threads
+        )
+        speed = found["speed"][:, points]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = np.where(speed > 0.0, speed / found["allowed"][:, : len(rows)], 0.0)
+        share = np.nan_to_num(share, nan=0.0, posinf=np.inf)
+        at = share.argmax(axis=0)
+        here = share[at, np.arange(len(rows))]
+        better = here > most
+        worst[better], most[better] = first + at[better], here[better]
+    return worst, most
+
+
+def _about_point(runs: Runs, masses: Array, place: int) -> tuple[ResultWarning, ...]:
+    """Return the doubts about the masses of a point."""
+    program, arm = runs.program, runs.program.motion.arm
+    moving = masses[np.isfinite(masses)]
+    point = np.array(program.points[place].point)
+    return (*for_rule(arm.warnings, program.robot_mass, moving, arm.iso_mass), *doubts_of_point(point, arm.reach))
+
+
+def _row(
+    runs: Runs,
+    waypoints: Waypoints,
+    numbers: dict[str, Array],
+    row: Exposure,
+    at: int,
+    line: int,
+    share: float,
+    doubts: tuple[ResultWarning, ...],
+) -> JudgedExposure:
+    unsafe = tuple(dict.fromkeys(unsafe_doubts(doubts)))
+    confirmed = runs.program.confirmed
+    left = tuple(each for each in unsafe if each.code not in confirmed)
+    speed = float(numbers["speed"][line, row.point]) if at >= 0 else 0.0
+    verdict = speed_verdict(share, 1.0 + EVEN, permitted=row.limit.permitted, checked=not left)
+    masses = {name: float(numbers[name][line, row.point]) for name in _MASSES} if at >= 0 else {}
+    velocity = numbers["velocity"][line, row.point] if at >= 0 else np.zeros(3)
+    return JudgedExposure(
+        exposure=row,
+        waypoint=at,
+        time=float(waypoints.time[at]) if at >= 0 else float("nan"),
+        place=float(waypoints.place[at]) if at >= 0 else float("nan"),
+        joints=tuple(waypoints.joints[at].tolist()) if at >= 0 else (),
+        velocity=tuple(velocity.tolist()),
+        speed=speed,
+        allowed_speed=speed / share if share > 0.0 else float("inf"),
+        masses=masses,
+        share=share,
+        verdict=verdict,
+        doubts=tuple(each for each in left if each is not NOT_PERMITTED),
+        confirmed=tuple(dict.fromkeys(each.code for each in unsafe if each.code in confirmed)),
+        warnings=tuple(dict.fromkeys(each for each in doubts if each is not NOT_PERMITTED)),
+    )
+
+
+_MASSES = ("mass_along_motion", "mass_worst_normal", "mass_energy")
+
+
+def fields_of(row: JudgedExposure, names: list[str], runs: Runs) -> dict[str, Any]:
+    """Return a row as JSON holds it."""
+    limit, program = row.exposure.limit, runs.program
+    return {
+        "point": program.points[row.exposure.point].name,
+        "segment": program.segment_name(row.exposure.segment),
+        "region": limit.region,
+        "area_name": limit.area,
+        "contact": limit.contact,
+        "covering": row.exposure.covering,
+        "with_drive": row.exposure.how == "drive",
+        "contact_area": row.exposure.area,
+        "verdict": row.verdict,
+        "time": row.time,
+        "pose": dict(zip(names, row.joints, strict=True)) if row.joints else None,
+        "velocity": list(row.velocity),
+        "speed": row.speed,
+        "allowed_speed": row.allowed_speed,
+        "scale": row.scale,
+        "governs": row.exposure.governs,
+        **{name: row.masses.get(name) for name in _MASSES},
+        "human_speed": row.exposure.human_speed,
+        "doubts": list(dict.fromkeys(each.code for each in row.doubts)),
+        "reasons": list(dict.fromkeys(each.message for each in row.doubts)),
+        "confirmed": list(row.confirmed),
+    }
