@@ -26,7 +26,7 @@ pub type Verified = (f64, Vec<f64>, Vec<[f64; 2]>, Vec<f64>);
 pub type Order = (usize, Option<[f64; 2]>, Option<[f64; 2]>);
 
 /// What was recorded of the parts around a law.
-pub fn told(trace: Trace) -> Told {
+pub fn told(trace: &Trace) -> Told {
     let word = trace.status.word();
     (
         trace.wanted.into(),
@@ -88,7 +88,7 @@ impl Run {
 
     /// One control period under the law, or with a force in N or a velocity in m/s.
     fn step(&self, py: Python<'_>, told: Vec<Order>) -> PyResult<()> {
-        let order = told.first().copied();
+        let order = told.into_iter().next();
         let request = order.map_or(Request::Law, |(_, force, velocity)| {
             request_of(force, velocity)
         });
@@ -106,7 +106,7 @@ impl Run {
     /// Wanted and commanded velocity of the last control period, whether the law was taken over from,
     /// and the status, if the law has parts around it.
     fn trace(&self, _robot: usize) -> PyResult<Option<Told>> {
-        Ok(self.0.idle()?.trace().map(told))
+        Ok(self.0.idle()?.trace().as_ref().map(told))
     }
 
     /// Plan that the shield verified last, if there is one.

@@ -327,7 +327,7 @@ impl Simulation {
     pub fn observed(world: impl Into<Arc<CrowdWorld>>) -> Result<Self> {
         let world = world.into();
         let robots = world.robots.len();
-        world.check_sightings(robots * (robots + world.people.len()))?;
+        CrowdWorld::check_sightings(robots * (robots + world.people.len()))?;
         Self::starting(CrowdParts {
             observed: true,
             ..CrowdParts::new(world, true)

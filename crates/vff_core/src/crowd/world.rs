@@ -385,7 +385,7 @@ impl CrowdWorld {
         }
         at_most("len(people)", self.people.len(), MOST_PEOPLE)?;
         at_most("len(robots)", self.robots.len(), MOST_ROBOTS)?;
-        self.check_sightings(self.sightings())?;
+        Self::check_sightings(self.sightings())?;
         for (index, person) in self.people.iter().enumerate() {
             person
                 .check()
@@ -416,7 +416,7 @@ impl CrowdWorld {
     }
 
     /// Refuses robots whose memory of so many pairs, of each other and of the people, would not fit.
-    pub(super) fn check_sightings(&self, pairs: usize) -> Result<()> {
+    pub(super) fn check_sightings(pairs: usize) -> Result<()> {
         if pairs <= MOST_SIGHTINGS {
             return Ok(());
         }
