@@ -1,6 +1,6 @@
 //! Points of an arm with the limits of their contacts.
 
-use impact_core::program::contact::{Contact, Limit, Normal, Rule, SpeedTable};
+use impact_core::program::contact::{ContactNormal, MassRule, PathContact, PointLimit, SpeedTable};
 use impact_core::program::masses::PointMotion;
 use impact_core::program::rows::Waypoints;
 use nalgebra::Vector3;
@@ -9,7 +9,7 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::unsigned;
+use super::{signed, unsigned};
 use crate::arrays::{Fields, fields};
 use crate::contact::arm::Arm;
 use crate::errors::{CoreError, CoreResult};
@@ -17,12 +17,12 @@ use crate::watch::{Report, spread};
 
 /// Points of an arm with the limits of their contacts.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct ProgramContact(pub(super) Contact);
+pub struct ProgramContact(pub(super) PathContact);
 
 /// Columns of the limits.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub struct Columns<'py> {
+pub struct LimitColumns<'py> {
     point: PyReadonlyArray1<'py, i64>,
     energy: PyReadonlyArray1<'py, f64>,
     body_mass: PyReadonlyArray1<'py, f64>,
@@ -33,8 +33,8 @@ pub struct Columns<'py> {
     last: PyReadonlyArray1<'py, f64>,
 }
 
-impl Columns<'_> {
-    fn limits(&self) -> PyResult<Vec<Limit>> {
+impl LimitColumns<'_> {
+    fn limits(&self) -> PyResult<Vec<PointLimit>> {
         let points =
             unsigned("limits['point']", self.point.as_slice()?).map_err(CoreError::from)?;
         let numbers = [
@@ -57,7 +57,7 @@ impl Columns<'_> {
             let failure = Failure::invalid("limits", "have a number for each row", found);
             return Err(CoreError::from(failure).into());
         }
-        let limit = |(row, point): (usize, &usize)| Limit {
+        let limit = |(row, point): (usize, &usize)| PointLimit {
             point: *point,
             energy: energy[row],
             body_mass: body_mass[row],
@@ -71,7 +71,11 @@ impl Columns<'_> {
 }
 
 /// Words and numbers of the rule of masses.
-fn rule_of(rule: &str, direction: &str, iso_mass: f64) -> CoreResult<(Rule, Normal, f64)> {
+fn rule_of(
+    rule: &str,
+    direction: &str,
+    iso_mass: f64,
+) -> CoreResult<(MassRule, ContactNormal, f64)> {
     let unknown = |name: &str, word: &str| {
         CoreError::from(Failure::invalid(
             name,
@@ -80,14 +84,14 @@ fn rule_of(rule: &str, direction: &str, iso_mass: f64) -> CoreResult<(Rule, Norm
         ))
     };
     let rule = match rule {
-        "larger" => Rule::Larger,
-        "iso" => Rule::Iso,
-        "directional" => Rule::Directional,
+        "larger" => MassRule::Larger,
+        "iso" => MassRule::Iso,
+        "directional" => MassRule::Directional,
         other => return Err(unknown("rule", other)),
     };
     let normal = match direction {
-        "motion" => Normal::Motion,
-        "worst" => Normal::Worst,
+        "motion" => ContactNormal::Motion,
+        "worst" => ContactNormal::Worst,
         other => return Err(unknown("direction", other)),
     };
     Ok((rule, normal, iso_mass))
@@ -102,7 +106,7 @@ impl ProgramContact {
         arm: &Arm,
         links: Vec<String>,
         points: PyReadonlyArray2<'_, f64>,
-        limits: Columns<'_>,
+        limits: LimitColumns<'_>,
         tables: Vec<(Vec<f64>, Vec<f64>)>,
         rule: &str,
         direction: &str,
@@ -127,7 +131,7 @@ impl ProgramContact {
             .collect::<Result<Vec<_>, Failure>>()
             .map_err(CoreError::from)?;
         let rule = rule_of(rule, direction, iso_mass)?;
-        let contact = Contact::new(arm.0.clone(), points, limits.limits()?, tables, rule);
+        let contact = PathContact::new(arm.0.clone(), points, limits.limits()?, tables, rule);
         Ok(Self(contact.map_err(CoreError::from)?))
     }
 
@@ -144,7 +148,7 @@ impl ProgramContact {
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let bodies = body_masses.as_slice()?;
-        if let Some(wrong) = bodies.iter().find(|mass| !(**mass > 0.0)) {
+        if let Some(wrong) = bodies.iter().find(|mass| mass.is_nan() || **mass <= 0.0) {
             let failure = Failure::invalid("body_masses", "be positive", Given::Number(*wrong));
             return Err(CoreError::from(failure).into());
         }
@@ -208,7 +212,8 @@ impl ProgramContact {
         let shape = [count, self.0.points.len()];
         let pairs = found.speed.iter().zip(&found.lowest);
         let scale = pairs.map(|(speed, lowest)| if speed > lowest { lowest / speed } else { 1.0 });
-        let governs = numpy::PyArray1::from_vec(py, found.governs);
+        let governs = found.governs.iter().map(|row| row.map_or(-1, signed));
+        let governs = numpy::PyArray1::from_vec(py, governs.collect::<Vec<i64>>());
         let answer = fields! { py;
             array shape scale = scale.collect();
             array shape found: speed, lowest;

@@ -1,7 +1,7 @@
 //! Paths of the joints and the fastest motion along them.
 
-use impact_core::program::path::Path;
-use impact_core::program::retime::{Limits, Reason, Status, retime};
+use impact_core::program::path::JointPath;
+use impact_core::program::retime::{MotionLimits, Reason, Verification, retime};
 use impact_core::program::spline;
 use numeric::error::{Failure, Given};
 use numpy::{
@@ -20,7 +20,7 @@ use crate::watch::{Report, spread};
 fn path_of(
     s: &PyReadonlyArray1<'_, f64>,
     coefficients: &PyReadonlyArray3<'_, f64>,
-) -> PyResult<Path> {
+) -> PyResult<JointPath> {
     let (nodes, shape) = (s.as_slice()?, coefficients.shape());
     if shape[0] + 1 != nodes.len() || shape[1] != 4 {
         let given =
@@ -28,11 +28,11 @@ fn path_of(
         let rule = "have the shape (intervals, 4, joints), with one interval less than nodes";
         return Err(CoreError::from(Failure::invalid("coefficients", rule, given)).into());
     }
-    let path = Path::new(nodes.to_vec(), coefficients.as_slice()?.to_vec(), shape[2]);
+    let path = JointPath::new(nodes.to_vec(), coefficients.as_slice()?.to_vec(), shape[2]);
     Ok(path.map_err(CoreError::from)?)
 }
 
-fn coefficients_of<'py>(py: Python<'py>, path: &Path) -> PyResult<Bound<'py, PyArray3<f64>>> {
+fn coefficients_of<'py>(py: Python<'py>, path: &JointPath) -> PyResult<Bound<'py, PyArray3<f64>>> {
     let all = path.coefficients().to_vec().into_pyarray(py);
     all.reshape([path.intervals(), 4, path.joints()])
 }
@@ -49,7 +49,7 @@ pub fn program_spline<'py>(
 }
 
 /// Nodes and coefficients.
-type Pieces<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray3<f64>>);
+type PathPieces<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray3<f64>>);
 
 /// A path with every interval cut into equal ones.
 #[pyfunction]
@@ -58,7 +58,7 @@ pub fn program_refine<'py>(
     s: PyReadonlyArray1<'py, f64>,
     coefficients: PyReadonlyArray3<'py, f64>,
     parts: PyReadonlyArray1<'py, i64>,
-) -> PyResult<Pieces<'py>> {
+) -> PyResult<PathPieces<'py>> {
     let parts = unsigned("parts", parts.as_slice()?).map_err(CoreError::from)?;
     let found = path_of(&s, &coefficients)?
         .refined(&parts)
@@ -90,7 +90,7 @@ pub fn program_retime<'py>(
         .as_ref()
         .map(|speeds| speeds.as_slice())
         .transpose()?;
-    let limits = Limits {
+    let limits = MotionLimits {
         velocity: velocity.as_slice()?,
         acceleration: acceleration.as_slice()?,
         stops: &stops,
@@ -121,7 +121,7 @@ pub fn program_retime<'py>(
     Ok(fields! { py;
         value status = found.status.word();
         value rounds = found.rounds;
-        value standstill = if found.status == Status::Standstill { stands.map_or(-1, signed) } else { -1 };
+        value standstill = if found.status == Verification::Standstill { stands.map_or(-1, signed) } else { -1 };
         value time = found.times.last().copied().unwrap_or(0.0);
         vector acceleration_share = share(0);
         vector velocity_share = share(1);

@@ -3,8 +3,8 @@
 use numeric::error::{Failure, Given, Result};
 use numeric::parallel::{Work, each_run};
 
-use super::contact::{Contact, Hardest};
-use super::path::Path;
+use super::contact::{Hardest, PathContact};
+use super::path::JointPath;
 use crate::arm::model::sized;
 use crate::arm::pose::{Pose, Singular, singular};
 
@@ -38,7 +38,7 @@ pub fn way(place: usize, places: usize, length: f64) -> f64 {
 ///
 /// # Errors
 /// A joint moves too little or too much for a number.
-pub fn by_velocity(path: &Path, velocity: &[f64]) -> Result<Vec<(f64, usize)>> {
+pub fn by_velocity(path: &JointPath, velocity: &[f64]) -> Result<Vec<(f64, usize)>> {
     let of = |index: usize| {
         let piece = path.piece(index);
         let mut found = (0.0_f64, 0);
@@ -72,7 +72,7 @@ pub fn by_velocity(path: &Path, velocity: &[f64]) -> Result<Vec<(f64, usize)>> {
 /// # Errors
 /// Path and arm have different joints, a locked joint moves, the mass matrix of a pose is singular, the caller asked to
 /// stop.
-pub fn by_contact(path: &Path, contact: &Contact, work: Work<'_>) -> Result<Vec<Touch>> {
+pub fn by_contact(path: &JointPath, contact: &PathContact, work: Work<'_>) -> Result<Vec<Touch>> {
     if path.joints() != contact.arm.joints.len() {
         let given = Given::Count(path.joints() as u64);
         return Err(Failure::invalid(
@@ -96,9 +96,9 @@ pub fn by_contact(path: &Path, contact: &Contact, work: Work<'_>) -> Result<Vec<
 
 /// Contacts on one interval.
 fn touch<const N: usize>(
-    path: &Path,
+    path: &JointPath,
     index: usize,
-    contact: &Contact,
+    contact: &PathContact,
     pose: &mut Pose<'_, N>,
 ) -> Result<Touch> {
     let piece = path.piece(index);

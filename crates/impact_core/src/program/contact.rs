@@ -12,7 +12,7 @@ pub const MOST_LIMITS: usize = 100_000;
 
 /// The mass of the robot that counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rule {
+pub enum MassRule {
     /// The larger one of both.
     Larger,
     /// That of ISO/TS 15066.
@@ -23,7 +23,7 @@ pub enum Rule {
 
 /// The normal of the contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Normal {
+pub enum ContactNormal {
     /// Along the motion of the point.
     Motion,
     /// The worst one.
@@ -43,8 +43,9 @@ impl SpeedTable {
     /// # Errors
     /// There is no mass, masses do not rise, a speed is below zero or no number.
     pub fn new(masses: Vec<f64>, speeds: Vec<f64>) -> Result<Self> {
-        let rising = masses.windows(2).all(|pair| pair[0] < pair[1]);
-        if masses.is_empty() || masses.len() != speeds.len() || !rising || !(masses[0] > 0.0) {
+        let rising = masses.iter().all(|mass| !mass.is_nan())
+            && masses.windows(2).all(|pair| pair[0] < pair[1]);
+        if masses.is_empty() || masses.len() != speeds.len() || !rising || masses[0] <= 0.0 {
             let found =
                 Given::Found(format!("{} masses, {} speeds", masses.len(), speeds.len()).into());
             return Err(Failure::invalid(
@@ -53,7 +54,7 @@ impl SpeedTable {
                 found,
             ));
         }
-        if let Some(speed) = speeds.iter().find(|speed| !(**speed >= 0.0)) {
+        if let Some(speed) = speeds.iter().find(|speed| speed.is_nan() || **speed < 0.0) {
             return Err(Failure::invalid(
                 "tables",
                 "hold speeds of at least 0",
@@ -76,7 +77,7 @@ impl SpeedTable {
 
 /// The limit of a contact of one point: with a region in a class of contact, or a speed as it is.
 #[derive(Clone, Copy, Debug)]
-pub struct Limit {
+pub struct PointLimit {
     /// The point.
     pub point: usize,
     /// Energy that covering and region store at their limits (J), infinite without such a limit.
@@ -95,19 +96,19 @@ pub struct Limit {
 
 /// Points of an arm with the limits of their contacts.
 #[derive(Clone, Debug)]
-pub struct Contact {
+pub struct PathContact {
     /// The arm.
     pub arm: Arm,
     /// Links and places on them (m).
     pub points: Vec<(usize, Vector3<f64>)>,
     /// The limits.
-    pub limits: Vec<Limit>,
+    pub limits: Vec<PointLimit>,
     /// Tables of closing speeds.
     pub tables: Vec<SpeedTable>,
     /// The mass that counts.
-    pub rule: Rule,
+    pub rule: MassRule,
     /// The normal that counts.
-    pub normal: Normal,
+    pub normal: ContactNormal,
     /// Mass of the robot by ISO/TS 15066 (kg).
     pub iso_mass: f64,
     /// Limits of each point that may be the hardest one.
@@ -123,7 +124,7 @@ pub struct Hardest {
     pub limit: Option<usize>,
 }
 
-impl Contact {
+impl PathContact {
     /// Points and their limits.
     ///
     /// # Errors
@@ -131,9 +132,9 @@ impl Contact {
     pub fn new(
         arm: Arm,
         points: Vec<(usize, Vector3<f64>)>,
-        limits: Vec<Limit>,
+        limits: Vec<PointLimit>,
         tables: Vec<SpeedTable>,
-        (rule, normal, iso_mass): (Rule, Normal, f64),
+        (rule, normal, iso_mass): (MassRule, ContactNormal, f64),
     ) -> Result<Self> {
         positive("iso_mass", iso_mass)?;
         numeric::error::at_most("limits", limits.len(), MOST_LIMITS)?;
@@ -168,19 +169,19 @@ impl Contact {
     pub fn reduced_mass(&self, motion: &PointMotion, body_mass: f64) -> f64 {
         let iso = || (self.iso_mass.recip() + body_mass.recip()).recip();
         let directional = || match self.normal {
-            Normal::Motion => motion.reduced_along(body_mass),
-            Normal::Worst => motion.reduced_worst(body_mass),
+            ContactNormal::Motion => motion.reduced_along(body_mass),
+            ContactNormal::Worst => motion.reduced_worst(body_mass),
         };
         match self.rule {
-            Rule::Larger => iso().max(directional()),
-            Rule::Iso => iso(),
-            Rule::Directional => directional(),
+            MassRule::Larger => iso().max(directional()),
+            MassRule::Iso => iso(),
+            MassRule::Directional => directional(),
         }
     }
 
     /// Allowed speed of a point that moves (m/s), infinite without a limit.
     #[must_use]
-    pub fn allowed_speed(&self, limit: &Limit, motion: &PointMotion) -> f64 {
+    pub fn allowed_speed(&self, limit: &PointLimit, motion: &PointMotion) -> f64 {
         let mut found = limit.speed;
         if limit.energy < f64::INFINITY || limit.table.is_some() {
             let mass = self.reduced_mass(motion, limit.body_mass);
@@ -245,7 +246,7 @@ impl Contact {
     }
 }
 
-impl Limit {
+impl PointLimit {
     /// Whether the limit counts somewhere between two places of the path, or at one.
     #[must_use]
     pub fn counts(&self, [from, to]: [f64; 2]) -> bool {
@@ -258,7 +259,7 @@ impl Limit {
     }
 }
 
-fn check(limit: &Limit, points: usize, tables: usize) -> Result<()> {
+fn check(limit: &PointLimit, points: usize, tables: usize) -> Result<()> {
     if limit.point >= points {
         let given = Given::Count(limit.point as u64);
         return Err(Failure::invalid("point", "be one of the points", given));
@@ -291,8 +292,8 @@ fn check(limit: &Limit, points: usize, tables: usize) -> Result<()> {
 
 /// Limits of each point without those that another one always outdoes: with less energy for equal bodies, human speed
 /// and range.
-fn decisive(limits: &[Limit], points: usize) -> Vec<Vec<usize>> {
-    let key = |limit: &Limit| {
+fn decisive(limits: &[PointLimit], points: usize) -> Vec<Vec<usize>> {
+    let key = |limit: &PointLimit| {
         let numbers = [
             limit.body_mass,
             limit.human_speed,

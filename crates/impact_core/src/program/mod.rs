@@ -20,7 +20,7 @@ pub mod strips;
 mod tests;
 pub mod zones;
 
-pub use contact::{Contact, Limit, Normal, Rule, SpeedTable};
+pub use contact::{ContactNormal, MassRule, PathContact, PointLimit, SpeedTable};
 pub use masses::PointMotion;
-pub use path::Path;
-pub use retime::{Limits, Reason, Retimed, Status, retime};
+pub use path::JointPath;
+pub use retime::{MotionLimits, Reason, Retimed, Verification, retime};

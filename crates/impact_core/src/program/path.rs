@@ -13,7 +13,7 @@ const LARGEST_GAP: f64 = 1e-6;
 
 /// A path `q(s)`: one cubic polynomial on each interval, in powers of the way from its start.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Path {
+pub struct JointPath {
     joints: usize,
     nodes: Vec<f64>,
     /// By intervals, powers (the lowest one first) and joints.
@@ -22,14 +22,14 @@ pub struct Path {
 
 /// The polynomial of one interval.
 #[derive(Clone, Copy, Debug)]
-pub struct Piece<'a> {
+pub struct CubicPiece<'a> {
     /// Length of the interval.
     pub length: f64,
     joints: usize,
     coefficients: &'a [f64],
 }
 
-impl Path {
+impl JointPath {
     /// A path with intervals between rising nodes.
     ///
     /// # Errors
@@ -61,7 +61,7 @@ impl Path {
         let [first, last] = [self.nodes[0], self.nodes[self.intervals()]];
         for (index, pair) in self.nodes.windows(2).enumerate() {
             let length = pair[1] - pair[0];
-            if !(length > LEAST_LENGTH * (last - first) && length.is_finite()) {
+            if !length.is_finite() || length <= LEAST_LENGTH * (last - first) {
                 let rule = format!("rise by more than {LEAST_LENGTH:?} of the whole path");
                 let name = format!("s[{}]", index + 1);
                 return Err(Failure::invalid(name, rule, Given::Number(pair[1])));
@@ -121,9 +121,9 @@ impl Path {
 
     /// The polynomial of an interval.
     #[must_use]
-    pub fn piece(&self, index: usize) -> Piece<'_> {
+    pub fn piece(&self, index: usize) -> CubicPiece<'_> {
         let size = 4 * self.joints;
-        Piece {
+        CubicPiece {
             length: self.nodes[index + 1] - self.nodes[index],
             joints: self.joints,
             coefficients: &self.coefficients[index * size..(index + 1) * size],
@@ -165,7 +165,7 @@ impl Path {
     }
 }
 
-impl Piece<'_> {
+impl CubicPiece<'_> {
     /// Coefficients of a joint, that of the lowest power first.
     #[must_use]
     pub fn powers(&self, joint: usize) -> [f64; 4] {

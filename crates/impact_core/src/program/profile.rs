@@ -2,7 +2,7 @@
 
 use numeric::error::{Interrupted, Result, proceed};
 
-use super::path::Path;
+use super::path::JointPath;
 use super::strips::Strips;
 
 /// Intervals between two questions whether to stop.
@@ -16,7 +16,7 @@ const LOOK: usize = 4096;
 /// # Errors
 /// The caller asked to stop.
 pub fn fastest(
-    path: &Path,
+    path: &JointPath,
     acceleration: &[f64],
     tops: &[f64],
     interrupted: Interrupted<'_>,
@@ -37,7 +37,7 @@ pub fn fastest(
 /// The values in one direction of the path: first the largest ones from which the end can be reached, from the end
 /// backwards, then the largest steps from the start.
 fn swept(
-    path: &Path,
+    path: &JointPath,
     acceleration: &[f64],
     mut squares: Vec<f64>,
     (reversed, interrupted): (bool, Interrupted<'_>),
@@ -65,7 +65,7 @@ fn swept(
 
 /// Times at the nodes (s), infinite from an interval on that is not left.
 #[must_use]
-pub fn times(path: &Path, squares: &[f64]) -> Vec<f64> {
+pub fn times(path: &JointPath, squares: &[f64]) -> Vec<f64> {
     let mut time = 0.0;
     let mut found = vec![time];
     for (index, pair) in squares.windows(2).enumerate() {

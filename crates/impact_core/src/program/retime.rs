@@ -4,8 +4,8 @@ use numeric::error::{Failure, Given, Result, positive, proceed};
 use numeric::parallel::Work;
 
 use super::bounds::{CHECKED, Touch, by_contact, by_velocity, way};
-use super::contact::Contact;
-use super::path::Path;
+use super::contact::PathContact;
+use super::path::JointPath;
 use super::profile::{fastest, times};
 use super::strips::coefficients;
 
@@ -24,7 +24,7 @@ const EQUAL: f64 = 1e-6;
 
 /// Limits of a motion.
 #[derive(Clone, Copy, Debug)]
-pub struct Limits<'a> {
+pub struct MotionLimits<'a> {
     /// Velocities of the joints.
     pub velocity: &'a [f64],
     /// Accelerations of the joints, infinite without a limit.
@@ -34,12 +34,12 @@ pub struct Limits<'a> {
     /// Largest `ds/dt` on each interval, infinite without a limit.
     pub path_speed: Option<&'a [f64]>,
     /// Contacts along the path.
-    pub contact: Option<&'a Contact>,
+    pub contact: Option<&'a PathContact>,
 }
 
 /// Whether the motion keeps its limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Status {
+pub enum Verification {
     /// At all places that were checked.
     Verified,
     /// Not at all of them.
@@ -48,7 +48,7 @@ pub enum Status {
     Standstill,
 }
 
-impl Status {
+impl Verification {
     /// The word of a status.
     #[must_use]
     pub fn word(self) -> &'static str {
@@ -77,7 +77,7 @@ pub enum Reason {
 #[derive(Clone, Debug)]
 pub struct Retimed {
     /// Whether it keeps its limits.
-    pub status: Status,
+    pub status: Verification,
     /// Rounds until then.
     pub rounds: usize,
     /// Times at the nodes (s).
@@ -112,7 +112,7 @@ impl Caps {
 /// # Errors
 /// Limits do not fit the path or are out of range, the path turns without a stop, stops are neighbors, errors of the
 /// contacts, or the caller asked to stop.
-pub fn retime(path: &Path, limits: &Limits<'_>, work: Work<'_>) -> Result<Retimed> {
+pub fn retime(path: &JointPath, limits: &MotionLimits<'_>, work: Work<'_>) -> Result<Retimed> {
     check(path, limits)?;
     let touches = match limits.contact {
         Some(contact) => by_contact(path, contact, work)?,
@@ -137,12 +137,12 @@ pub fn retime(path: &Path, limits: &Limits<'_>, work: Work<'_>) -> Result<Retime
         let squares = fastest(path, limits.acceleration, &tops, work.interrupted)?;
         let shares = shares(path, limits, &touches, &squares, work)?;
         let stands = squares.windows(2).any(|pair| pair == [0.0; 2]);
-        let kept = !lower(&mut caps, &shares);
+        let kept = !lower(&mut caps, &shares, &touches);
         if stands || kept || rounds == MOST_ROUNDS {
             let status = match (stands, kept) {
-                (true, _) => Status::Standstill,
-                (false, true) => Status::Verified,
-                (false, false) => Status::NotVerified,
+                (true, _) => Verification::Standstill,
+                (false, true) => Verification::Verified,
+                (false, false) => Verification::NotVerified,
             };
             let reasons = (0..path.intervals())
                 .map(|index| reason(path, limits, index, (&caps[index], &touches), &squares))
@@ -173,23 +173,31 @@ fn tops(caps: &[Caps], stops: &[usize]) -> Vec<f64> {
 }
 
 /// Lowers the caps of intervals that exceed a limit; whether there were any.
-fn lower(caps: &mut [Caps], shares: &[[f64; 3]]) -> bool {
+fn lower(caps: &mut [Caps], shares: &[[f64; 3]], touches: &[Touch]) -> bool {
     let mut lowered = false;
-    for (cap, shares) in caps.iter_mut().zip(shares) {
+    for (index, (cap, shares)) in caps.iter_mut().zip(shares).enumerate() {
         let [acceleration, velocity, contact] = shares.map(|share| {
             lowered |= share > EXCEEDED;
             if share > EXCEEDED { share * share } else { 1.0 }
         });
         cap.velocity /= velocity * acceleration;
         cap.contact /= contact;
+        // The cap may lie far above the motion, where a share of it changes nothing.
+        if let Some(touch) = touches.get(index).filter(|_| contact > 1.0) {
+            let most = touch
+                .loads
+                .iter()
+                .fold(0.0_f64, |most, load| most.max(*load));
+            cap.contact = cap.contact.min(most.recip());
+        }
     }
     lowered
 }
 
 /// Largest shares of accelerations, velocities and contacts at the places of every interval.
 fn shares(
-    path: &Path,
-    limits: &Limits<'_>,
+    path: &JointPath,
+    limits: &MotionLimits<'_>,
     touches: &[Touch],
     squares: &[f64],
     work: Work<'_>,
@@ -233,8 +241,8 @@ fn shares(
 /// The limit that an interval uses most: a contact before a velocity before the path before an acceleration where
 /// shares are equal.
 fn reason(
-    path: &Path,
-    limits: &Limits<'_>,
+    path: &JointPath,
+    limits: &MotionLimits<'_>,
     index: usize,
     (caps, touches): (&Caps, &[Touch]),
     squares: &[f64],
@@ -264,7 +272,7 @@ fn reason(
     }
 }
 
-fn check(path: &Path, limits: &Limits<'_>) -> Result<()> {
+fn check(path: &JointPath, limits: &MotionLimits<'_>) -> Result<()> {
     let joints = path.joints();
     for (name, values) in [
         ("velocity", limits.velocity),
@@ -283,7 +291,7 @@ fn check(path: &Path, limits: &Limits<'_>) -> Result<()> {
         positive(&format!("velocity[{joint}]"), *limit)?;
     }
     for (joint, limit) in limits.acceleration.iter().enumerate() {
-        if !(*limit > 0.0) {
+        if limit.is_nan() || *limit <= 0.0 {
             let name = format!("acceleration[{joint}]");
             return Err(Failure::invalid(name, "be positive", Given::Number(*limit)));
         }
@@ -297,7 +305,7 @@ fn check(path: &Path, limits: &Limits<'_>) -> Result<()> {
                 given,
             ));
         }
-        if let Some(speed) = speeds.iter().find(|speed| !(**speed >= 0.0)) {
+        if let Some(speed) = speeds.iter().find(|speed| speed.is_nan() || **speed < 0.0) {
             return Err(Failure::invalid(
                 "path_speed",
                 "be at least 0",
@@ -310,7 +318,7 @@ fn check(path: &Path, limits: &Limits<'_>) -> Result<()> {
 }
 
 /// Refuses stops that are no inner nodes, and intervals between two of them: they would never be left.
-fn check_stops(path: &Path, stops: &[usize]) -> Result<()> {
+fn check_stops(path: &JointPath, stops: &[usize]) -> Result<()> {
     let mut before = 0;
     for stop in stops.iter().copied().chain([path.intervals()]) {
         if stop < before + 2 || stop > path.intervals() {
@@ -324,7 +332,7 @@ fn check_stops(path: &Path, stops: &[usize]) -> Result<()> {
 }
 
 /// Refuses a jump of the tangent at a node that is passed: no acceleration is enough for it.
-fn check_turns(path: &Path, limits: &Limits<'_>) -> Result<()> {
+fn check_turns(path: &JointPath, limits: &MotionLimits<'_>) -> Result<()> {
     let mut next = limits.stops.iter().copied().peekable();
     for node in 1..path.intervals() {
         if next.next_if_eq(&node).is_some() {

@@ -3,7 +3,7 @@
 use numeric::error::{Failure, Given, Result, at_most};
 use numeric::parallel::{Work, each_run};
 
-use super::contact::Contact;
+use super::contact::PathContact;
 use super::masses::PointMotion;
 use crate::arm::model::sized;
 use crate::arm::pose::{Pose, Singular, singular};
@@ -29,18 +29,18 @@ pub struct Waypoints<'a> {
 
 /// Allowed speeds of all points, by waypoints.
 #[derive(Clone, Debug, Default)]
-pub struct Allowed {
+pub struct AllowedSpeeds {
     /// Speed of each point (m/s).
     pub speed: Vec<f64>,
     /// The least of the allowed speeds of each point (m/s), infinite without a limit.
     pub lowest: Vec<f64>,
-    /// Its limit, -1 without.
-    pub governs: Vec<i64>,
+    /// Its limit, if there is one.
+    pub governs: Vec<Option<usize>>,
     /// Allowed speed by each limit (m/s), if asked for.
     pub every: Vec<f64>,
 }
 
-impl Contact {
+impl PathContact {
     /// Motions of all points, by waypoints.
     ///
     /// # Errors
@@ -68,7 +68,7 @@ impl Contact {
         waypoints: &Waypoints<'_>,
         every: bool,
         work: Work<'_>,
-    ) -> Result<Allowed> {
+    ) -> Result<AllowedSpeeds> {
         let count = self.count(waypoints)?;
         let width = if every {
             self.limits.len()
@@ -77,11 +77,11 @@ impl Contact {
         };
         at_most("joints", count.saturating_mul(width), MOST_RESULTS)?;
         let blocks = sized!(self.arm, SIZE => {
-            self.each::<SIZE, Allowed>(waypoints, count, work, |block, place, motions| {
+            self.each::<SIZE, AllowedSpeeds>(waypoints, count, work, |block, place, motions| {
                 self.add(block, place, motions, every);
             })
         })?;
-        let mut found = Allowed::default();
+        let mut found = AllowedSpeeds::default();
         for block in blocks {
             found.speed.extend(block.speed);
             found.lowest.extend(block.lowest);
@@ -92,13 +92,13 @@ impl Contact {
     }
 
     /// Adds the allowed speeds at one waypoint.
-    fn add(&self, block: &mut Allowed, place: f64, motions: &[PointMotion], every: bool) {
+    fn add(&self, block: &mut AllowedSpeeds, place: f64, motions: &[PointMotion], every: bool) {
         let start = block.speed.len();
         block
             .speed
             .extend(motions.iter().map(|motion| motion.speed));
         block.lowest.resize(start + motions.len(), f64::INFINITY);
-        block.governs.resize(start + motions.len(), -1);
+        block.governs.resize(start + motions.len(), None);
         for (row, limit) in self.limits.iter().enumerate() {
             let motion = &motions[limit.point];
             let counts = motion.speed > 0.0 && limit.counts([place; 2]);
@@ -110,7 +110,7 @@ impl Contact {
             let point = start + limit.point;
             if allowed < block.lowest[point] {
                 block.lowest[point] = allowed;
-                block.governs[point] = row as i64;
+                block.governs[point] = Some(row);
             }
             if every {
                 block.every.push(allowed);

@@ -2,14 +2,14 @@
 
 use numeric::error::{Failure, Given, Result};
 
-use super::path::Path;
+use super::path::JointPath;
 
 /// The path through rows of values at rising knots: straight for two knots, a parabola for three, and a cubic spline
 /// without a jump of the third derivative at the second and the last but one knot for more.
 ///
 /// # Errors
 /// Numbers do not fit each other or are not finite, knots do not rise, neighboring rows are equal.
-pub fn through(knots: &[f64], values: &[f64], joints: usize) -> Result<Path> {
+pub fn through(knots: &[f64], values: &[f64], joints: usize) -> Result<JointPath> {
     let count = knots.len();
     if count < 2 || joints == 0 || values.len() != count * joints {
         let found = Given::Found(format!("{} numbers", values.len()).into());
@@ -40,7 +40,7 @@ pub fn through(knots: &[f64], values: &[f64], joints: usize) -> Result<Path> {
             }
         }
     }
-    Path::new(knots.to_vec(), coefficients, joints)
+    JointPath::new(knots.to_vec(), coefficients, joints)
 }
 
 /// Derivatives at the knots, by elimination of their tridiagonal equations.

@@ -4,7 +4,7 @@
 //! quadratic in `sigma`: it keeps its limit if its three Bernstein coefficients `p u + r x` do. Each of them holds `u`
 //! in a strip over `x`.
 
-use super::path::Piece;
+use super::path::CubicPiece;
 
 /// `slope x - room <= u <= slope x + room`.
 #[derive(Clone, Copy, Debug)]
@@ -16,7 +16,7 @@ struct Strip {
 /// Strips of all joints with a limit.
 #[derive(Clone, Debug, Default)]
 pub struct Strips {
-    strips: Vec<Strip>,
+    all: Vec<Strip>,
     /// Largest `x` by coefficients without `u`.
     most: f64,
     length: f64,
@@ -24,12 +24,12 @@ pub struct Strips {
 
 /// A bound of `u` over `x`.
 #[derive(Clone, Copy)]
-struct Bound {
+struct StripBound {
     slope: f64,
     offset: f64,
 }
 
-impl Bound {
+impl StripBound {
     fn at(self, x: f64) -> f64 {
         self.slope * x + self.offset
     }
@@ -37,7 +37,7 @@ impl Bound {
 
 /// Factors `p` of `u` and `r` of `x` in the Bernstein coefficients of the acceleration of a joint.
 #[must_use]
-pub fn coefficients(piece: &Piece<'_>, joint: usize) -> [[f64; 2]; 3] {
+pub fn coefficients(piece: &CubicPiece<'_>, joint: usize) -> [[f64; 2]; 3] {
     let ([_, q1, q2, q3], h) = (piece.powers(joint), piece.length);
     let (start, end) = (2.0 * q2, 2.0 * q2 + 6.0 * h * q3);
     let rate = q1 + h * (2.0 * q2 + 3.0 * h * q3);
@@ -50,8 +50,8 @@ pub fn coefficients(piece: &Piece<'_>, joint: usize) -> [[f64; 2]; 3] {
 
 impl Strips {
     /// Takes the strips of another interval; `reversed` ones are those of the motion from its end to its start.
-    pub fn read(&mut self, piece: &Piece<'_>, acceleration: &[f64], reversed: bool) {
-        self.strips.clear();
+    pub fn read(&mut self, piece: &CubicPiece<'_>, acceleration: &[f64], reversed: bool) {
+        self.all.clear();
         self.most = f64::INFINITY;
         self.length = piece.length;
         for (joint, limit) in acceleration.iter().enumerate() {
@@ -66,7 +66,7 @@ impl Strips {
                 };
                 let (slope, room) = (-r / p, limit / p.abs());
                 if slope.is_finite() && room.is_finite() {
-                    self.strips.push(Strip { slope, room });
+                    self.all.push(Strip { slope, room });
                 } else if r != 0.0 {
                     self.most = self.most.min(limit / r.abs());
                 }
@@ -75,13 +75,13 @@ impl Strips {
     }
 
     /// Least upper bound at `x`, where `x` at the end of the interval is `next` at most.
-    fn upper(&self, x: f64, next: f64) -> Bound {
+    fn upper(&self, x: f64, next: f64) -> StripBound {
         let step = 0.5 / self.length;
-        let end = Bound {
+        let end = StripBound {
             slope: -step,
             offset: next * step,
         };
-        let bounds = self.strips.iter().map(|strip| Bound {
+        let bounds = self.all.iter().map(|strip| StripBound {
             slope: strip.slope,
             offset: strip.room,
         });
@@ -95,12 +95,12 @@ impl Strips {
     }
 
     /// Largest lower bound at `x`, where `x` at the end of the interval is not below 0.
-    fn lower(&self, x: f64) -> Bound {
-        let end = Bound {
+    fn lower(&self, x: f64) -> StripBound {
+        let end = StripBound {
             slope: -0.5 / self.length,
             offset: 0.0,
         };
-        let bounds = self.strips.iter().map(|strip| Bound {
+        let bounds = self.all.iter().map(|strip| StripBound {
             slope: strip.slope,
             offset: -strip.room,
         });

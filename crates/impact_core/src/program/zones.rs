@@ -46,7 +46,7 @@ pub fn fastest_zones(
     positive("step", step)?;
     for (cell, (length, cap)) in lengths.iter().zip(caps).enumerate() {
         positive(&format!("length[{cell}]"), *length)?;
-        if !(*cap >= 0.0) {
+        if cap.is_nan() || *cap < 0.0 {
             return Err(Failure::invalid(
                 format!("cap[{cell}]"),
                 "be at least 0",
@@ -78,14 +78,14 @@ fn choose(lengths: &[f64], speeds: &[f64], count: usize) -> Vec<Zone> {
     for zones in 1..=count {
         let before = &rows[zones - 1];
         let mut row = vec![(f64::INFINITY, 0); cells + 1];
-        for end in zones..=cells {
+        for (end, best) in row.iter_mut().enumerate().skip(zones) {
             let (mut length, mut speed) = (0.0, f64::INFINITY);
             for start in (zones - 1..end).rev() {
                 length += lengths[start];
                 speed = speeds[start].min(speed);
                 let time = before[start].0 + length / speed;
-                if time < row[end].0 {
-                    row[end] = (time, start);
+                if time < best.0 {
+                    *best = (time, start);
                 }
             }
         }
@@ -128,7 +128,7 @@ pub fn starts(bounds: &[f64], speeds: &[f64], deceleration: f64) -> Result<Vec<f
             given,
         ));
     }
-    if !(deceleration > 0.0) {
+    if deceleration.is_nan() || deceleration <= 0.0 {
         return Err(Failure::invalid(
             "deceleration",
             "be positive",

@@ -8,15 +8,15 @@ use proptest::prelude::*;
 
 use super::{WORK, close, limit, limits, path_of, planar, six, straight, time, tip};
 use crate::arm::{Arm, Options};
-use crate::program::contact::{Contact, Limit, Normal, Rule, SpeedTable};
-use crate::program::retime::{Limits, Reason, Status, retime};
+use crate::program::contact::{ContactNormal, MassRule, PathContact, PointLimit, SpeedTable};
+use crate::program::retime::{MotionLimits, Reason, Verification, retime};
 use crate::program::rows::Waypoints;
 use crate::program::{draws, spline};
 
 #[test]
 fn a_turn_at_a_speed_of_the_tip() {
     let ([l1, l2], bend): ([f64; 2], f64) = ([0.4, 0.3], 0.9);
-    let cap = Limit {
+    let cap = PointLimit {
         speed: 0.3,
         ..limit(0)
     };
@@ -33,7 +33,7 @@ fn a_turn_at_a_speed_of_the_tip() {
         .refined(&[4000])
         .unwrap();
     let (velocity, acceleration) = ([2.0; 2], [5.0; 2]);
-    let all = Limits {
+    let all = MotionLimits {
         contact: Some(&contact),
         ..limits(&velocity, &acceleration)
     };
@@ -46,14 +46,14 @@ fn a_turn_at_a_speed_of_the_tip() {
 #[test]
 fn allowed_speeds_are_those_of_the_energy_less_that_of_the_human() {
     let arm = planar([0.3, 0.2], [2.0, 1.0]);
-    let energy = Limit {
+    let energy = PointLimit {
         energy: 0.5,
         body_mass: 2.0,
         human_speed: 0.1,
         ..limit(0)
     };
     let table = SpeedTable::new(vec![0.5, 1.5, f64::INFINITY], vec![0.9, 0.4, 0.2]).unwrap();
-    let far = Limit {
+    let far = PointLimit {
         table: Some(0),
         range: [2.0, 3.0],
         ..limit(0)
@@ -65,7 +65,7 @@ fn allowed_speeds_are_those_of_the_energy_less_that_of_the_human() {
         vec![
             energy,
             far,
-            Limit {
+            PointLimit {
                 speed: 0.0,
                 ..limit(0)
             },
@@ -89,7 +89,7 @@ fn allowed_speeds_are_those_of_the_energy_less_that_of_the_human() {
         "clamped, 1 kg: the slower neighbor"
     );
     assert_eq!(found.lowest, [0.0, 0.0, f64::INFINITY]);
-    assert_eq!(found.governs, [2, 2, -1]);
+    assert_eq!(found.governs, [Some(2), Some(2), None]);
 }
 
 #[test]
@@ -121,7 +121,7 @@ fn a_locked_joint_may_not_move() {
         vec![],
     );
     let (velocity, acceleration) = ([1.0; 2], [1.0; 2]);
-    let all = Limits {
+    let all = MotionLimits {
         contact: Some(&contact),
         ..limits(&velocity, &acceleration)
     };
@@ -148,6 +148,30 @@ fn a_locked_joint_may_not_move() {
     );
 }
 
+#[test]
+fn steps_of_tables_on_long_intervals_are_kept() {
+    let values: Vec<f64> = (0..24)
+        .map(|index| 1.5 * (1.3 * f64::from(index)).sin())
+        .collect();
+    let masses: Vec<f64> = (0..40).map(|index| 0.1 * 1.3_f64.powi(index)).collect();
+    let speeds = masses.iter().map(|mass| mass.powf(-0.5)).collect();
+    let steps = SpeedTable::new(masses, speeds).unwrap();
+    let row = PointLimit {
+        table: Some(0),
+        ..limit(0)
+    };
+    let contact = tip(six(), "l6", [0.0, 0.0, 0.2], vec![row], vec![steps]);
+    let (velocity, acceleration) = ([2.0; 6], [5.0; 6]);
+    let all = MotionLimits {
+        contact: Some(&contact),
+        ..limits(&velocity, &acceleration)
+    };
+    for parts in 2..12 {
+        let found = retime(&path_of(&values, 6, parts), &all, WORK).unwrap();
+        assert_eq!(found.status, Verification::Verified, "{parts}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
@@ -163,18 +187,18 @@ proptest! {
             (arm.link("l3").unwrap(), Vector3::new(0.1, 0.0, 0.0)),
         ];
         let rows = vec![
-            Limit { energy, ..limit(0) },
-            Limit { energy: 0.5 * energy, body_mass: 1.5, human_speed: 0.01, ..limit(1) },
-            Limit { speed: 0.25, ..limit(0) },
+            PointLimit { energy, ..limit(0) },
+            PointLimit { energy: 0.5 * energy, body_mass: 1.5, human_speed: 0.01, ..limit(1) },
+            PointLimit { speed: 0.25, ..limit(0) },
         ];
-        let normal = if worst { Normal::Worst } else { Normal::Motion };
-        let contact = Contact::new(arm, points, rows, vec![], (Rule::Larger, normal, 3.0)).unwrap();
+        let normal = if worst { ContactNormal::Worst } else { ContactNormal::Motion };
+        let contact = PathContact::new(arm, points, rows, vec![], (MassRule::Larger, normal, 3.0)).unwrap();
         let path = path_of(&values, 6, 30);
         let (velocity, acceleration) = ([2.0; 6], [5.0; 6]);
         let without = limits(&velocity, &acceleration);
-        let with = Limits { contact: Some(&contact), ..without };
+        let with = MotionLimits { contact: Some(&contact), ..without };
         let found = retime(&path, &with, WORK).unwrap();
-        prop_assert_eq!(found.status, Status::Verified);
+        prop_assert_eq!(found.status, Verification::Verified);
         prop_assert!(found.shares.iter().all(|shares| shares[2] <= 1.0 + 1e-6));
         prop_assert!(time(&found) >= time(&retime(&path, &without, WORK).unwrap()) * (1.0 - 1e-9));
         let threads = retime(&path, &with, Work { threads: Some(2), ..WORK }).unwrap();
@@ -189,7 +213,9 @@ proptest! {
                 piece.rates(share * piece.length, &mut rates);
                 let square = found.squares[index] * (1.0 - share) + found.squares[index + 1] * share;
                 let speed = square.sqrt();
-                rates.iter_mut().for_each(|rate| *rate *= speed);
+                for rate in &mut rates {
+                    *rate *= speed;
+                }
                 let waypoints = Waypoints { joints: &joints, rates: &rates, places: &[0.5], check_limits: false };
                 let row = contact.allowed(&waypoints, false, WORK).unwrap();
                 for (speed, lowest) in row.speed.iter().zip(&row.lowest) {

@@ -8,10 +8,10 @@ mod zones;
 use nalgebra::Vector3;
 use numeric::parallel::Work;
 
-use super::contact::{Contact, Limit, Normal, Rule, SpeedTable};
+use super::contact::{ContactNormal, MassRule, PathContact, PointLimit, SpeedTable};
 use super::masses::PointMotion;
-use super::path::Path;
-use super::retime::{Limits, Retimed, Status};
+use super::path::JointPath;
+use super::retime::{MotionLimits, Retimed, Verification};
 use super::spline;
 use crate::arm::pose::Pose;
 use crate::arm::{Arm, Options};
@@ -22,12 +22,12 @@ const WORK: Work<'static> = Work {
     progress: &|_| (),
 };
 
-/// A chain of joints: axis, offset of the joint, mass and center of the link behind it.
-fn chain(parts: &[(&str, [f64; 3], f64, [f64; 3])], inertia: f64) -> Arm {
-    let part = |(index, (axis, offset, mass, center)): (
-        usize,
-        &(&str, [f64; 3], f64, [f64; 3]),
-    )| {
+/// A joint and the link behind it: axis, offset of the joint, mass and center of the link.
+type ChainPart<'a> = (&'a str, [f64; 3], f64, [f64; 3]);
+
+/// A chain of joints.
+fn chain(parts: &[ChainPart<'_>], inertia: f64) -> Arm {
+    let part = |(index, (axis, offset, mass, center)): (usize, &ChainPart<'_>)| {
         let (next, [x, y, z], [a, b, c]) = (index + 1, offset, center);
         format!(
             "<link name=\"l{next}\"><inertial><origin xyz=\"{a} {b} {c}\"/><mass value=\"{mass}\"/><inertia \
@@ -86,7 +86,7 @@ fn motion<const N: usize>(
 }
 
 /// A straight line of the joints over `0..=1`.
-fn straight(moves: &[f64], parts: usize) -> Path {
+fn straight(moves: &[f64], parts: usize) -> JointPath {
     let values: Vec<f64> = [0.0; 8][..moves.len()]
         .iter()
         .chain(moves)
@@ -96,8 +96,8 @@ fn straight(moves: &[f64], parts: usize) -> Path {
     path.refined(&[parts]).unwrap()
 }
 
-fn limits<'a>(velocity: &'a [f64], acceleration: &'a [f64]) -> Limits<'a> {
-    Limits {
+fn limits<'a>(velocity: &'a [f64], acceleration: &'a [f64]) -> MotionLimits<'a> {
+    MotionLimits {
         velocity,
         acceleration,
         stops: &[],
@@ -114,11 +114,11 @@ fn time(found: &Retimed) -> f64 {
 fn close(found: &Retimed, expected: f64) {
     let ratio = time(found) / expected;
     assert!((1.0 - 1e-9..1.002).contains(&ratio), "{ratio}");
-    assert_eq!(found.status, Status::Verified);
+    assert_eq!(found.status, Verification::Verified);
 }
 
-fn limit(point: usize) -> Limit {
-    Limit {
+fn limit(point: usize) -> PointLimit {
+    PointLimit {
         point,
         energy: f64::INFINITY,
         body_mass: f64::INFINITY,
@@ -129,19 +129,25 @@ fn limit(point: usize) -> Limit {
     }
 }
 
-fn tip(arm: Arm, link: &str, point: [f64; 3], all: Vec<Limit>, tables: Vec<SpeedTable>) -> Contact {
+fn tip(
+    arm: Arm,
+    link: &str,
+    point: [f64; 3],
+    all: Vec<PointLimit>,
+    tables: Vec<SpeedTable>,
+) -> PathContact {
     let points = vec![(arm.link(link).unwrap(), Vector3::from(point))];
-    Contact::new(
+    PathContact::new(
         arm,
         points,
         all,
         tables,
-        (Rule::Directional, Normal::Motion, 10.0),
+        (MassRule::Directional, ContactNormal::Motion, 10.0),
     )
     .unwrap()
 }
 
-fn path_of(values: &[f64], joints: usize, parts: usize) -> Path {
+fn path_of(values: &[f64], joints: usize, parts: usize) -> JointPath {
     let count = values.len() / joints;
     let knots: Vec<f64> = (0..count)
         .map(|knot| knot as f64 / (count - 1) as f64)

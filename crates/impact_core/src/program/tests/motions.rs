@@ -5,8 +5,8 @@ use numeric::parallel::Work;
 use proptest::prelude::*;
 
 use super::{WORK, close, limits, path_of, straight, time};
-use crate::program::path::Path;
-use crate::program::retime::{Limits, Reason, Retimed, Status, retime};
+use crate::program::path::JointPath;
+use crate::program::retime::{MotionLimits, Reason, Retimed, Verification, retime};
 use crate::program::spline;
 
 #[test]
@@ -45,7 +45,7 @@ fn a_slow_zone_is_entered_and_left_at_its_speed() {
         }
     };
     let speeds: Vec<f64> = (0..4000).map(zone).collect();
-    let slow = Limits {
+    let slow = MotionLimits {
         path_speed: Some(&speeds),
         ..limits(&[0.5], &[2.0])
     };
@@ -58,14 +58,14 @@ fn a_slow_zone_is_entered_and_left_at_its_speed() {
         .collect();
     let found = retime(
         &path,
-        &Limits {
+        &MotionLimits {
             path_speed: Some(&stands),
             ..slow
         },
         WORK,
     )
     .unwrap();
-    assert_eq!(found.status, Status::Standstill);
+    assert_eq!(found.status, Verification::Standstill);
     assert_eq!(time(&found), f64::INFINITY);
 }
 
@@ -73,7 +73,7 @@ fn a_slow_zone_is_entered_and_left_at_its_speed() {
 fn a_corner_is_refused_without_a_stop() {
     let row = |from: [f64; 2], by: [f64; 2]| [from, by, [0.0; 2], [0.0; 2]].concat();
     let coefficients = [row([0.0; 2], [1.0, 0.0]), row([1.0, 0.0], [0.0, 1.0])].concat();
-    let path = Path::new(vec![0.0, 1.0, 1.6], coefficients, 2).unwrap();
+    let path = JointPath::new(vec![0.0, 1.0, 1.6], coefficients, 2).unwrap();
     let path = path.refined(&[1000, 600]).unwrap();
     let (velocity, acceleration) = ([1.0; 2], [2.0; 2]);
     let open = limits(&velocity, &acceleration);
@@ -86,7 +86,7 @@ fn a_corner_is_refused_without_a_stop() {
     close(
         &retime(
             &path,
-            &Limits {
+            &MotionLimits {
                 stops: &[1000],
                 ..open
             },
@@ -96,7 +96,7 @@ fn a_corner_is_refused_without_a_stop() {
         2.6,
     );
     for stops in [&[0][..], &[1], &[1000, 1001], &[1599], &[1600]] {
-        let refused = retime(&path, &Limits { stops, ..open }, WORK).unwrap_err();
+        let refused = retime(&path, &MotionLimits { stops, ..open }, WORK).unwrap_err();
         assert!(
             refused.to_string().contains("stops must"),
             "{stops:?}: {refused}"
@@ -138,7 +138,7 @@ fn splines_reproduce_cubics() {
 }
 
 /// The path backwards.
-fn reversed(path: &Path) -> Path {
+fn reversed(path: &JointPath) -> JointPath {
     let total = path.nodes()[path.intervals()];
     let nodes = path.nodes().iter().rev().map(|node| total - node).collect();
     let mut coefficients = Vec::new();
@@ -158,11 +158,11 @@ fn reversed(path: &Path) -> Path {
             coefficients.extend((0..path.joints()).map(|joint| of(joint)[power]));
         }
     }
-    Path::new(nodes, coefficients, path.joints()).unwrap()
+    JointPath::new(nodes, coefficients, path.joints()).unwrap()
 }
 
 /// Largest shares of velocity and acceleration at places between the nodes, in the time of the motion.
-fn measured(path: &Path, found: &Retimed, velocity: &[f64], acceleration: &[f64]) -> [f64; 2] {
+fn measured(path: &JointPath, found: &Retimed, velocity: &[f64], acceleration: &[f64]) -> [f64; 2] {
     let mut most = [0.0_f64; 2];
     for index in 0..path.intervals() {
         let piece = path.piece(index);
@@ -202,7 +202,7 @@ proptest! {
         let velocity = [2.0, 2.0, 2.5, 3.0, 3.0, 3.0];
         let path = path_of(&values, 6, parts);
         let found = retime(&path, &limits(&velocity, &acceleration), WORK).unwrap();
-        prop_assert_eq!(found.status, Status::Verified);
+        prop_assert_eq!(found.status, Verification::Verified);
         let most = measured(&path, &found, &velocity, &acceleration);
         prop_assert!(most.iter().all(|share| *share <= 1.0 + 1e-6), "{:?}", most);
         prop_assert!(found.shares.iter().flatten().all(|share| *share <= 1.0 + 1e-6));
