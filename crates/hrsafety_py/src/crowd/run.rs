@@ -85,17 +85,20 @@ impl WorldRun {
 
     /// Record of the parts around the law of a robot, if there are any.
     fn trace(&self, robot: usize) -> PyResult<Option<Told>> {
-        Ok(robot_of(&self.0.idle()?, robot)?.trace().as_ref().map(told))
+        let world = self.0.idle()?;
+        Ok(robot_of(&world, robot)?.trace().as_ref().map(told))
     }
 
     /// Number of the person whom each obstacle that a robot sees is, if it is one; none where sensors tell of them.
     fn people(&self, robot: usize) -> PyResult<Vec<Option<usize>>> {
-        Ok(robot_of(&self.0.idle()?, robot)?.people_seen())
+        let world = self.0.idle()?;
+        Ok(robot_of(&world, robot)?.people_seen())
     }
 
     /// Plan that the shield of a robot verified last, if there is one.
     fn examined(&self, robot: usize) -> PyResult<Option<Verified>> {
-        Ok(robot_of(&self.0.idle()?, robot)?.examined().map(verified))
+        let world = self.0.idle()?;
+        Ok(robot_of(&world, robot)?.examined().map(verified))
     }
 
     /// Fields of what was recorded so far.
