@@ -82,7 +82,8 @@ impl Footprint {
         depth: f64,
     ) -> PyResult<Column<'py>> {
         each(py, &points, |[x, y]: &[f64; 2]| {
-            self.0.from_room_ahead(Vector2::new(*x, *y), twist, depth)
+            self.0
+                .distance_from_room_ahead(Vector2::new(*x, *y), twist, depth)
         })
     }
 }

@@ -117,22 +117,21 @@ impl Samples {
         bodies: &[Body<R>],
     ) -> (Measured, &[BodyState]) {
         let count = scenario.obstacles.len();
-        let errors = match self.errors.get(index) {
-            Some(errors) => *errors,
-            None => {
-                let obstacles = scenario.obstacles.iter().zip(bodies);
-                self.actual.clear();
-                self.actual.extend(obstacles.map(|(placed, body)| Body {
-                    shape: placed.obstacle.shape,
-                    regions: placed.regions,
-                    state: body.state.of_lane(lane),
-                }));
-                self.seen.clone_from(&self.actual);
-                let errors = self.scene.measure(time, &self.actual, &mut self.seen);
-                self.errors.push(errors);
-                self.states.extend(self.seen.iter().map(|body| body.state));
-                errors
-            }
+        let errors = if let Some(errors) = self.errors.get(index) {
+            *errors
+        } else {
+            let obstacles = scenario.obstacles.iter().zip(bodies);
+            self.actual.clear();
+            self.actual.extend(obstacles.map(|(placed, body)| Body {
+                shape: placed.obstacle.shape,
+                regions: placed.regions,
+                state: body.state.of_lane(lane),
+            }));
+            self.seen.clone_from(&self.actual);
+            let errors = self.scene.measure(time, &self.actual, &mut self.seen);
+            self.errors.push(errors);
+            self.states.extend(self.seen.iter().map(|body| body.state));
+            errors
         };
         let start = index * count;
         (errors, &self.states[start..start + count])

@@ -11,11 +11,11 @@ impl Footprint {
     /// Distance in m of a point from the room ahead of the outline: all places at most `depth` in m outward of a point of
     /// the outline that moves outward, and from there inward to the middle; infinite at rest.
     #[must_use]
-    pub fn from_room_ahead(&self, point: Vector2<f64>, twist: Twist, depth: f64) -> f64 {
+    pub fn distance_from_room_ahead(&self, point: Vector2<f64>, twist: Twist, depth: f64) -> f64 {
         let strips = self
             .sides
             .iter()
-            .map(|side| side.from_strip(point, twist, depth));
+            .map(|side| side.distance_from_strip(point, twist, depth));
         let count = self.sides.len();
         let sectors = (0..count).map(|index| {
             let normals = [
@@ -40,7 +40,7 @@ fn velocity(point: Vector2<f64>, [ahead, turn]: Twist) -> Vector2<f64> {
 
 impl Side {
     /// Distance of a point in m from the strip ahead of the part of the side that moves outward.
-    fn from_strip(&self, point: Vector2<f64>, twist: Twist, depth: f64) -> f64 {
+    fn distance_from_strip(&self, point: Vector2<f64>, twist: Twist, depth: f64) -> f64 {
         let outward =
             |share: f64| velocity(self.start + self.along * share, twist).dot(&self.normal);
         let (first, last) = (outward(0.0), outward(self.length));

@@ -122,10 +122,7 @@ impl Footprint {
     /// Radius of the circle around the origin that holds the outline, in m.
     #[must_use]
     pub fn outer_radius(&self) -> f64 {
-        self.corners
-            .iter()
-            .map(|corner| corner.norm())
-            .fold(0.0, f64::max)
+        self.corners.iter().map(Vector2::norm).fold(0.0, f64::max)
     }
 
     /// Radius of the circle around the origin that the outline holds, in m.

@@ -78,7 +78,7 @@ impl Footprint {
     pub fn swept_point(&self, point: Vector2<f64>, arc: Arc) -> f64 {
         if arc.angle == 0.0 {
             let way = [point, point - Vector2::new(arc.distance, 0.0)];
-            return self.from_still_segment(way);
+            return self.distance_from_segment(way);
         }
         // Seen from the body the point moves back on a circle around the center of the turn.
         let center = Vector2::new(0.0, arc.distance / arc.angle);
@@ -114,7 +114,7 @@ impl Footprint {
     /// outline reaches it.
     #[must_use]
     pub fn swept_segment(&self, segment: [Vector2<f64>; 2], arc: Arc) -> f64 {
-        let mut least = self.from_still_segment(segment);
+        let mut least = self.distance_from_segment(segment);
         for end in segment {
             least = least.min(self.swept_point(end, arc));
         }
@@ -135,7 +135,7 @@ impl Footprint {
     }
 
     /// Distance of a segment from the outline in m, zero if they meet.
-    fn from_still_segment(&self, segment: [Vector2<f64>; 2]) -> f64 {
+    fn distance_from_segment(&self, segment: [Vector2<f64>; 2]) -> f64 {
         let ends = segment.map(|end| self.distance(end));
         let sides = self.sides.iter().map(|side| {
             let end = side.start + side.along * side.length;

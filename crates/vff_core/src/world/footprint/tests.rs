@@ -37,7 +37,7 @@ fn swept_distances_are_those_of_the_specification() {
         ([0.5, 0.4, 1.0, 0.0], 0.185),
         ([0.6, 0.6, 1.2, 1.6], 0.0),
         ([0.1, 0.35, 0.0, 1.0], 0.031_227_791),
-        ([0.35, 0.1, 0.0, 3.141_592_65], 0.031_227_791),
+        ([0.35, 0.1, 0.0, std::f64::consts::PI], 0.031_227_791),
         ([0.9, 0.8, 1.0, 2.0], 0.189_907_310),
         ([0.2, -0.4, 0.3, 2.5], 0.136_729_775),
     ] {
@@ -64,7 +64,7 @@ fn rooms_ahead_are_those_of_the_specification() {
         ([-0.3, -0.6], [0.5, 2.0], 0.087_738_314),
         ([0.6, 0.3], [0.0, 1.0], 0.159_799_088),
     ] {
-        let found = outline.from_room_ahead(Vector2::new(x, y), twist, 0.3);
+        let found = outline.distance_from_room_ahead(Vector2::new(x, y), twist, 0.3);
         assert!((found - right).abs() < 1e-8, "{found} {right}");
     }
 }
@@ -136,7 +136,7 @@ proptest! {
         let moves = Vector2::new(ahead - turn * place.y, turn * place.x).dot(&normal);
         let point = place + normal * (reach * 0.4);
         if moves > 1e-9 {
-            prop_assert!(outline.from_room_ahead(point, [ahead, turn], 0.4) <= 1e-9);
+            prop_assert!(outline.distance_from_room_ahead(point, [ahead, turn], 0.4) <= 1e-9);
         }
     }
 
