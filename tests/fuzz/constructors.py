@@ -123,6 +123,7 @@ REQUIRED: dict[Callable[..., Any], Right] = {
     nav.laws.PythonLaw: {"function": _idle},
     nav.laws.SafeNavigation: {"law": nav.VirtualForceField()},
     nav.metrics.Episode: {"position": _SQUARE, "step": 0.1, "goal": (1.0, 0.0), "robot_radius": 0.2},
+    nav.robots.Footprint: {"corners": [(0.3, 0.2), (-0.3, 0.2), (-0.3, -0.2), (0.3, -0.2)]},
     nav.robots.OpenLoopTest: {"command": 0.3, "time": _SAMPLES, "angle": _SAMPLES**2},
     nav.robots.WheelDrive: {
         "inertia": 0.06,
