@@ -7,17 +7,19 @@ from pathlib import Path
 
 import pytest
 
-CORE = Path(__file__).resolve().parents[3] / "crates" / "vff_core" / "src"
-LOOP = "run/episode.rs"
+CRATES = Path(__file__).resolve().parents[3] / "crates"
+PARTS_OF_THE_CORE = ("navigation_world", "navigation_laws", "navigation_runs")
+ROBOTS, RUN, CROWD = "navigation_world/src/robots/", "navigation_runs/src/run/", "navigation_runs/src/crowd/"
+LOOP = f"{RUN}episode.rs"
 # The fast path of ideal point masses, side by side with a scene and gains each, or by themselves.
-KERNELS = {"run/lanes/kernel.rs"}
+KERNELS = {f"{RUN}lanes/kernel.rs"}
 # No episode: a reference that is given over time is tracked, or a wheel turns on a bench; nothing is sensed, no law
 # decides and nothing ends them.
-WITHOUT_EPISODE = {"robots/differential/track.rs", "robots/wheels/open_loop.rs"}
+WITHOUT_EPISODE = {f"{ROBOTS}differential/track.rs", f"{ROBOTS}wheels/open_loop.rs"}
 # Periods of the wheels' own controllers within a motion step.
-WITHIN_A_STEP = {"robots/drives/driven.rs"}
+WITHIN_A_STEP = {f"{ROBOTS}drives/driven.rs"}
 # Steps of worlds, each by the loop, between two commands of a learner.
-BETWEEN_COMMANDS = {"crowd/environments/block.rs"}
+BETWEEN_COMMANDS = {f"{CROWD}environments/block.rs"}
 # A loop over steps or instants: counted, or as long as something runs.
 TIME_LOOP = re.compile(
     r"\bfor (?:step|time|instant|sample|period)s? in \S*\.\."
@@ -34,7 +36,10 @@ def code(path: Path) -> str:
 
 
 SOURCES = {
-    path.relative_to(CORE).as_posix(): code(path) for path in sorted(CORE.rglob("*.rs")) if path.name != "tests.rs"
+    path.relative_to(CRATES).as_posix(): code(path)
+    for part in PARTS_OF_THE_CORE
+    for path in sorted((CRATES / part / "src").rglob("*.rs"))
+    if path.name != "tests.rs"
 }
 
 
@@ -52,8 +57,8 @@ def test_the_search_finds_a_time_loop() -> None:
 
 def test_time_is_stepped_in_one_place() -> None:
     # A crowd is an episode of the loop; its metrics look back on what is over.
-    stepped = {name: text for name, text in SOURCES.items() if name.startswith(("run/", "robots/", "crowd/"))}
-    found = {name for name, text in stepped.items() if TIME_LOOP.search(text) and "crowd/metrics" not in name}
+    stepped = {name: text for name, text in SOURCES.items() if name.startswith((RUN, ROBOTS, CROWD))}
+    found = {name for name, text in stepped.items() if TIME_LOOP.search(text) and f"{CROWD}metrics" not in name}
     assert found == {LOOP} | KERNELS | WITHOUT_EPISODE | WITHIN_A_STEP | BETWEEN_COMMANDS
 
 
@@ -71,6 +76,6 @@ def test_every_robot_is_stepped_by_the_loop() -> None:
 @pytest.mark.parametrize("name", sorted(name for name, text in SOURCES.items() if re.search(r"\.step\(\)", text)))
 def test_drives_step_within_a_motion_step_only(name: str) -> None:
     text = SOURCES[name]
-    if name.startswith("run/"):
+    if name.startswith(RUN):
         assert PARTS.search(text)
         assert len(re.findall(r"\.step\(\)", text)) == 1

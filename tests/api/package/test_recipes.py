@@ -113,7 +113,7 @@ def lists_of(things: Iterable[set[str]], files: dict[str, set[str]]) -> set[str]
 def rust_types() -> dict[str, str]:
     """Return by its name the Rust type of everything that is made by name."""
     pattern = re.compile(r"^impl Named for (\w+) \{\n    const NAME: &'static str = \"(\w+)\";", re.MULTILINE)
-    texts = [path.read_text(encoding="utf-8") for path in (REPOSITORY / "crates" / "vff_core" / "src").rglob("*.rs")]
+    texts = [path.read_text(encoding="utf-8") for path in (REPOSITORY / "crates").glob("*/src/**/*.rs")]
     return {name: kind for text in texts for kind, name in pattern.findall(text)}
 
 
@@ -140,7 +140,7 @@ def test_the_files_of_a_recipe_alone_have_all_laws() -> None:
 
 def test_the_files_of_a_recipe_alone_have_a_law_that_no_page_shows() -> None:
     law = nav.laws.VirtualImpedanceLaw
-    own = ("crates/vff_core/src/laws/impedance/", "python/hrsafety/navigation/laws/impedance.py")
+    own = ("crates/navigation_laws/src/impedance/", "python/hrsafety/navigation/laws/impedance.py")
     found = {path for path, words in product().items() if words & names_of(law) and not path.startswith(own)}
     assert found <= files_of("A navigation law")
 

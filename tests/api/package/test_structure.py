@@ -28,6 +28,13 @@ from hrsafety import navigation as nav
 REPOSITORY = Path(__file__).resolve().parents[3]
 PACKAGE = REPOSITORY / "python" / "hrsafety"
 CORES = ("vff_core", "impact_core")
+# Crates that `vff_core` gathers, each with those of them that it is built on.
+PARTS_OF_A_CORE: dict[str, set[str]] = {
+    "box_search": set(),
+    "navigation_world": set(),
+    "navigation_laws": {"navigation_world"},
+    "navigation_runs": {"box_search", "navigation_laws", "navigation_world"},
+}
 PYTHON_CRATES = {"pyo3", "numpy", "pyo3-ffi"}
 NATIVE = "hrsafety._hrsafety"
 NATIVE_USERS = ("navigation", "impact", "reactive", "arms", "contact", "standards", "program", "gym")
@@ -99,7 +106,12 @@ def test_what_the_cores_share_knows_no_core() -> None:
     assert run_time_dependencies("numeric").isdisjoint(PYTHON_CRATES | set(CORES) | {"hrsafety_py"})
 
 
-@pytest.mark.parametrize("crate", CORES)
+@pytest.mark.parametrize("crate", PARTS_OF_A_CORE)
+def test_part_of_a_core_knows_those_below_alone(crate: str) -> None:
+    assert run_time_dependencies(crate) & (set(PARTS_OF_A_CORE) | {*CORES}) == PARTS_OF_A_CORE[crate]
+
+
+@pytest.mark.parametrize("crate", [*CORES, *PARTS_OF_A_CORE])
 def test_core_is_free_of_python_in_its_tests_too(crate: str) -> None:
     package = next(entry for entry in cargo_metadata()["packages"] if entry["name"] == crate)
     assert {entry["name"] for entry in package["dependencies"]}.isdisjoint(PYTHON_CRATES)
@@ -109,7 +121,7 @@ def test_binding_crate_is_the_one_that_knows_python() -> None:
     assert {"pyo3", "vff_core"} <= run_time_dependencies("hrsafety_py")
 
 
-@pytest.mark.parametrize("crate", [*CORES, "numeric"])
+@pytest.mark.parametrize("crate", [*CORES, *PARTS_OF_A_CORE, "numeric"])
 def test_core_forbids_unsafe_code(crate: str) -> None:
     text = (REPOSITORY / "crates" / crate / "src" / "lib.rs").read_text(encoding="utf-8")
     assert re.search(r"^#!\[forbid\(unsafe_code\)\]", text, re.MULTILINE)

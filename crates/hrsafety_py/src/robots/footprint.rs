@@ -74,7 +74,7 @@ impl Footprint {
     }
 
     /// Distances of points as rows (x, y) from the room ahead of the part that moves outward.
-    fn from_room_ahead<'py>(
+    fn room_ahead_distances<'py>(
         &self,
         py: Python<'py>,
         points: Rows<'_>,

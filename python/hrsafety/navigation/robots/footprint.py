@@ -157,7 +157,7 @@ class Footprint(Parameters):
             Distances in m, 0 inside, infinite for a robot at rest.
         """
         twist = (finite("velocity", velocity), finite("turn_rate", turn_rate))
-        return self._native.from_room_ahead(_finite(points("places", places)), twist, not_negative("depth", depth))
+        return self._native.room_ahead_distances(_finite(points("places", places)), twist, not_negative("depth", depth))
 
 
 def _finite(places: Array) -> Array:

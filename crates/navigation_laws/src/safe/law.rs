@@ -1,0 +1,490 @@
+//! Safe navigation at work on one robot.
+
+use crate::guide::{Detour, Guidance, LocalGoal, Takeover};
+use crate::safe::settings::SafeNavigation;
+use crate::safe::surroundings::Surroundings;
+use crate::shield::{
+    Course, Decision, Deviation, Guard, ShieldLimits, Status, TwistGuard, TwistState, TwistView,
+    Verifier, View,
+};
+use crate::trace::{Examined, Trace};
+use crate::yielding::{Outlook, Yielder};
+use crate::{Command, Law, Situation};
+use navigation_world::robots::differential::{DifferentialLimits, Twist};
+use navigation_world::robots::drives::velocity_of;
+use navigation_world::world::geometry::RobotState;
+use navigation_world::world::scenario::Scenario;
+use numeric::error::Result;
+use numeric::lanes::Vector2;
+
+/// A velocity beyond a limit by less than this share of it is within: the robot shortens it itself.
+const ROUNDING: f64 = 1e-9;
+
+/// Parts of a plan between the instants that are told.
+const PARTS_OF_PLAN: u32 = 24;
+
+/// A law with its parts.
+pub struct SafeLaw {
+    law: Box<dyn Law<f64>>,
+    guard: Option<Guard>,
+    /// The shield of a robot with two wheels.
+    twist_guard: Option<TwistGuard>,
+    /// The plan that the robot executes: it was verified, or nothing was and it brakes.
+    course: Option<Course>,
+    yielder: Option<Yielder>,
+    guidance: Option<Guidance>,
+    /// When a guide without a map leads around who stands.
+    detour: Option<Detour>,
+    /// When the robot heads for its (local) goal by itself.
+    takeover: Option<Takeover>,
+    limits: ShieldLimits,
+    /// Largest speed of the law in m/s.
+    preferred: f64,
+    mass: f64,
+    goal: Vector2<f64>,
+    around: Surroundings,
+    /// State of the robot as measured in the last control period.
+    measured: RobotState<f64>,
+    trace: Trace,
+}
+
+/// The robot as its plan has it at the time, from which every plan starts, or as it was measured where there is none
+/// or a measurement refutes it.
+#[derive(Clone, Copy, Debug)]
+struct Present {
+    robot: RobotState<f64>,
+    turn_rate: f64,
+    /// Time of the plan in s; `None` where it was measured.
+    since: Option<f64>,
+    off: Option<Deviation>,
+}
+
+/// Where the robot is to go now.
+#[derive(Clone, Copy, Debug)]
+struct Destination {
+    /// The goal or a local one; `None` where the plan leads nowhere.
+    local: Option<LocalGoal>,
+    taken_over: bool,
+}
+
+impl SafeLaw {
+    /// The law at work in a scenario; `record`: the Lyapunov function is wanted too.
+    pub(super) fn new(
+        family: &SafeNavigation,
+        gains: &[f64],
+        scenario: &Scenario,
+        record: bool,
+    ) -> Result<Self> {
+        let inner = family.inner(scenario)?;
+        let robot = &scenario.robot;
+        let wheels = scenario.differential.as_ref();
+        let limits = ShieldLimits {
+            radius: robot.radius,
+            max_speed: wheels.map_or(robot.max_speed, |wheels| wheels.max_speed),
+            max_acceleration: robot.guaranteed_acceleration(),
+            period: scenario.rules.control_period,
+        };
+        let guidance = family.guidance(scenario)?;
+        let mapped = guidance.is_some() && family.map.is_some();
+        let rule = family.rule.rule(mapped, inner.robot.max_speed);
+        let zero = Vector2::zeros();
+        let twist_guard = family.shield.zip(wheels).map(|(shield, wheels)| {
+            TwistGuard::new(shield, DifferentialLimits::from(wheels), &limits)
+        });
+        Ok(Self {
+            twist_guard: twist_guard.transpose()?,
+            course: None,
+            guard: family
+                .shield
+                .map(|shield| Guard::new(shield, limits))
+                .transpose()?,
+            yielder: family
+                .yielding
+                .map(|yielding| Yielder::new(yielding, limits))
+                .transpose()?,
+            takeover: family.takeover.then(|| Takeover::new(rule)),
+            detour: (guidance.is_some() && !mapped).then(Detour::default),
+            guidance,
+            limits,
+            preferred: inner.robot.max_speed,
+            mass: robot.mass,
+            goal: scenario.goal.into(),
+            around: Surroundings::new(family, &inner),
+            law: family.law.at_work(gains, &inner, record)?,
+            measured: RobotState {
+                position: scenario.start.into(),
+                velocity: zero,
+            },
+            trace: Trace {
+                wanted: zero,
+                command: zero,
+                taken_over: false,
+                status: Status::Kept,
+                course: None,
+                off_plan: None,
+                shield: family.shield,
+            },
+        })
+    }
+}
+
+impl Law<f64> for SafeLaw {
+    fn thinks(&self) -> bool {
+        true
+    }
+
+    fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
+        self.set_period(situation.interval);
+        self.around
+            .look(situation, self.guard.as_ref(), self.yielder.as_ref());
+        let heading = self.head(situation);
+        let (robot, now) = (situation.robot, self.now(situation));
+        self.measured = robot;
+        if let (Some(local), true) = (heading.local, self.guidance.is_some()) {
+            self.law.aim(local.for_law(robot.position).into());
+        }
+        let command = self.law.command(&Situation {
+            bodies: &self.around.bodies,
+            ..*situation
+        });
+        let asked = robot.velocity + command.force * (situation.interval / self.mass);
+        let mut wanted = slowed(asked, self.preferred);
+        match heading.local {
+            None => wanted = Vector2::zeros(),
+            Some(local) if heading.taken_over => {
+                let (most, acceleration) = (self.preferred, self.limits.max_acceleration);
+                let period = situation.interval;
+                wanted = local.velocity_from(robot.position, most, acceleration, period);
+            }
+            Some(_) => {}
+        }
+        let to_goal = heading.local.map_or(self.goal, |local| local.point) - robot.position;
+        let decision = match self.twist_guard {
+            Some(guard) => self.turn(&guard, situation, &now, wanted, to_goal),
+            None => self.decide(situation.time, &now, wanted, to_goal),
+        };
+        self.trace = Trace {
+            wanted,
+            command: decision.velocity,
+            taken_over: heading.taken_over,
+            status: decision.status,
+            course: self.course,
+            off_plan: now.off,
+            ..self.trace
+        };
+        let turned = self.twist_guard.is_some();
+        let kept = decision.status == Status::Kept && wanted == asked && !turned;
+        if kept || self.lets_through(&heading) {
+            return command;
+        }
+        let change = decision.velocity - robot.velocity;
+        Command::plain(change * (self.mass / situation.interval))
+    }
+
+    /// Heads for another goal from now on; with a guide of its own it keeps to its plan.
+    fn aim(&mut self, goal: [f64; 2]) {
+        if self.guidance.is_none() {
+            self.goal = goal.into();
+            self.law.aim(goal);
+        }
+    }
+
+    fn trace(&self) -> Option<Trace> {
+        Some(self.trace)
+    }
+
+    fn examined(&self) -> Option<Examined> {
+        let guard = self.guard.filter(|_| self.twist_guard.is_none())?;
+        let (robot, command) = (self.measured, self.trace.command);
+        let plan = guard.plan(&robot, command);
+        let share = |part: u32| f64::from(part) / f64::from(PARTS_OF_PLAN);
+        let instants = (0..=PARTS_OF_PLAN).map(|part| plan.end() * share(part));
+        let time: Vec<f64> = instants.collect();
+        let view = View {
+            robot,
+            people: &self.around.people,
+            walls: self.around.walls(),
+        };
+        Some(Examined {
+            margin: guard.gap(&view, command),
+            position: time.iter().map(|at| plan.position(*at).into()).collect(),
+            reach: self.around.reaches(plan.end()),
+            time,
+        })
+    }
+}
+
+impl SafeLaw {
+    /// Whether no part has a say in what the law commands: the robot itself keeps to its limits, and does what it does
+    /// under the law alone.
+    fn lets_through(&self, heading: &Destination) -> bool {
+        let parts = self.guard.is_some() || self.yielder.is_some();
+        let law_heads = heading.local.is_some() && !heading.taken_over;
+        !parts && law_heads && self.preferred >= self.limits.max_speed
+    }
+
+    /// Where the force is not held, it acts for a motion step only.
+    fn set_period(&mut self, period: f64) {
+        self.limits.period = period;
+        if let Some(guard) = &mut self.guard {
+            guard.limits.period = period;
+        }
+        if let Some(guard) = &mut self.twist_guard {
+            guard.limits.period = period;
+        }
+        if let Some(yielder) = &mut self.yielder {
+            yielder.limits.period = period;
+        }
+    }
+
+    /// The (local) goal, and whether the robot heads for it by itself.
+    fn head(&mut self, situation: &Situation<'_, f64>) -> Destination {
+        let (time, position) = (situation.time, situation.robot.position);
+        let mut again = false;
+        if let Some(guidance) = &mut self.guidance {
+            let people = self.around.standing(situation.bodies);
+            again = guidance.observe(time, position, people);
+        }
+        let Some(guidance) = self.guidance.as_ref().filter(|_| self.detour.is_none()) else {
+            return self.head_without_map(time, position);
+        };
+        let found = guidance.local_goal(position);
+        let mut heading = Destination {
+            local: found.map(|(_, local)| local),
+            taken_over: false,
+        };
+        if let Some(takeover) = &mut self.takeover {
+            if again {
+                takeover.restart();
+            }
+            let cost = found.map(|(view, _)| view.cost);
+            if takeover.observe(time, cost) {
+                let plan = guidance.plan();
+                let sees = |point| plan.sees(position, point);
+                heading.taken_over = true;
+                heading.local = takeover.target(heading.local, sees);
+            }
+        }
+        heading
+    }
+
+    /// The goal itself; where the robot is stuck behind others who stand, the way around them.
+    fn head_without_map(&mut self, time: f64, position: Vector2<f64>) -> Destination {
+        let around = self
+            .detour
+            .as_mut()
+            .zip(self.guidance.as_ref())
+            .and_then(|(detour, guidance)| detour.observe(time, position, guidance));
+        let cost = (self.goal - position).norm();
+        let takeover = self.takeover.as_mut();
+        Destination {
+            local: around.or(Some(LocalGoal::goal(self.goal))),
+            taken_over: takeover.is_some_and(|takeover| takeover.observe(time, Some(cost))),
+        }
+    }
+
+    /// The velocity of yielding, if it is on and something is verified.
+    fn give_way(
+        &self,
+        robot: &RobotState<f64>,
+        wanted: Vector2<f64>,
+        to_goal: Vector2<f64>,
+        verified: impl FnMut(Vector2<f64>) -> bool,
+    ) -> Option<Vector2<f64>> {
+        let outlook = Outlook {
+            robot: *robot,
+            wanted,
+            to_goal: to_goal / to_goal.norm().max(f64::MIN_POSITIVE),
+            people: &self.around.passersby,
+            left_out: false,
+            walls: self.around.walls(),
+        };
+        self.yielder.as_ref()?.decide(&outlook, verified)
+    }
+
+    /// The robot at the time: where it was measured, with the velocity of its plan.
+    fn now(&self, situation: &Situation<'_, f64>) -> Present {
+        let measured = Present {
+            robot: situation.robot,
+            turn_rate: 0.0,
+            since: None,
+            off: None,
+        };
+        let Some((guard, course)) = self.guard.as_ref().zip(self.course) else {
+            return measured;
+        };
+        let since = course.since(situation.time);
+        if since < 0.0 {
+            return measured;
+        }
+        let turn_rate = course.twist(since).map_or(0.0, |twist| twist.turn_rate);
+        let off = guard.shield.refuted(&course, since, &situation.robot);
+        if off.is_some() {
+            return Present {
+                turn_rate,
+                off,
+                ..measured
+            };
+        }
+        Present {
+            robot: RobotState {
+                velocity: course.velocity(since),
+                ..situation.robot
+            },
+            turn_rate,
+            since: Some(since),
+            off,
+        }
+    }
+
+    /// Yielding, then the shield, for a robot with two wheels.
+    fn turn(
+        &mut self,
+        guard: &TwistGuard,
+        situation: &Situation<'_, f64>,
+        now: &Present,
+        wanted: Vector2<f64>,
+        to_goal: Vector2<f64>,
+    ) -> Decision {
+        let guard = if now.off.is_some() {
+            guard.doubled()
+        } else {
+            *guard
+        };
+        let (robot, heading) = (now.robot, situation.heading);
+        let planned = now.since.zip(self.course);
+        let (sin, cos) = heading.sin_cos();
+        let measured = Twist {
+            speed: robot.velocity.dot(&Vector2::new(cos, sin)),
+            turn_rate: now.turn_rate,
+        };
+        let state = TwistState {
+            position: robot.position,
+            heading,
+            twist: planned.map_or(measured, |(since, course)| {
+                course.twist(since).unwrap_or(measured)
+            }),
+        };
+        let view = TwistView {
+            robot: state,
+            people: &self.around.people,
+            walls: self.around.walls(),
+        };
+        let kept = self
+            .limits
+            .clipped(robot.velocity, self.limits.slowed(wanted));
+        // It drives backwards only to give way.
+        let twist = |velocity: Vector2<f64>| guard.toward(&state, velocity, velocity != kept);
+        let verified = |velocity| guard.verified(&view, twist(velocity));
+        let (mut twist, status) = match self.give_way(&robot, wanted, to_goal, verified) {
+            Some(velocity) if velocity == kept => (twist(velocity), Status::Kept),
+            Some(velocity) => (twist(velocity), Status::Changed),
+            None => guard.decide(
+                &view,
+                guard.toward(&state, self.limits.slowed(wanted), false),
+            ),
+        };
+        match planned {
+            Some((since, course)) if status == Status::Braking => {
+                // The plan runs on as it was verified.
+                twist = course.twist(since + course.period()).unwrap_or_default();
+            }
+            _ => {
+                let begun = situation.time;
+                self.course = Some(Course::of_twist(begun, &state, twist, &guard.limits));
+            }
+        }
+        Decision {
+            velocity: velocity_of(twist, heading, situation.interval),
+            status,
+        }
+    }
+
+    /// Yielding, then the shield.
+    fn decide(
+        &mut self,
+        time: f64,
+        now: &Present,
+        wanted: Vector2<f64>,
+        to_goal: Vector2<f64>,
+    ) -> Decision {
+        let robot = &now.robot;
+        let guard = self.guard.map(|guard| {
+            if now.off.is_some() {
+                guard.doubled()
+            } else {
+                guard
+            }
+        });
+        let mut decision = self.judged(guard.as_ref(), robot, wanted, to_goal);
+        if guard.is_none() {
+            return decision;
+        }
+        let planned = now.since.zip(self.course);
+        match planned {
+            Some((since, course)) if decision.status == Status::Braking => {
+                // The plan runs on as it was verified.
+                decision.velocity = course.rates(since + course.period());
+            }
+            _ => {
+                if now.off.is_some() && decision.status == Status::Braking {
+                    let rest = Vector2::zeros();
+                    decision.velocity = self.limits.clipped(robot.velocity, rest);
+                }
+                let command = decision.velocity;
+                self.course = Some(Course::of_velocity(time, robot, command, &self.limits));
+            }
+        }
+        decision
+    }
+
+    /// Command of yielding and shield for a wanted velocity.
+    fn judged(
+        &self,
+        guard: Option<&Guard>,
+        robot: &RobotState<f64>,
+        wanted: Vector2<f64>,
+        to_goal: Vector2<f64>,
+    ) -> Decision {
+        let walls = self.around.walls();
+        let view = View {
+            robot: *robot,
+            people: &self.around.people,
+            walls,
+        };
+        let kept = self
+            .limits
+            .clipped(robot.velocity, self.limits.slowed(wanted));
+        let verifier = guard.filter(|_| self.yielder.is_some());
+        let mut verifier = verifier.map(|guard| Verifier::new(guard, view));
+        let verified = |velocity| {
+            let verifier = verifier.as_mut();
+            verifier.is_none_or(|verifier| verifier.admits(velocity))
+        };
+        if let Some(velocity) = self.give_way(robot, wanted, to_goal, verified) {
+            let status = if velocity == kept {
+                Status::Kept
+            } else {
+                Status::Changed
+            };
+            return Decision { velocity, status };
+        }
+        match guard {
+            Some(guard) => guard.decide(&view, wanted),
+            None => Decision {
+                velocity: kept,
+                status: Status::Kept,
+            },
+        }
+    }
+}
+
+/// A velocity shortened to a largest speed.
+fn slowed(velocity: Vector2<f64>, most: f64) -> Vector2<f64> {
+    let speed = velocity.norm();
+    if speed > most * (1.0 + ROUNDING) {
+        velocity * (most / speed)
+    } else {
+        velocity
+    }
+}

@@ -1,0 +1,141 @@
+//! Parts of safe navigation, and the scenario that its law works in.
+
+use std::sync::Arc;
+
+use crate::LawFamily;
+use crate::guide::{Guidance, Guide, TakeoverOptions};
+use crate::safe::boundary::boundary_obstacle;
+use crate::safe::plans::Plans;
+use crate::shield::Shield;
+use crate::yielding::Yielding;
+use navigation_world::world::map::{MOST_POINTS, StaticMap};
+use navigation_world::world::scenario::Scenario;
+use numeric::error::{Failure, Given, Result, not_negative, positive};
+
+/// A law with the parts around it.
+#[derive(Clone)]
+pub struct SafeNavigation {
+    /// The law that wants a velocity.
+    pub law: Arc<dyn LawFamily>,
+    /// Map of what stands, if it is known before.
+    pub map: Option<StaticMap>,
+    /// How ways are planned, if they are.
+    pub guide: Option<Guide>,
+    /// Plans that were made, shared by all runs.
+    pub plans: Plans,
+    /// The shield, if there is one.
+    pub shield: Option<Shield>,
+    /// How the robot gives way, if it does.
+    pub yielding: Option<Yielding>,
+    /// Whether a robot that makes no progress heads for its (local) goal by itself.
+    pub takeover: bool,
+    /// When that is, where it was told.
+    pub rule: TakeoverOptions,
+    /// Limit of the wanted velocity, for which regions are sized, in m/s; that of the robot where
+    /// `None`.
+    pub preferred_speed: Option<f64>,
+    /// Distance of the surfaces in m at which force laws brake, in place of their critical regions.
+    pub critical_distance: Option<f64>,
+}
+
+impl SafeNavigation {
+    /// A law with nothing around it.
+    #[must_use]
+    pub fn bare(law: impl Into<Arc<dyn LawFamily>>) -> Self {
+        Self {
+            law: law.into(),
+            map: None,
+            guide: None,
+            plans: Plans::default(),
+            shield: None,
+            yielding: None,
+            takeover: false,
+            rule: TakeoverOptions::default(),
+            preferred_speed: None,
+            critical_distance: None,
+        }
+    }
+
+    /// Returns it if its numbers are allowed.
+    ///
+    /// # Errors
+    /// Names the number that is not.
+    pub fn checked(self) -> Result<Self> {
+        if let Some(shield) = self.shield {
+            shield.checked()?;
+        }
+        if let Some(yielding) = self.yielding {
+            yielding.checked()?;
+        }
+        if let Some(guide) = self.guide {
+            guide.checked()?;
+        }
+        self.rule.checked()?;
+        if let Some(speed) = self.preferred_speed {
+            positive("preferred_speed", speed)?;
+        }
+        if let Some(distance) = self.critical_distance {
+            not_negative("critical_distance", distance)?;
+        }
+        Ok(self)
+    }
+
+    /// What the law within is told of a scenario: a robot that is as fast as is preferred, the map for
+    /// planners of whole paths, and room for the boundary points of the map.
+    pub(super) fn inner(&self, scenario: &Scenario) -> Result<Scenario> {
+        let mut inner = match self.preferred_speed {
+            Some(speed) => slowed(scenario, speed)?,
+            None => scenario.clone(),
+        };
+        if let Some(map) = &self.map {
+            check_ends(map, scenario)?;
+            inner = inner.with_map(map.clone());
+            let point = boundary_obstacle(scenario.robot.radius);
+            inner
+                .obstacles
+                .extend(std::iter::repeat_n(point, MOST_POINTS));
+        }
+        Ok(inner)
+    }
+
+    /// The guide at work in a scenario.
+    pub(super) fn guidance(&self, scenario: &Scenario) -> Result<Option<Guidance>> {
+        let Some(guide) = self.guide else {
+            return Ok(None);
+        };
+        let radius = scenario.robot.radius;
+        let ends = [scenario.start, scenario.goal];
+        let plan = self.plans.get(&guide, self.map.as_ref(), radius, ends)?;
+        Ok(Some(Guidance::new(guide, radius, plan)))
+    }
+}
+
+fn slowed(scenario: &Scenario, speed: f64) -> Result<Scenario> {
+    let most = scenario.robot.max_speed;
+    if speed > most {
+        let rule = format!("be at most the largest speed of the robot, {most} m/s");
+        let given = Given::Number(speed);
+        return Err(Failure::invalid("preferred_speed", rule, given));
+    }
+    scenario.slowed(speed)
+}
+
+/// Refuses a start in contact with the map, and a goal that the robot cannot stand on.
+fn check_ends(map: &StaticMap, scenario: &Scenario) -> Result<()> {
+    let radius = scenario.robot.radius;
+    let check = |name: &str, place: [f64; 2], words: &str, allowed: fn(f64, f64) -> bool| {
+        let clearance = map.clearance(place.into());
+        if allowed(clearance, radius) {
+            return Ok(());
+        }
+        let rule = format!("be {words} the map than the radius of the robot, {radius} m");
+        let advice = format!("the map is {clearance:.4} m away");
+        Err(Failure::invalid(name, rule, Given::Pair(place)).mended_by(advice))
+    };
+    check("start", scenario.start, "farther from", |away, least| {
+        away > least
+    })?;
+    check("goal", scenario.goal, "no nearer to", |away, least| {
+        away >= least
+    })
+}

@@ -1,0 +1,221 @@
+//! A lidar at work: what its scans tell a law.
+
+use nalgebra::Vector2;
+use numeric::random::Stream;
+
+use super::{Lidar, boundary_points_of};
+use crate::sensing::sensor::{RobotSensor, Sensor, Truth};
+use crate::sensing::sonar::ranging::Normals;
+use crate::world::frame::Frame;
+use crate::world::geometry::Body;
+use crate::world::map::MOST_POINTS;
+use crate::world::motion::BodyState;
+use crate::world::obstacle::{Obstacle, PlacedShape};
+use crate::world::scenario::{PlacedObstacle, Scenario};
+use numeric::error::{Failure, Given, Result};
+
+/// Streams of the noise of lidars, counted up from here, above those of sonars.
+const LIDAR_STREAM: u64 = (1 << 61) + (1 << 60);
+
+/// A lidar at work.
+pub struct Scans {
+    options: Lidar,
+    obstacles: Vec<PlacedObstacle>,
+    reach: f64,
+    noise: Normals,
+    shapes: Vec<PlacedShape>,
+    ranges: Vec<f64>,
+    points: Vec<Vector2<f64>>,
+    boundary: Vec<[f64; 2]>,
+    /// Points of scans that were told, with their instants in s.
+    told: Vec<(Vector2<f64>, f64)>,
+    /// When each point that a law is told of was scanned, in s.
+    instants: Vec<f64>,
+    /// How many beams of the last scan that was told read nothing at all.
+    unknown: usize,
+}
+
+impl Scans {
+    /// The lidar of a robot in a scenario, the one with an index among several.
+    ///
+    /// # Errors
+    /// An option is out of range in this scenario.
+    pub fn new(scenario: &Scenario, options: &Lidar, index: u64) -> Result<Self> {
+        let options = options.clone().checked()?;
+        let regions = options.regions(scenario)?;
+        let placed = PlacedObstacle {
+            obstacle: Obstacle::point(options.max_speed),
+            regions,
+            contact_distance: scenario.limits().radius,
+            stationary: false,
+            speed_bound: Some(options.max_speed),
+        };
+        Ok(Self {
+            obstacles: vec![placed; MOST_POINTS],
+            reach: options.reach.unwrap_or(regions.active_radius),
+            noise: Normals::new(Stream::new(scenario.seed, LIDAR_STREAM + index)),
+            shapes: Vec::with_capacity(scenario.obstacles.len()),
+            ranges: Vec::with_capacity(options.beams),
+            points: Vec::with_capacity(options.beams),
+            boundary: Vec::with_capacity(MOST_POINTS),
+            told: Vec::new(),
+            instants: Vec::new(),
+            unknown: 0,
+            options,
+        })
+    }
+}
+
+impl Sensor for Scans {
+    fn obstacles(&self) -> Option<&[PlacedObstacle]> {
+        Some(&self.obstacles)
+    }
+
+    fn observe(&mut self, truth: &Truth<'_>, known: &Frame, bodies: &mut [Body]) {
+        self.shapes.clear();
+        if self.options.sees_obstacles {
+            let present = truth.bodies.iter().filter(|body| body.state.present);
+            self.shapes.extend(present.map(|body| PlacedShape {
+                center: body.state.position.into(),
+                shape: body.shape,
+            }));
+        }
+        let actual = truth.frame();
+        let options = &self.options;
+        options.scan(&actual, &self.shapes, &mut self.noise, &mut self.ranges);
+        options.points(known, &self.ranges, &mut self.points);
+        self.tell(known, bodies);
+    }
+}
+
+impl Scans {
+    /// Points as a law can know them.
+    #[must_use]
+    pub fn points(&self) -> &[PlacedObstacle] {
+        &self.obstacles
+    }
+
+    /// When each point that a law is told of was scanned, in s.
+    #[must_use]
+    pub fn instants(&self) -> &[f64] {
+        &self.instants
+    }
+
+    /// How many beams of the last scan that was told read nothing at all.
+    #[must_use]
+    pub fn unknown(&self) -> usize {
+        self.unknown
+    }
+
+    /// Tells of a scan that was made elsewhere at a time in s; ranges in m, NaN where it is not known whether
+    /// anything was hit. What was seen there before stays, as old as it is, until another beam looks there.
+    ///
+    /// # Errors
+    /// It has not one range for each beam, or one that no beam reads.
+    pub fn read(
+        &mut self,
+        ranges: &[f64],
+        time: f64,
+        known: &Frame,
+        bodies: &mut [Body],
+    ) -> Result<()> {
+        if ranges.len() != self.options.beams {
+            let rule = format!("have a range for each of {} beams", self.options.beams);
+            let given = Given::Count(ranges.len() as u64);
+            return Err(Failure::invalid("scan", rule, given));
+        }
+        for (beam, range) in ranges.iter().enumerate() {
+            // A beam that hits nothing may read infinity.
+            if *range < 0.0 {
+                let rule =
+                    "be at least 0, infinite where nothing is hit, and NaN where that is not known";
+                let name = format!("scan[{beam}]");
+                return Err(Failure::invalid(&name, rule, Given::Number(*range)));
+            }
+        }
+        self.ranges.clear();
+        self.ranges.extend_from_slice(ranges);
+        self.unknown = ranges.iter().filter(|range| range.is_nan()).count();
+        let kept = self.still_unknown(known);
+        let options = &self.options;
+        options.points(known, &self.ranges, &mut self.points);
+        self.told.clear();
+        self.told
+            .extend(self.points.iter().map(|point| (*point, time)));
+        self.told.extend(kept);
+        self.points.clear();
+        self.points
+            .extend(self.told.iter().map(|(point, _)| *point));
+        self.tell(known, bodies);
+        let instants = self.boundary.iter().map(|point| {
+            let same = |told: &&(Vector2<f64>, f64)| <[f64; 2]>::from(told.0) == *point;
+            self.told.iter().find(same).map_or(time, |told| told.1)
+        });
+        self.instants = instants.collect();
+        Ok(())
+    }
+
+    /// The nearest point that was told of before, for each beam that reads nothing now.
+    fn still_unknown(&self, pose: &Frame) -> Vec<(Vector2<f64>, f64)> {
+        if self.unknown == 0 {
+            return Vec::new();
+        }
+        let mut kept: Vec<Option<(Vector2<f64>, f64)>> = vec![None; self.ranges.len()];
+        let away = |point: Vector2<f64>| (point - pose.position).norm_squared();
+        for told in &self.told {
+            let beam = self.options.beam_toward(pose, told.0);
+            let Some(beam) = beam.filter(|beam| self.ranges[*beam].is_nan()) else {
+                continue;
+            };
+            let place = &mut kept[beam];
+            if place.is_none_or(|other| away(told.0) < away(other.0)) {
+                *place = Some(*told);
+            }
+        }
+        kept.into_iter().flatten().collect()
+    }
+
+    /// Whether the last scan saw a place to be empty: beams go through the outline there, and none ends
+    /// in or before the disc around it. Nothing is seen beyond the largest range.
+    #[must_use]
+    pub fn saw_empty(&self, pose: &Frame, placed: &PlacedShape) -> bool {
+        let radius = placed.shape.extent();
+        let around = PlacedShape::disc(placed.center.into(), radius);
+        let mut through = false;
+        for (beam, range) in self.ranges.iter().enumerate() {
+            let (sin, cos) = self.options.bearing(beam).sin_cos();
+            let along = pose.outward(Vector2::new(cos, sin));
+            if !around.cast(pose.position, along).is_finite() {
+                continue;
+            }
+            let far = (placed.center - pose.position).dot(&along) + radius;
+            // Who reads nothing has not seen that nobody is there.
+            if range.is_nan() || range.min(self.options.range_max) < far {
+                return false;
+            }
+            // A beam beside a rectangle, though in the disc around it, tells nothing of it.
+            through |= placed.cast(pose.position, along).is_finite();
+        }
+        through
+    }
+
+    fn tell(&mut self, known: &Frame, bodies: &mut [Body]) {
+        let (position, kappa) = (known.position, self.options.kappa);
+        boundary_points_of(
+            &self.points,
+            position,
+            self.reach,
+            kappa,
+            &mut self.boundary,
+        );
+        for (index, body) in bodies.iter_mut().enumerate() {
+            let point = self.boundary.get(index).copied();
+            body.state = BodyState {
+                position: point.unwrap_or(position.into()),
+                velocity: [0.0; 2],
+                acceleration: [0.0; 2],
+                present: point.is_some(),
+            };
+        }
+    }
+}
