@@ -6,8 +6,8 @@ use vff_core::lanes::Vector2;
 use vff_core::laws::guide::TakeoverOptions;
 use vff_core::laws::safe::SafeNavigation;
 use vff_core::laws::shield::{
-    self, BlindCorner, Edge, Friendly, Guard, KnownVelocity, Person, ShieldLimits, StaticObstacles,
-    TrackingError, View,
+    self, BlindCorner, CornerEdge, Friendly, Guard, KnownVelocity, Person, ShieldLimits,
+    StaticObstacles, TrackingError, View,
 };
 use vff_core::laws::yielding;
 use vff_core::world::geometry::RobotState;
@@ -144,7 +144,11 @@ pub fn blind_corner_speeds<'py>(
         .iter()
         .flat_map(|[distance, offset]| {
             let of = |edge| corner.speed(corner.hidden(edge, *distance, *offset));
-            [of(Edge::Near), of(Edge::Far), corner.passing_speed(*offset)]
+            [
+                of(CornerEdge::Near),
+                of(CornerEdge::Far),
+                corner.passing_speed(*offset),
+            ]
         })
         .collect();
     found.into_pyarray(py).reshape([places.len(), 3])

@@ -11,7 +11,7 @@ from hrsafety.contact.cell.study import verdicts_of
 from hrsafety.errors import InvalidParameterError
 from hrsafety.pages.report import ReportTable, Section
 
-__all__ = ["prediction_section", "predicted"]
+__all__ = ["predicted", "prediction_section"]
 
 
 def predicted(

@@ -12,7 +12,7 @@ from hrsafety._arguments import Pair, Parameters, finite, finite_pair, flag, not
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.plausibility import ResultWarning, implausible
-from hrsafety.zones.reach import Footprint, footprint_of
+from hrsafety.zones.reach import RobotOutline, footprint_of
 
 __all__ = ["Conditions"]
 
@@ -128,7 +128,7 @@ class Conditions(Parameters):
     def __post_init__(self) -> None:
         """Check every number, and what they are together."""
         footprint_of(self.footprint)
-        if not isinstance(self.footprint, Footprint) and np.ndim(self.footprint):
+        if not isinstance(self.footprint, RobotOutline) and np.ndim(self.footprint):
             self._set(footprint=tuple(tuple(map(float, each)) for each in np.asarray(self.footprint)))
         for name in ("max_speed", "deceleration", "reaction_time", "beam_step", "leg_radius", "max_range"):
             self._set(**{name: positive(name, getattr(self, name))})
@@ -221,8 +221,8 @@ class Conditions(Parameters):
         return {each.name: getattr(self, each.name) for each in fields(self)}
 
     @property
-    def body(self) -> Footprint:
-        """Footprint of the robot."""
+    def body(self) -> RobotOutline:
+        """RobotOutline of the robot."""
         return footprint_of(self.footprint)
 
     @property

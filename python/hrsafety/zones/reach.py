@@ -11,7 +11,7 @@ from hrsafety._arguments import Array, number, positive
 from hrsafety.errors import InvalidParameterError
 from hrsafety.zones.polygons import checked, convex
 
-__all__ = ["TOWARD", "Footprint", "StoppingPaths", "footprint_of", "stopping_paths", "supports"]
+__all__ = ["TOWARD", "RobotOutline", "StoppingPaths", "footprint_of", "stopping_paths", "supports"]
 
 TOWARD = 1e-3
 """Speed in m/s of the robot's surface toward a person above which a contact is its fault."""
@@ -19,7 +19,7 @@ ROUND = 48
 """Directions of the boundary of a disc."""
 
 
-class Footprint(NamedTuple):
+class RobotOutline(NamedTuple):
     """Body of a robot: the hull of corners, rounded.
 
     Attributes
@@ -92,7 +92,7 @@ class Footprint(NamedTuple):
         return sign * length - self.rounding, nearest, way * sign[:, np.newaxis]
 
 
-def footprint_of(value: object, name: str = "footprint") -> Footprint:
+def footprint_of(value: object, name: str = "footprint") -> RobotOutline:
     """Return a body from a radius or from corners, which must be convex.
 
     Parameters
@@ -104,7 +104,7 @@ def footprint_of(value: object, name: str = "footprint") -> Footprint:
 
     Returns
     -------
-    Footprint
+    RobotOutline
         Corners counter-clockwise.
 
     Raises
@@ -112,16 +112,16 @@ def footprint_of(value: object, name: str = "footprint") -> Footprint:
     InvalidParameterError
         If it is neither, or its corners do not form a convex polygon.
     """
-    if isinstance(value, Footprint):
+    if isinstance(value, RobotOutline):
         return value
     if np.ndim(value) == 0:  # type: ignore[arg-type]  # what is no number fails below
-        return Footprint(np.zeros((1, 2)), positive(name, number(name, value)))
+        return RobotOutline(np.zeros((1, 2)), positive(name, number(name, value)))
     corners = checked(name, value)
     hull = convex(corners)
     if len(hull) < len(np.unique(corners, axis=0)):
         rule = "be convex"
         raise InvalidParameterError(name, rule, corners.tolist(), "give its convex hull: it is the larger body")
-    return Footprint(hull, 0.0)
+    return RobotOutline(hull, 0.0)
 
 
 class StoppingPaths(NamedTuple):
@@ -214,7 +214,7 @@ def stopping_paths(
 
 def supports(
     paths: StoppingPaths,
-    body: Footprint,
+    body: RobotOutline,
     directions: Array,
     *,
     person_speed: float,
@@ -227,7 +227,7 @@ def supports(
     ----------
     paths : StoppingPaths
         Of the robot.
-    body : Footprint
+    body : RobotOutline
         Of the robot.
     directions : ndarray (k, 2)
         Unit vectors.

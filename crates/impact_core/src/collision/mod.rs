@@ -11,7 +11,7 @@
 //! f = F(eps) R U + C_c eps'                                on a rigid region
 //! ```
 //!
-//! A driven contact pushes at most with a limit, brakes from when the force was noticed on, and goes on beyond a
+//! A driven contact pushes at most with a limit, brakes from when the force was noticed on, and continues beyond a
 //! release: the drive brings the robot back.
 
 mod curve;

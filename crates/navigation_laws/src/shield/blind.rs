@@ -4,7 +4,7 @@ use numeric::error::{Result, not_negative, positive};
 
 /// Side of an opening in a wall beside the robot, nearest or farthest along its course.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Edge {
+pub enum CornerEdge {
     /// Edge that the robot passes first.
     Near,
     /// Edge that the robot passes last; people come from behind its inner side.
@@ -58,14 +58,14 @@ impl BlindCorner {
     /// Nearest place of a hidden person's center in m, ahead of the robot and beside it, behind an edge so far ahead and
     /// beside the robot.
     #[must_use]
-    pub fn hidden(&self, edge: Edge, distance: f64, offset: f64) -> [f64; 2] {
+    pub fn hidden(&self, edge: CornerEdge, distance: f64, offset: f64) -> [f64; 2] {
         let core = self.person_core;
         match edge {
-            Edge::Near => {
+            CornerEdge::Near => {
                 let (sin, cos) = offset.atan2(distance).sin_cos();
                 [distance + core, ((distance + core) * sin + core) / cos]
             }
-            Edge::Far => {
+            CornerEdge::Far => {
                 let inner = offset + self.wall_thickness;
                 let (sin, cos) = inner.atan2(distance).sin_cos();
                 let beside = inner + core;
@@ -125,7 +125,7 @@ impl BlindCorner {
 
 #[cfg(test)]
 mod tests {
-    use super::{BlindCorner, Edge};
+    use super::{BlindCorner, CornerEdge};
 
     fn corner(deceleration: f64) -> BlindCorner {
         BlindCorner {
@@ -165,10 +165,10 @@ mod tests {
             ),
         ] {
             let corner = corner(deceleration);
-            let hidden = corner.hidden(Edge::Near, distance, offset);
+            let hidden = corner.hidden(CornerEdge::Near, distance, offset);
             assert!((hidden[0] - place[0]).abs() < 1e-6 && (hidden[1] - place[1]).abs() < 1e-6);
             assert!((corner.speed(hidden) - near).abs() < 1e-9);
-            let behind = corner.hidden(Edge::Far, distance, offset);
+            let behind = corner.hidden(CornerEdge::Far, distance, offset);
             assert!((corner.speed(behind) - far).abs() < 1e-9);
             assert!((corner.passing_speed(offset) - pass).abs() < 1e-12);
         }

@@ -20,7 +20,7 @@ mod twist;
 mod verifier;
 mod walls;
 
-pub use blind::{BlindCorner, Edge};
+pub use blind::{BlindCorner, CornerEdge};
 pub use bound::speed_bound;
 pub use course::Course;
 pub use half_disc::half_disc_distance;

@@ -55,7 +55,7 @@ def driven_of(cell: Cell, planned: PlannedContact, closing: float) -> Driven | N
     try:
         speed = driven_speed(hit, drive, human_speed=cell.human_speed)
         if speed.status == "threshold_above_limit":
-            # A path that goes on until such a force is noticed has no loads worth a long simulation.
+            # A path that continues until such a force is noticed has no loads worth a long simulation.
             return Driven(drive, speed, DrivenLoads(force=math.inf, pressure=math.inf, status=speed.status))
         return Driven(drive, speed, driven_loads(hit, closing, drive))
     except InvalidParameterError as error:

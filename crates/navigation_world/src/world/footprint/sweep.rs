@@ -10,7 +10,7 @@ use super::{Arc, Footprint};
 const ROUNDING: f64 = 1e-12;
 
 /// A piece of a circle.
-struct Piece {
+struct ArcPiece {
     center: Vector2<f64>,
     radius: f64,
     /// Direction of its start in rad.
@@ -19,7 +19,7 @@ struct Piece {
     turn: f64,
 }
 
-impl Piece {
+impl ArcPiece {
     fn new(center: Vector2<f64>, start: Vector2<f64>, turn: f64) -> Self {
         let from = start - center;
         Self {
@@ -82,7 +82,7 @@ impl Footprint {
         }
         // Seen from the body the point moves back on a circle around the center of the turn.
         let center = Vector2::new(0.0, arc.distance / arc.angle);
-        let path = Piece::new(center, point, -arc.angle);
+        let path = ArcPiece::new(center, point, -arc.angle);
         let mut least = self.distance(point).min(self.distance(path.ends()[1]));
         for corner in &self.corners {
             let from = corner - center;
@@ -127,7 +127,7 @@ impl Footprint {
                 between_segments([*corner, corner + straight], segment)
             } else {
                 let center = Vector2::new(0.0, arc.distance / arc.angle);
-                between_arc_and_segment(&Piece::new(center, *corner, arc.angle), segment)
+                between_arc_and_segment(&ArcPiece::new(center, *corner, arc.angle), segment)
             };
             least = least.min(distance);
         }
@@ -145,7 +145,7 @@ impl Footprint {
     }
 }
 
-fn between_arc_and_segment(arc: &Piece, segment: [Vector2<f64>; 2]) -> f64 {
+fn between_arc_and_segment(arc: &ArcPiece, segment: [Vector2<f64>; 2]) -> f64 {
     let mut least = f64::INFINITY;
     for end in arc.ends() {
         least = least.min(from_segment(end, segment));
