@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from hrsafety import io
-from hrsafety.io.yaml import read_yaml
+from hrsafety._yaml.documents import read_yaml
 
 __all__ = ["places"]
 

@@ -14,8 +14,8 @@ from typing import Any
 from hrsafety._arguments import word
 from hrsafety._records import dataclass
 from hrsafety._sources import Provenance
+from hrsafety._text import decoded, read_bytes
 from hrsafety.errors import FileError
-from hrsafety.io.text import decoded, read_bytes
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["READERS", "Document", "Provenance", "Reader", "reader_of", "readers"]

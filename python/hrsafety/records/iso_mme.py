@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from hrsafety._arguments import Array
+from hrsafety._text import MOST_BYTES, decoded
 from hrsafety.errors import FileError, Shown
 from hrsafety.io.reader import Document
-from hrsafety.io.text import MOST_BYTES, decoded
 from hrsafety.records.units import KNOWN, factor_of, plain
 
 __all__ = ["Channel", "channels_of", "is_channel"]

@@ -12,8 +12,8 @@ import numpy as np
 
 from hrsafety._arguments import Array
 from hrsafety._words import meant
+from hrsafety._yaml.documents import YamlDocument, YamlSection, read_yaml
 from hrsafety.errors import FileError, InvalidParameterError, Shown
-from hrsafety.io.yaml import YamlDocument, YamlSection, read_yaml
 from hrsafety.plausibility import ResultWarning
 from hrsafety.zones.monitor import ACTIONS, MOST_STEPS, TYPES, CollisionMonitor, MonitorPolygon, VelocityRange
 from hrsafety.zones.polygons import checked

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from hrsafety._arguments import Array
-from hrsafety.io.yaml import YamlDocument, read_yaml
+from hrsafety._yaml.documents import YamlDocument, read_yaml
 from hrsafety.zones.monitor_files import node_of
 from hrsafety.zones.polygons import trimmed
 

@@ -15,9 +15,9 @@ import yaml
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from hrsafety._yaml.documents import YamlDocument, read_yaml
+from hrsafety._yaml.nodes import resolved
 from hrsafety.errors import FileError, InvalidParameterError
-from hrsafety.io.yaml import YamlDocument, read_yaml
-from hrsafety.io.yaml_nodes import resolved
 
 
 def plain(text: str) -> Any:

@@ -8,8 +8,8 @@ from typing import Annotated, Any
 from hrsafety._arguments import Pair, instance, meant
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
+from hrsafety._yaml.documents import YamlDocument, YamlSection
 from hrsafety.io.reader import Document, Provenance
-from hrsafety.io.yaml import YamlDocument, YamlSection
 from hrsafety.navigation.crowd.agents import Person
 from hrsafety.navigation.crowd.pedestrians import Moussaid, Pedestrian
 from hrsafety.navigation.crowd.world import World

@@ -11,9 +11,9 @@ from typing import Annotated, Any
 from hrsafety._arguments import Pair, meant
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
+from hrsafety._yaml.documents import YamlDocument, YamlSection
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.io.reader import Document, Provenance
-from hrsafety.io.yaml import YamlDocument, YamlSection
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.plausibility import ResultWarning, implausible
 

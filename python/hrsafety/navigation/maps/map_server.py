@@ -18,7 +18,7 @@ from hrsafety.plausibility import ResultWarning, implausible
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from hrsafety.io.yaml import YamlSection
+    from hrsafety._yaml.documents import YamlSection
 
 __all__ = ["BETWEEN", "FREE", "OCCUPIED", "UNKNOWN", "ServedMap", "cell_classes", "doubts_of_place", "read_map_server"]
 
@@ -124,7 +124,7 @@ def cell_classes(path: str | PathLike[str]) -> Classes:
 
 
 def _entries(path: str | PathLike[str]) -> tuple[YamlSection, tuple[ResultWarning, ...]]:
-    from hrsafety.io.yaml import read_yaml  # for those who have such a file
+    from hrsafety._yaml.documents import read_yaml  # for those who have such a file
 
     document = read_yaml(path)
     root = document.root

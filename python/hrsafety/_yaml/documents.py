@@ -16,10 +16,10 @@ import numpy as np
 
 from hrsafety._arguments import instance, meant
 from hrsafety._atomic import write_file
+from hrsafety._text import decoded, read_bytes
+from hrsafety._yaml.nodes import Key, Node, Path, YamlText, key_path, resolved
+from hrsafety._yaml.syntax import parsed
 from hrsafety.errors import FileError, InvalidParameterError, Shown
-from hrsafety.io.text import decoded, read_bytes
-from hrsafety.io.yaml_nodes import Key, Node, Path, YamlText, key_path, resolved
-from hrsafety.io.yaml_syntax import parsed
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["YamlDocument", "YamlSection", "read_yaml"]
@@ -42,7 +42,7 @@ class YamlSection:
 
     Examples
     --------
-    >>> from hrsafety.io.yaml import YamlDocument
+    >>> from hrsafety._yaml.documents import YamlDocument
     >>> robot = YamlDocument("robot: {radius: 0.22, name: base}  # by hand").root["robot"]
     >>> robot["radius"].number(), robot["name"].text(), robot.get("mass") is None
     (0.22, 'base', True)
@@ -243,7 +243,7 @@ class YamlDocument:
 
     Examples
     --------
-    >>> from hrsafety.io.yaml import YamlDocument
+    >>> from hrsafety._yaml.documents import YamlDocument
     >>> document = YamlDocument("stop:  # polygon\n  points: [0.4, 0.3]\n  enabled: on\n")
     >>> document.root["stop"]["points"].numbers(), document.root["stop"].plain["enabled"]
     ([0.4, 0.3], True)
@@ -301,7 +301,7 @@ class YamlDocument:
 
         Examples
         --------
-        >>> from hrsafety.io.yaml import YamlDocument
+        >>> from hrsafety._yaml.documents import YamlDocument
         >>> print(YamlDocument("limit: 0.5  # m/s").changed({("limit",): 0.3}).text)
         limit: 0.3  # m/s
         """
@@ -370,7 +370,7 @@ def read_yaml(path: str | PathLike[str]) -> YamlDocument:
     Examples
     --------
     >>> import pathlib, tempfile
-    >>> from hrsafety.io.yaml import read_yaml
+    >>> from hrsafety._yaml.documents import read_yaml
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = pathlib.Path(folder, "map.yaml")
     ...     _ = path.write_text("resolution: 0.05\norigin: [0, 0, 0.0]\n")

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import NoReturn
 
+from hrsafety._yaml.nodes import BREAK, Node, Path, YamlText, key_path, resolved
 from hrsafety.errors import FileError, Shown
-from hrsafety.io.yaml_nodes import BREAK, Node, Path, YamlText, key_path, resolved
 
 __all__ = ["parsed"]
 
