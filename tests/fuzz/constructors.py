@@ -12,7 +12,20 @@ from typing import Any
 import numpy as np
 
 import hrsafety
-from hrsafety import arms, contact, datasets, impact, plausibility, reactive, ros, scenarios, standards, sweep, zones
+from hrsafety import (
+    arms,
+    contact,
+    datasets,
+    impact,
+    plausibility,
+    program,
+    reactive,
+    ros,
+    scenarios,
+    standards,
+    sweep,
+    zones,
+)
 from hrsafety import gym as environments
 from hrsafety import navigation as nav
 from hrsafety.navigation.trajectory import Divergence
@@ -45,6 +58,9 @@ _MEASUREMENT: Right = {
     **{"place": "tool", "region": "chest", "contact": "transient", "speed": 0.2},
     **{"spring": 25e3, "limit": 280.0},
 }
+_SWING = program.ArmMotion.from_waypoints(arms.Arm.example(), {"turn": [0.0, 0.5, 1.0]}, acceleration=4.0)
+_BESIDE: Right = {"start": 0.0, "end": 1.0, "regions": ["chest"]}
+_GRIPPER: Right = {"name": "gripper", "link": "tool", "area": 1e-4}
 _MEASURED = contact.PlannedMeasurement(**_MEASUREMENT)
 _SAMPLES = np.linspace(0.0, 1.0, 5)
 _SQUARE = np.stack([_SAMPLES, np.zeros(5)], axis=1)
@@ -138,6 +154,15 @@ REQUIRED: dict[Callable[..., Any], Right] = {
     nav.tracking.CircleReference: {"center": (0.0, 0.0), "radius": 2.0, "speed": 0.5},
     nav.tracking.LineReference: {"start": (0.0, 0.0)},
     nav.tracking.PathReference: {"time": _SAMPLES, "position": _SQUARE, "velocity": np.zeros((5, 2))},
+    program.ContactPoint: _GRIPPER,
+    program.Move: {"kind": "joint", "to": {"turn": 0.5}},
+    program.Program: {
+        "motion": _SWING,
+        "points": [program.ContactPoint(**_GRIPPER)],
+        "segments": [program.Segment(**_BESIDE)],
+    },
+    program.Segment: _BESIDE,
+    program.ZoneRules: {"deceleration": 3.0},
     reactive.Box: {"center": (1.0, 2.0), "size": (0.3, 0.4)},
     reactive.Cylinder: {"center": (1.0, 2.0), "radius": 0.3},
     reactive.FollowerLayouts: {"kind": "static"},

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety._arguments import Array, checked_text, number, vector, word
+from hrsafety._arguments import Array, checked_text, finite, number, vector, word
 from hrsafety._records import dataclass
 from hrsafety._words import meant
 from hrsafety.arms import Arm
@@ -93,6 +93,11 @@ class Move:
             if place.shape != (3,) or not np.isfinite(place).all():
                 raise InvalidParameterError("to", "be three finite numbers in m", self.to)
             object.__setattr__(self, "to", tuple(place.tolist()))
+        elif isinstance(self.to, Mapping):
+            for joint, value in self.to.items():
+                finite(f"to[{joint!r}]", value)
+        elif not np.isfinite(vector("to", self.to)).all():
+            raise InvalidParameterError("to", "be finite numbers in rad or m", self.to)
 
 
 class Legs(NamedTuple):

@@ -133,6 +133,8 @@ class ProgramTask:
         """Return the rules of the stop; the speed is that of the program."""
         if self.separation is None:
             return None
+        if not isinstance(self.separation, Mapping):
+            raise InvalidParameterError("separation", "be a mapping or None", self.separation)
         return separation_of({"max_speed": 1.0, **self.separation})
 
     def _checked_points(self) -> None:

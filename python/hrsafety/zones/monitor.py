@@ -328,7 +328,7 @@ class CollisionMonitor:
     sources: tuple[str, ...] = ("scan",)
     warnings: tuple[ResultWarning, ...] = ()
     source: str = ""
-    _memory: list[MonitorState] = field(default_factory=list, repr=False)
+    _memory: list[MonitorState] = field(init=False, default_factory=list, repr=False)
 
     def __post_init__(self) -> None:
         """Check zones and time."""
@@ -344,6 +344,8 @@ class CollisionMonitor:
             self, "sources", tuple(checked_text(f"sources[{place}]", each, rule) for place, each in enumerate(names))
         )
         assign(self, "source_timeout", not_negative("source_timeout", self.source_timeout))
+        if not isinstance(self.source, str):
+            raise InvalidParameterError("source", "be a text", self.source)
         assign(self, "warnings", tuple(checked_doubts("warnings", self.warnings)))
 
     def restart(self) -> None:
