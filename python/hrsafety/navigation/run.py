@@ -88,7 +88,7 @@ class Run:
     >>> while not run.finished and run.time < 2.0:
     ...     mine, other = run.step(velocity={0: (0.4, 0.0)})
     >>> round(float(mine.position[0]), 2), len(mine.obstacle_position)
-    (0.79, 1)
+    (0.8, 1)
     """
 
     __slots__ = ("_built", "_commanded", "_ended", "_how", "_law", "_native", "_robots", "_scenario", "_step")

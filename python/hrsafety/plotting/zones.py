@@ -12,7 +12,7 @@ from hrsafety._arguments import Array, instance
 from hrsafety.plotting import floor, notes, style
 from hrsafety.zones.checking import ZoneCheck
 from hrsafety.zones.field_design import ZoneSet
-from hrsafety.zones.reach import Footprint
+from hrsafety.zones.reach import RobotOutline
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -173,7 +173,7 @@ def zone_attack(found: ZoneCheck, *, title: str | None = None) -> Figure:
     return floor.finish(figure, handles, columns=5, runs=[found])
 
 
-def _outline(body: Footprint) -> Array:
+def _outline(body: RobotOutline) -> Array:
     """Return the outline of a body."""
     if len(body.corners) > 1:
         return body.corners

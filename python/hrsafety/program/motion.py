@@ -347,7 +347,16 @@ class ArmMotion:
             contact_row=found["contact_row"],
             rounds=found["rounds"],
             standstill=found["standstill"],
+            warnings=_doubts(found["status"], found["largest_share"]),
         )
+
+
+def _doubts(status: str, share: float) -> tuple[ResultWarning, ...]:
+    """Return the doubt whether limits are kept."""
+    if status != "not_verified":
+        return ()
+    message = f"a limit is used to {share:.6g} of itself between the nodes of the retimed path"
+    return (ResultWarning("not_verified", "retiming", message),)
 
 
 @displayed
@@ -381,6 +390,8 @@ class Retimed(Table):
         How often caps were lowered after a check.
     standstill : int
         Interval that allows no motion, -1 for none.
+    warnings : tuple of ResultWarning
+        ``not_verified``: limits may not be kept between the nodes.
     """
 
     motion: ArmMotion
@@ -395,14 +406,7 @@ class Retimed(Table):
     contact_row: npt.NDArray[np.int64]
     rounds: int
     standstill: int
-
-    @property
-    def warnings(self) -> tuple[ResultWarning, ...]:
-        """Whether limits may not be kept."""
-        if self.status != "not_verified":
-            return ()
-        message = f"a limit is used to {self.largest_share:.6g} of itself between the nodes of the retimed path"
-        return (ResultWarning("not_verified", "retiming", message),)
+    warnings: tuple[ResultWarning, ...] = ()
 
     @property
     def stopped(self) -> Array:

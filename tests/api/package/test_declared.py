@@ -16,7 +16,7 @@ from hrsafety import _hrsafety, impact, scenarios, sweep
 from hrsafety import navigation as nav
 from hrsafety.cli import verdict
 from hrsafety.errors import InvalidParameterError
-from hrsafety.impact.criteria.declared import CRITERIA, Loads
+from hrsafety.impact.criteria.declared import CRITERIA, CriterionValues
 from hrsafety.navigation.laws.declared import Gain, Law, gain
 from hrsafety.navigation.laws.known import LAWS
 from hrsafety.navigation.outcomes import OUTCOMES, Outcome
@@ -32,7 +32,7 @@ NAMES = tuple(CRITERIA)
 
 def test_rows_batches_and_gradients_hold_the_declared_criteria() -> None:
     assert impact.ImpactMetrics._fields == (*NAMES, "status", "beyond_linear_range")
-    assert tuple(each.name for each in dataclasses.fields(Loads)) == NAMES
+    assert tuple(each.name for each in dataclasses.fields(CriterionValues)) == NAMES
     assert tuple(each.name for each in dataclasses.fields(impact.ImpactMetricsBatch))[: len(NAMES)] == NAMES
     parts = (impact.MANIPULATOR_1, impact.FOAM_1, impact.Head.minimum())
     assert impact.gradients(*parts, closing_speed=1.0).metric_names == NAMES

@@ -12,7 +12,7 @@ import pytest
 from api.documented_units import documented_units
 from api.fuzzing import CALLS
 from fuzz.constructors import NO_CONSTRUCTORS, public_classes
-from hrsafety import _display, impact, plausibility, ros, sweep
+from hrsafety import _display, impact, plausibility, program, ros, sweep
 from hrsafety import navigation as nav
 from hrsafety._display import fields_with_units, shown_html
 from hrsafety.plausibility import ResultWarning
@@ -28,6 +28,7 @@ NO_RESULTS = {
     nav.sensing.RobotSensor: "the base of sensors",
     sweep.Design: "the base of designs",
     Table: "the base of tables",
+    program.ArmMotion: "a path that programs are made of",
     nav.maps.PolylineWall: "a kind of wall, for type checkers",
     plausibility.Range: "a row of the table of ranges",
     ResultWarning: "a line of the results that carry it",

@@ -46,9 +46,9 @@ def test_every_page_inherits_the_one_base_and_there_is_one_style_sheet() -> None
     folder = Path(pages.__file__).parent / "templates"
     texts = {path.relative_to(folder).as_posix(): path.read_text(encoding="utf-8") for path in folder.rglob("*.html")}
     whole = {name for name, text in texts.items() if '{% extends "base.html" %}' in text}
-    assert whole == {"report.html", "cell.html", "reproduce/page.html"}
+    assert whole == {"report.html", "cell.html", "program.html", "reproduce/page.html"}
     assert [name for name, text in texts.items() if "<style" in text or "<html" in text] == ["base.html"]
-    assert [path.name for path in folder.rglob("*.css")] == ["style.css"]
+    assert sorted(path.name for path in folder.rglob("*.css")) == ["printed.css", "style.css"]  # the first for contact
 
 
 def test_simulate_writes_a_page_with_outcome_obstacles_and_pictures(tmp_path: Path) -> None:

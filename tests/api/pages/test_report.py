@@ -134,7 +134,7 @@ def test_no_command_renders_by_itself() -> None:
     texts = {path.name: path.read_text(encoding="utf-8") for path in folder.rglob("*.py")}
     assert not [name for name, text in texts.items() if "import written" in text]
     assert {path.name for path in (folder.parent / "pages" / "templates").glob("*.html")} == {
-        *("base.html", "parts.html", "report.html", "cell.html")
+        *("base.html", "parts.html", "report.html", "cell.html", "program.html")
     }
 
 
