@@ -24,7 +24,7 @@ OPEN = {"dict": "dict[str, Any]", "tuple": "tuple[Any, ...]", "Incomplete": "NDA
 
 def built(folder: Path) -> str:
     """Return the stub as `maturin` writes it."""
-    command = ["maturin", "generate-stubs", "--profile", "dev", "--locked", "--features", "stubs"]
+    command = ["maturin", "generate-stubs", "--profile", "release", "--locked", "--features", "stubs"]
     subprocess.run([*command, "--out", str(folder)], cwd=ROOT, check=True)
     (written,) = folder.rglob("*.pyi")
     return written.read_text(encoding="utf-8")
