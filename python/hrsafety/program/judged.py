@@ -131,7 +131,7 @@ def _worst(
         speed = found["speed"][:, points]
         with np.errstate(divide="ignore", invalid="ignore"):
             share = np.where(speed > 0.0, speed / found["allowed"][:, : len(rows)], 0.0)
-        share = np.nan_to_num(share, nan=0.0, posinf=np.inf)
+        share = np.where(np.isnan(share), np.inf, share)  # a limit that is no number is not kept
         at = share.argmax(axis=0)
         here = share[at, np.arange(len(rows))]
         better = here > most

@@ -34,7 +34,7 @@ def blind_corner_speed(
     latency: float = 0.0,
     control_period: float = 0.05,
 ) -> Array:
-    """Return the largest speeds past openings in a wall with which nobody who is hidden behind it is ever driven into.
+    """Return the largest speeds past openings in a wall at which no person hidden behind it is driven into.
 
     The robot drives straight along a wall with an opening. At the speed v it comes to rest before a person who steps
     out of the nearest hidden place K reaches the half disc ahead of it:
@@ -77,7 +77,9 @@ def blind_corner_speed(
 
     Notes
     -----
-    The closed forms are those of one wall with one edge and one person; a robot among several corners takes the least.
+    The closed forms are those of one straight wall with one edge and one person, of a robot that sees all round
+    without errors and holds its course; give what it does not know as ``margin`` and ``latency``. Among several
+    corners take the least. A person may still walk into the robot at rest.
 
     Examples
     --------
