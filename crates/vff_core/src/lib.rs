@@ -12,3 +12,4 @@ pub use navigation_laws as laws;
 pub use navigation_runs::{crowd, run, search};
 pub use navigation_world::{arguments, robots, sensing, world};
 pub use numeric::{error, lanes};
+pub use unknown_places as unknown;

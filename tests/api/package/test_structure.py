@@ -32,8 +32,9 @@ CORES = ("vff_core", "impact_core")
 PARTS_OF_A_CORE: dict[str, set[str]] = {
     "box_search": set(),
     "navigation_world": set(),
-    "navigation_laws": {"navigation_world"},
-    "navigation_runs": {"box_search", "navigation_laws", "navigation_world"},
+    "unknown_places": {"navigation_world"},
+    "navigation_laws": {"navigation_world", "unknown_places"},
+    "navigation_runs": {"box_search", "navigation_laws", "navigation_world", "unknown_places"},
 }
 PYTHON_CRATES = {"pyo3", "numpy", "pyo3-ffi"}
 NATIVE = "hrsafety._hrsafety"
