@@ -155,6 +155,12 @@ REQUIRED: dict[Callable[..., Any], Right] = {
     nav.tracking.LineReference: {"start": (0.0, 0.0)},
     nav.tracking.PathReference: {"time": _SAMPLES, "position": _SQUARE, "velocity": np.zeros((5, 2))},
     program.ContactPoint: _GRIPPER,
+    program.DrawnMotions: {"arm": arms.Arm.example(), "velocity": 2.0, "draws": 100},
+    program.DrawnProgram: {
+        "motion": program.DrawnMotions(arm=arms.Arm.example(), velocity=2.0, draws=100),
+        "points": [program.ContactPoint(**_GRIPPER)],
+        "segments": [program.Segment(regions=["chest"])],
+    },
     program.Move: {"kind": "joint", "to": {"turn": 0.5}},
     program.Program: {
         "motion": _SWING,

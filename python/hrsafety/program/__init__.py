@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from hrsafety._namespace import names_of
 
 if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
+    from hrsafety.program.drawn import DrawnProgram as DrawnProgram, DrawnStudy as DrawnStudy
+    from hrsafety.program.draws import DrawnMotions as DrawnMotions
     from hrsafety.program.exposures import ContactPoint as ContactPoint, Segment as Segment
     from hrsafety.program.file import load_program as load_program
     from hrsafety.program.motion import ArmMotion as ArmMotion, Retimed as Retimed

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, checked_text, flag, number, positive, sequence, vector
+from hrsafety._arguments import Array, checked_text, finite, flag, number, positive, sequence, vector
 from hrsafety._records import dataclass
 from hrsafety.arms import Arm
 from hrsafety.contact import Contact, Covering, Drive, driven_speed, driven_speeds
@@ -106,8 +106,9 @@ class Segment:
 
     Parameters
     ----------
-    start, end : float or str
-        Of a log times in s, of moves their names: from the start of one to the end of the other.
+    start, end : float, str or None
+        Of a log times in s, of moves their names: from the start of one to the end of the other. ``None`` without a
+        program.
     regions : sequence of str
         Regions or areas of the limit set. None at all needs a reason.
     clamped : bool
@@ -126,8 +127,8 @@ class Segment:
     True
     """
 
-    start: float | str
-    end: float | str
+    start: float | str | None = None
+    end: float | str | None = None
     regions: tuple[str, ...]
     clamped: bool = True
     human_speed: float = 0.0
@@ -141,10 +142,8 @@ class Segment:
         object.__setattr__(self, "regions", regions)
         for name in ("start", "end"):
             given = getattr(self, name)
-            if not isinstance(given, str):
-                object.__setattr__(self, name, number(name, given))
-                if not math.isfinite(getattr(self, name)):
-                    raise InvalidParameterError(name, "be finite", given)
+            if given is not None and not isinstance(given, str):
+                object.__setattr__(self, name, finite(name, given))
         for name in ("reason", "name"):
             if not isinstance(getattr(self, name), str):
                 raise InvalidParameterError(name, "be a text", getattr(self, name))

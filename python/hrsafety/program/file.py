@@ -15,7 +15,9 @@ from hrsafety.arms.masses import RULES
 from hrsafety.contact import drive_of
 from hrsafety.contact.cell.file import coverings_of, limits_of_file
 from hrsafety.contact.cell.robot import ARM_KEYS, arm_of
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.program.drawn import DrawnProgram
+from hrsafety.program.draws import DrawnMotions
 from hrsafety.program.exposures import ContactPoint, Segment
 from hrsafety.program.motion import ArmMotion
 from hrsafety.program.moves import Move
@@ -70,6 +72,9 @@ _MOTION: Keys = MappingProxyType(
         "acceleration": _by_joint,
         "tcp_speed": kind.number,
         "path_tolerance": kind.number,
+        "draws": kind.integer,
+        "seed": kind.integer,
+        "accept_quantile": kind.number,
     }
 )
 _MOVE: Keys = MappingProxyType(
@@ -109,7 +114,7 @@ _ZONES: Keys = MappingProxyType(
 
 
 @kind.top_level(_TOP)
-def load_program(path: str | PathLike[str]) -> Program:
+def load_program(path: str | PathLike[str]) -> Program | DrawnProgram:
     r"""Read a program file.
 
     Parameters
@@ -119,8 +124,8 @@ def load_program(path: str | PathLike[str]) -> Program:
 
     Returns
     -------
-    Program
-        Checked.
+    Program or DrawnProgram
+        Checked; the latter of a file without a path, which names `draws`.
 
     Raises
     ------
@@ -151,30 +156,41 @@ def load_program(path: str | PathLike[str]) -> Program:
         mass_rule = one_of("robot_mass", robot.get("robot_mass", "larger"), RULES)
         direction = one_of("direction", robot.get("direction", "motion"), DIRECTIONS)
     read["robot"] = arm.sha256
-    motion, tcp_speed = _motion(given, arm, robot.get("link"), place.parent, read)
     more: dict[str, Any] = {name: given[name] for name in ("title", "separation", "confirmed") if name in given}
     more |= {name: robot[name] for name in ("link", "point") if name in robot}
     if "drive" in given:
         more["drive"] = drive_of(given["drive"])
+    more |= {"limits": limits, "coverings": coverings, "strains": strains}
+    more |= {"robot_mass": mass_rule, "direction": direction, "given": given, "files": read}
+    more |= {"points": tuple(_points(given["points"])), "segments": tuple(_segments(given["segments"]))}
+    if "draws" in given["motion"]:
+        return _drawn(given, arm, more)
+    motion, more["tcp_speed"] = _motion(given, arm, robot.get("link"), place.parent, read)
     if "zones" in given:
         rules = checked("zones", given["zones"], _ZONES, required=("deceleration",))
         if "step" in rules and "percent" in rules:
             raise InvalidParameterError("zones.percent", "be left out beside step", rules["percent"])
         more["zone_rules"] = ZoneRules(**rules)
-    return Program(
-        motion=motion,
-        points=tuple(_points(given["points"])),
-        segments=tuple(_segments(given["segments"])),
-        limits=limits,
-        coverings=coverings,
-        strains=strains,
-        robot_mass=mass_rule,
-        direction=direction,
-        tcp_speed=tcp_speed,
-        given=given,
-        files=read,
-        **more,
-    )
+    return Program(motion=motion, **more)
+
+
+_OF_DRAWS = ("draws", "seed", "accept_quantile")
+
+
+def _drawn(given: Mapping[str, Any], arm: Arm, more: dict[str, Any]) -> DrawnProgram:
+    """Return a robot without a program."""
+    values = checked("motion", given["motion"], _MOTION)
+    for name in ("moves", "zones"):
+        if name in given:
+            raise InvalidParameterError(name, "be left out without a program", Shown("given"))
+    for name in values:
+        if name not in (*_OF_DRAWS, "velocity", "tcp_speed"):
+            raise InvalidParameterError(f"motion.{name}", "be left out beside draws", values[name])
+    of_task = {name: values[name] for name in ("tcp_speed", "accept_quantile") if name in values}
+    motion = {name: values[name] for name in ("draws", "seed", "velocity") if name in values}
+    with located("motion"):
+        drawn = DrawnMotions(arm=arm, **motion)
+    return DrawnProgram(motion=drawn, **of_task, **more)
 
 
 def _motion(
@@ -182,6 +198,9 @@ def _motion(
 ) -> tuple[ArmMotion, float | None]:
     """Return the motion of a log or of moves, and the largest speed of the tool center point."""
     values = checked("motion", given["motion"], _MOTION)
+    for name in _OF_DRAWS:
+        if name in values:
+            raise InvalidParameterError(f"motion.{name}", "come with draws, without a program", values[name])
     if "acceleration" not in values:
         raise missing("motion.acceleration", "one number, or a table by joint, in rad/s^2: no file of an arm has it")
     tcp_speed = values.pop("tcp_speed", None)
@@ -229,7 +248,7 @@ def _segments(entries: list[dict[str, Any]]) -> list[Segment]:
     found = []
     for place, entry in enumerate(entries):
         path = f"segments[{place}]"
-        values = checked(path, entry, _SEGMENT, required=("from", "to", "regions"))
+        values = checked(path, entry, _SEGMENT, required=("regions",))
         with located(path):
-            found.append(Segment(start=values.pop("from"), end=values.pop("to"), **values))
+            found.append(Segment(start=values.pop("from", None), end=values.pop("to", None), **values))
     return found

@@ -12,11 +12,13 @@ from hrsafety._arguments import Array
 from hrsafety._records import dataclass
 from hrsafety.arms.doubts import doubts_of_point, for_rule
 from hrsafety.plausibility import ResultWarning, unsafe_doubts
+from hrsafety.program.contacts import BLOCK, MASSES, Contacts, Waypoints
 from hrsafety.program.exposures import NOT_PERMITTED, Exposure
-from hrsafety.program.runs import BLOCK, Runs, Waypoints
+from hrsafety.program.runs import Runs
+from hrsafety.program.task import ContactTask
 from hrsafety.standards.verdicts import speed_verdict
 
-__all__ = ["JudgedExposure", "judged", "path_doubts"]
+__all__ = ["EVEN", "JudgedExposure", "judged", "path_doubts", "robot_fields", "shares_of"]
 
 EVEN = 1e-9
 """Share by which a speed may be above its limit by rounding."""
@@ -83,13 +85,17 @@ def path_doubts(runs: Runs) -> Iterator[ResultWarning]:
 
 
 def judged(
-    runs: Runs, waypoints: Waypoints, contact: _hrsafety.ProgramContact, rows: tuple[Exposure, ...]
+    runs: Contacts,
+    waypoints: Waypoints,
+    contact: _hrsafety.ProgramContact,
+    rows: tuple[Exposure, ...],
+    general: tuple[ResultWarning, ...],
 ) -> list[JudgedExposure]:
     """Return the limits of a program held against its waypoints.
 
     Parameters
     ----------
-    runs : Runs
+    runs : Contacts
         Of the program.
     waypoints : Waypoints
         Planned places and rates.
@@ -97,6 +103,8 @@ def judged(
         Of the rows.
     rows : tuple of Exposure
         The limits.
+    general : tuple of ResultWarning
+        Doubts about the motion, those of every limit.
     """
     worst, share = _worst(runs, waypoints, contact, rows)
     used = np.unique(worst[worst >= 0])
@@ -104,10 +112,9 @@ def judged(
         waypoints.joints[used], waypoints.rates[used], body_masses=np.zeros(0), threads=runs.threads
     )
     directional = contact.masses(waypoints.joints, waypoints.rates, body_masses=np.zeros(0), threads=runs.threads)[
-        "mass_along_motion" if runs.program.direction == "motion" else "mass_worst_normal"
+        runs.own
     ]
-    about = [_about_point(runs, directional[:, place], place) for place in range(len(runs.program.points))]
-    general = tuple(path_doubts(runs))
+    about = [_about_point(runs, directional[:, place], place) for place in range(len(runs.task.points))]
     found = []
     for number, row in enumerate(rows):
         at, doubts = int(worst[number]), (*row.warnings, *about[row.point], *general)
@@ -116,11 +123,10 @@ def judged(
     return found
 
 
-def _worst(
-    runs: Runs, waypoints: Waypoints, contact: _hrsafety.ProgramContact, rows: tuple[Exposure, ...]
-) -> tuple[Array, Array]:
-    """Return the waypoint that uses each limit most, -1 for none, and the share."""
-    worst, most = np.full(len(rows), -1), np.zeros(len(rows))
+def shares_of(
+    runs: Contacts, waypoints: Waypoints, contact: _hrsafety.ProgramContact, rows: tuple[Exposure, ...]
+) -> Iterator[tuple[int, Array]]:
+    """Yield planned over allowed speeds (waypoints, rows) by blocks, each with the index of its first waypoint."""
     points = np.array([each.point for each in rows], dtype=np.int64)
     step = max(BLOCK // max(len(rows), 1), 1)
     for first in range(0, len(waypoints.time), step):
@@ -131,7 +137,15 @@ def _worst(
         speed = found["speed"][:, points]
         with np.errstate(divide="ignore", invalid="ignore"):
             share = np.where(speed > 0.0, speed / found["allowed"][:, : len(rows)], 0.0)
-        share = np.where(np.isnan(share), np.inf, share)  # a limit that is no number is not kept
+        yield first, np.where(np.isnan(share), np.inf, share)  # a limit that is no number is not kept
+
+
+def _worst(
+    runs: Contacts, waypoints: Waypoints, contact: _hrsafety.ProgramContact, rows: tuple[Exposure, ...]
+) -> tuple[Array, Array]:
+    """Return the waypoint that uses each limit most, -1 for none, and the share."""
+    worst, most = np.full(len(rows), -1), np.zeros(len(rows))
+    for first, share in shares_of(runs, waypoints, contact, rows):
         at = share.argmax(axis=0)
         here = share[at, np.arange(len(rows))]
         better = here > most
@@ -139,16 +153,17 @@ def _worst(
     return worst, most
 
 
-def _about_point(runs: Runs, masses: Array, place: int) -> tuple[ResultWarning, ...]:
+def _about_point(runs: Contacts, masses: Array, place: int) -> tuple[ResultWarning, ...]:
     """Return the doubts about the masses of a point."""
-    program, arm = runs.program, runs.program.motion.arm
+    program, arm = runs.task, runs.task.motion.arm
     moving = masses[np.isfinite(masses)]
     point = np.array(program.points[place].point)
-    return (*for_rule(arm.warnings, program.robot_mass, moving, arm.iso_mass), *doubts_of_point(point, arm.reach))
+    own = for_rule(arm.warnings, program.robot_mass, moving, arm.iso_mass, arm.mass_source)
+    return (*own, *doubts_of_point(point, arm.reach))
 
 
 def _row(
-    runs: Runs,
+    runs: Contacts,
     waypoints: Waypoints,
     numbers: dict[str, Array],
     row: Exposure,
@@ -158,11 +173,11 @@ def _row(
     doubts: tuple[ResultWarning, ...],
 ) -> JudgedExposure:
     unsafe = tuple(dict.fromkeys(unsafe_doubts(doubts)))
-    confirmed = runs.program.confirmed
+    confirmed = runs.task.confirmed
     left = tuple(each for each in unsafe if each.code not in confirmed)
     speed = float(numbers["speed"][line, row.point]) if at >= 0 else 0.0
     verdict = speed_verdict(share, 1.0 + EVEN, permitted=row.limit.permitted, checked=not left)
-    masses = {name: float(numbers[name][line, row.point]) for name in _MASSES} if at >= 0 else {}
+    masses = {name: float(numbers[name][line, row.point]) for name in MASSES} if at >= 0 else {}
     velocity = numbers["velocity"][line, row.point] if at >= 0 else np.zeros(3)
     return JudgedExposure(
         exposure=row,
@@ -182,12 +197,10 @@ def _row(
     )
 
 
-_MASSES = ("mass_along_motion", "mass_worst_normal", "mass_energy")
-
-
-def fields_of(row: JudgedExposure, names: list[str], runs: Runs) -> dict[str, Any]:
+def fields_of(row: JudgedExposure, runs: Contacts) -> dict[str, Any]:
     """Return a row as JSON holds it."""
-    limit, program = row.exposure.limit, runs.program
+    limit, program = row.exposure.limit, runs.task
+    names = program.motion.arm.joint_names
     return {
         "point": program.points[row.exposure.point].name,
         "segment": program.segment_name(row.exposure.segment),
@@ -205,9 +218,28 @@ def fields_of(row: JudgedExposure, names: list[str], runs: Runs) -> dict[str, An
         "allowed_speed": row.allowed_speed,
         "scale": row.scale,
         "governs": row.exposure.governs,
-        **{name: row.masses.get(name) for name in _MASSES},
+        **{name: row.masses.get(name) for name in MASSES},
         "human_speed": row.exposure.human_speed,
         "doubts": list(dict.fromkeys(each.code for each in row.doubts)),
         "reasons": list(dict.fromkeys(each.message for each in row.doubts)),
         "confirmed": list(row.confirmed),
+    }
+
+
+def robot_fields(task: ContactTask, velocity: Array) -> dict[str, Any]:
+    """Return what is known of the robot as JSON holds it, with the largest rates of its joints."""
+    arm = task.motion.arm
+    names = list(arm.joint_names)
+    return {
+        "name": arm.name,
+        "sha256": arm.sha256,
+        "iso_mass": arm.iso_mass,
+        "total_mass": arm.total_mass,
+        "moving_mass": arm.moving_mass,
+        "payload_mass": arm.payload_mass,
+        "mass_rule": task.robot_mass,
+        "direction": task.direction,
+        "joints": names,
+        "velocity": dict(zip(names, velocity.tolist(), strict=True)),
+        "tool": {"link": task.link, "point": list(task.point), "speed": task.tcp_speed},
     }

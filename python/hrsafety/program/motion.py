@@ -24,7 +24,7 @@ from hrsafety.program.moves import Legs, Move, legs_of
 from hrsafety.program.recorded import JointLog, checked_log, followed, joint_values, read_log
 from hrsafety.tables import Columns, Table
 
-__all__ = ["INTERVALS", "ArmMotion", "Retimed"]
+__all__ = ["INTERVALS", "ArmMotion", "Retimed", "velocities_of"]
 
 INTERVALS = 2000
 """Intervals that a path is retimed in, at least."""
@@ -490,20 +490,25 @@ class Retimed(Table):
 
 def _limits(arm: Arm, velocity: object, acceleration: object) -> tuple[Array, Array]:
     """Return the largest rates and accelerations of the joints."""
-    if not arm.free_joints:
-        raise InvalidParameterError("arm", "have a joint that moves", arm.name)
-    rates = _of_file(arm) if velocity is None else joint_values("velocity", velocity, arm)
+    rates = velocities_of(arm, velocity)
     if acceleration is None:
         raise InvalidParameterError("acceleration", "be given", Shown("nothing"), "no file of an arm has it")
     gains = joint_values("acceleration", acceleration, arm)
-    for name, values, rule in (
-        ("velocity", rates, "be finite and above 0"),
-        ("acceleration", gains, "be above 0"),
-    ):
-        for joint, value in zip(arm.joint_names, values.tolist(), strict=True):
-            if not value > 0.0 or (name == "velocity" and not np.isfinite(value)):
-                raise InvalidParameterError(f"{name}.{joint}", rule, value)
+    for joint, value in zip(arm.joint_names, gains.tolist(), strict=True):
+        if not value > 0.0:
+            raise InvalidParameterError(f"acceleration.{joint}", "be above 0", value)
     return rates, gains
+
+
+def velocities_of(arm: Arm, velocity: object) -> Array:
+    """Return the largest rates of the joints, those of the URDF for ``None``."""
+    if not arm.free_joints:
+        raise InvalidParameterError("arm", "have a joint that moves", arm.name)
+    rates = _of_file(arm) if velocity is None else joint_values("velocity", velocity, arm)
+    for joint, value in zip(arm.joint_names, rates.tolist(), strict=True):
+        if not value > 0.0 or not np.isfinite(value):
+            raise InvalidParameterError(f"velocity.{joint}", "be finite and above 0", value)
+    return rates
 
 
 def _of_file(arm: Arm) -> Array:

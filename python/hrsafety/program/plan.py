@@ -11,9 +11,10 @@ from hrsafety import _hrsafety
 from hrsafety.arms.masses import mass_by_rule
 from hrsafety.contact import Contact, MeasurementPlan, PlannedMeasurement, driven_loads
 from hrsafety.errors import InvalidParameterError
+from hrsafety.program.contacts import Choice
 from hrsafety.program.exposures import Exposure
 from hrsafety.program.motion import Retimed
-from hrsafety.program.runs import Choice, Runs
+from hrsafety.program.runs import Runs
 
 __all__ = ["plan_of"]
 
@@ -75,8 +76,7 @@ def _measured(
     if speed <= SLOWEST:
         return []
     program, arm = runs.program, runs.program.motion.arm
-    name = "mass_along_motion" if program.direction == "motion" else "mass_worst_normal"
-    mass = float(mass_by_rule(program.robot_mass, found[name][at, row.point], arm.iso_mass))
+    mass = float(mass_by_rule(program.robot_mass, found[runs.own][at, row.point], arm.iso_mass))
     velocity = found["velocity"][at, row.point]
     return [
         PlannedMeasurement(

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from hrsafety._records import dataclass
+from hrsafety.program.contacts import Waypoints
 from hrsafety.program.motion import Retimed
-from hrsafety.program.runs import AllowedAlong, Runs, Waypoints
+from hrsafety.program.runs import AllowedAlong, Runs
 from hrsafety.program.study import ProgramStudy, study_of
 from hrsafety.program.task import ProgramTask
 from hrsafety.program.zoned import SpeedZones, zones_of

@@ -13,10 +13,11 @@ from hrsafety.contact import MeasurementPlan
 from hrsafety.contact.cell.handover import distances_fields
 from hrsafety.contact.cell.stops import stopping_of
 from hrsafety.plausibility import ResultWarning
-from hrsafety.program.judged import JudgedExposure, fields_of, judged, path_doubts
+from hrsafety.program.contacts import MASSES, Choice, Waypoints
+from hrsafety.program.judged import JudgedExposure, fields_of, judged, path_doubts, robot_fields
 from hrsafety.program.motion import Retimed
 from hrsafety.program.plan import plan_of
-from hrsafety.program.runs import Choice, Runs, Waypoints
+from hrsafety.program.runs import Runs
 from hrsafety.program.task import ProgramTask
 from hrsafety.program.zoned import PathSpeeds, SpeedZones, speeds_of, told_limit, zones_of
 from hrsafety.standards.fields import FieldDistances, field_distances
@@ -136,14 +137,14 @@ def study_of(program: ProgramTask, *, intervals: int | None = None, threads: int
     runs = Runs(program, intervals, threads)
     choice = runs.planned
     rows, contact, waypoints = runs.rows(choice), runs.contact(choice), runs.waypoints()
-    found = judged(runs, waypoints, contact, rows)
+    general = tuple(path_doubts(runs))
+    found = judged(runs, waypoints, contact, rows, general)
     found.sort(key=lambda each: -each.share if each.exposure.limit.permitted else -math.inf)
     free, limited, zones = runs.retimed(None), runs.retimed(choice), zones_of(runs, choice)
     table, fastest, least = _table(runs, waypoints, choice)
     segments = tuple(sorted(_costs(runs, free, limited, choice), key=lambda each: -_ranked(each)))
     times = tuple(_times(runs, zones))
     warnings = _warnings(runs, found, (free, limited, *(() if zones is None or zones.run is None else (zones.run,))))
-    general = tuple(path_doubts(runs))
     own = tuple(each for each in general if each.code not in program.confirmed)
     verdict = doubted(strictest(each.verdict for each in found), own) if found else doubted("within_limits", own)
     distances = None
@@ -196,16 +197,13 @@ def _table(runs: Runs, waypoints: Waypoints, choice: Choice) -> tuple[Columns, f
         "vy_m_per_s": velocity[:, 1],
         "vz_m_per_s": velocity[:, 2],
         "speed_m_per_s": speed[:, :points].reshape(-1),
-        **{f"{name}_kg": masses[name][:, :points].reshape(-1) for name in _MASSES},
+        **{f"{name}_kg": masses[name][:, :points].reshape(-1) for name in MASSES},
         "allowed_speed_m_per_s": lowest.reshape(-1),
         "governs": names[governs.reshape(-1)],
         "scale": allowed["scale"][:, :points].reshape(-1),
     }
     least = float(lowest[moving].min()) if moving.any() else math.inf
     return table, float(speed.max(initial=0.0)), least
-
-
-_MASSES = ("mass_along_motion", "mass_worst_normal", "mass_energy")
 
 
 def _costs(runs: Runs, free: Retimed, limited: Retimed, choice: Choice) -> list[SegmentCost]:
@@ -282,8 +280,8 @@ def _fields(
     distances: FieldDistances | None,
 ) -> dict[str, Any]:
     """Return every result by name."""
-    program, arm = runs.program, runs.program.motion.arm
-    names = list(arm.joint_names)
+    program = runs.program
+    names = program.motion.arm.joint_names
     codes = [code for row in found for code in dict.fromkeys(each.code for each in row.doubts)]
     return {
         "verdict": verdict,
@@ -291,23 +289,11 @@ def _fields(
         "confirmed": dict(program.confirmed),
         "times": [each._asdict() for each in times],
         "segments": [_segment(runs, each) for each in segments],
-        "rows": [fields_of(each, names, runs) for each in found],
+        "rows": [fields_of(each, runs) for each in found],
         "zones": None if zones is None else _zones(zones),
         "distances": None if distances is None else distances_fields(distances),
-        "robot": {
-            "name": arm.name,
-            "sha256": arm.sha256,
-            "iso_mass": arm.iso_mass,
-            "total_mass": arm.total_mass,
-            "moving_mass": arm.moving_mass,
-            "payload_mass": arm.payload_mass,
-            "mass_rule": program.robot_mass,
-            "direction": program.direction,
-            "joints": names,
-            "velocity": dict(zip(names, runs.motion.velocity.tolist(), strict=True)),
-            "acceleration": dict(zip(names, runs.motion.acceleration.tolist(), strict=True)),
-            "tool": {"link": program.link, "point": list(program.point), "speed": program.tcp_speed},
-        },
+        "robot": robot_fields(program, runs.motion.velocity)
+        | {"acceleration": dict(zip(names, runs.motion.acceleration.tolist(), strict=True))},
         "path": {
             "length": runs.motion.curve.length,
             "intervals": len(runs.motion.curve.coefficients),

@@ -1,4 +1,4 @@
-"""What is asked of a robot program: a motion, what of it may touch whom, and by which rules."""
+"""What is asked of a robot: its motion, what of it may touch whom, and by which rules."""
 
 from __future__ import annotations
 
@@ -16,12 +16,13 @@ from hrsafety.contact import Covering, Drive
 from hrsafety.contact.cell.cell import MOST_COVERINGS, confirmed_of
 from hrsafety.contact.cell.stops import separation_of
 from hrsafety.errors import InvalidParameterError
+from hrsafety.program.draws import DrawnMotions
 from hrsafety.program.exposures import ContactPoint, Segment
 from hrsafety.program.motion import ArmMotion
 from hrsafety.standards.limit_sets import LimitSet
 from hrsafety.standards.sets import limits as limit_set
 
-__all__ = ["DIRECTIONS", "ProgramTask", "ZoneRules"]
+__all__ = ["DIRECTIONS", "ContactTask", "ProgramTask", "ZoneRules"]
 
 DIRECTIONS = ("motion", "worst")
 MOST_EXPOSURES = 10**4
@@ -70,10 +71,10 @@ class ZoneRules:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
-class ProgramTask:
-    """What is asked of a robot program: its motion, its points, and who is within reach of them, see `Program`."""
+class ContactTask:
+    """What is asked of a robot: how it moves, its points, and who is within reach of them, see `Program`."""
 
-    motion: ArmMotion
+    motion: ArmMotion | DrawnMotions
     points: tuple[ContactPoint, ...]
     segments: tuple[Segment, ...]
     limits: LimitSet = field(default_factory=limit_set)
@@ -85,7 +86,6 @@ class ProgramTask:
     link: str | None = None
     point: tuple[float, float, float] = (0.0, 0.0, 0.0)
     tcp_speed: float | None = None
-    zone_rules: ZoneRules | None = None
     separation: Mapping[str, Any] | None = None
     confirmed: Mapping[str, str] = field(default_factory=dict)
     title: str = "Contact of a robot program with people"
@@ -94,7 +94,6 @@ class ProgramTask:
 
     def __post_init__(self) -> None:
         """Check the values."""
-        instance("motion", self.motion, ArmMotion)
         instance("limits", self.limits, LimitSet)
         checked_text("title", self.title, "be a text")
         word("robot_mass", self.robot_mass, RULES)
@@ -104,8 +103,6 @@ class ProgramTask:
                 raise InvalidParameterError(name, "be a mapping", getattr(self, name))
         if self.drive is not None:
             instance("drive", self.drive, Drive)
-        if self.zone_rules is not None:
-            instance("zone_rules", self.zone_rules, ZoneRules)
         made: dict[str, Any] = {
             "points": tuple(sequence("points", "be points", self.points)),
             "segments": tuple(sequence("segments", "be segments", self.segments)),
@@ -161,7 +158,7 @@ class ProgramTask:
                 raise InvalidParameterError(f"points[{place}].covering", rule, each.covering, remedy)
 
     def _checked_segments(self) -> None:
-        """Refuse segments that are not on the path, with regions that the limits do not know, or too many."""
+        """Refuse segments with regions that the limits do not know, or too many."""
         if not 1 <= len(self.segments) <= MOST_SEGMENTS:
             raise InvalidParameterError("segments", f"be 1 to {MOST_SEGMENTS}", len(self.segments))
         regions, areas = 0, self.limits.areas()
@@ -173,10 +170,30 @@ class ProgramTask:
                 if region not in names:
                     rule = f"name regions ({', '.join(self.limits.regions)}) or areas of the limits"
                     raise InvalidParameterError(f"segments[{place}].regions", rule, region, meant(region, names))
-            self.span(place)
         if regions * len(self.points) > MOST_EXPOSURES:
             rule = f"be at most {MOST_EXPOSURES} points times regions"
             raise InvalidParameterError("segments", rule, regions * len(self.points))
+
+    def segment_name(self, segment: int) -> str:
+        """Return the name of a segment."""
+        return self.segments[segment].name or f"segment {segment + 1}"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class ProgramTask(ContactTask):
+    """What is asked of a robot program: a task along a path, see `Program`."""
+
+    motion: ArmMotion
+    zone_rules: ZoneRules | None = None
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        instance("motion", self.motion, ArmMotion)
+        if self.zone_rules is not None:
+            instance("zone_rules", self.zone_rules, ZoneRules)
+        ContactTask.__post_init__(self)
+        for place in range(len(self.segments)):
+            self.span(place)
 
     def span(self, segment: int) -> tuple[float, float]:
         """Return the path parameter where a segment begins and ends.
@@ -206,7 +223,7 @@ class ProgramTask:
                     remedy = meant(given, motion.marks) if isinstance(given, str) else None
                     raise InvalidParameterError(path, rule, given, remedy)
                 found.append(motion.marks[str(given)][side])
-            elif isinstance(given, str):
+            elif given is None or isinstance(given, str):
                 raise InvalidParameterError(path, "be a time in s, or a path parameter", given)
             elif motion.log is not None and motion.place is not None:
                 begun, ended = float(motion.log.time[0]), float(motion.log.time[-1])
@@ -221,10 +238,6 @@ class ProgramTask:
             remedy = "a segment begins before it ends, and the robot moves in it"
             raise InvalidParameterError(f"segments[{segment}].to", "lie behind from on the path", each.end, remedy)
         return found[0], found[1]
-
-    def segment_name(self, segment: int) -> str:
-        """Return the name of a segment."""
-        return self.segments[segment].name or f"segment {segment + 1}"
 
     @property
     def uncovered(self) -> float:

@@ -8,10 +8,11 @@ import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array
+from hrsafety.program.contacts import Choice
 from hrsafety.program.curves import Indices
 from hrsafety.program.exposures import Exposure
 from hrsafety.program.motion import ArmMotion, Retimed
-from hrsafety.program.runs import Choice, Runs
+from hrsafety.program.runs import Runs
 
 __all__ = [
     "PathPlace",

@@ -130,6 +130,22 @@ def test_the_same_file_gives_the_same_bytes(reported: Any) -> None:
     assert "2026-03-31" in page
 
 
+def test_a_robot_without_a_program_is_judged_by_a_quantile(reported: Any) -> None:
+    head, rest = SMALL.split("[motion]")
+    points = rest[rest.index("[[points]]") :].replace('from = "move 1"\nto = "move 3"\n', "")
+    motion = "[motion]\nvelocity = 2.0\ndraws = 2000\ntcp_speed = 0.1\n"
+    report, page = reported(head + motion + points)
+    assert report["verdict"] == "not_checked"
+    assert report["warnings"][0].startswith("the worst of 2000 drawn motions counts")
+    first = [path.read_bytes() for path in sorted(Path("report").iterdir())]
+    reported(head + motion + points)
+    assert [path.read_bytes() for path in sorted(Path("report").iterdir())] == first
+    report, page = reported(head + motion + "accept_quantile = 0.99\n" + points)
+    assert report["verdict"] == "within_limits"
+    assert all(sentence in page for sentence in report["answer"])
+    assert [each["level"] for each in report["rows"][0]["shares"]] == [0.5, 0.95, 0.99, 0.99]
+
+
 def test_the_joint_log_is_read_again_and_keeps_its_limits(reported: Any) -> None:
     report, _ = reported(SMALL)
     Path("log.toml").write_text(

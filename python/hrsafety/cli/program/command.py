@@ -34,29 +34,35 @@ def report_program(options: argparse.Namespace) -> None:
     with output.located(options.file):
         study = program.load_program(options.file).report()
     command = f"hrsafety program {Path(options.file).name}"
-    report = program_report.report_of(options.file, study, command=command, date=date)
+    if isinstance(study, program.DrawnStudy):
+        report = program_report.report_of_draws(options.file, study, command=command, date=date)
+        page, tables = report.page(), {}
+    else:
+        report = program_report.report_of(options.file, study, command=command, date=date)
+        page = program_page.html(report, program_pictures.drawings(study))
+        tables = {"measurement_plan": study.plan.columns(), "waypoints": study.columns()}
+        if study.limited.standstill < 0:
+            tables["joint_log"] = study.limited.columns()
     print(terminal.told(report))
-    page = program_page.html(report, program_pictures.drawings(study))
     place = output.folder(options.out)
     written = [
         output.write_text(place / "report.json", report.json(sort=True)),
         output.write_text(place / "report.html", page),
-        _table(place / "measurement_plan.csv", study.plan.columns()),
-        _table(place / "waypoints.csv", study.columns()),
+        *(_table(place / f"{name}.csv", columns) for name, columns in tables.items()),
     ]
-    if study.limited.standstill < 0:
-        written.append(_table(place / "joint_log.csv", study.limited.columns()))
     output.say_written(written, report, options)
     output.report_warnings(study.warnings, strict=False)
     verdict.leave(study.verdict, _said(study))
     output.leave_if_strict(study.warnings, options.strict)
 
 
-def _said(study: program.ProgramStudy) -> str:
+def _said(study: program.ProgramStudy | program.DrawnStudy) -> str:
     """Return the verdict with its number of limits and, where they decide it, its doubts."""
     held = [each.verdict for each in study.rows]
     doubts = f" ({', '.join(study.fields['doubts'])})" if study.verdict == "not_checked" else ""
-    return f"{VERDICT_WORDS[study.verdict]}: {held.count(study.verdict)} of {len(held)} limits along the path{doubts}"
+    told = f"{held.count(study.verdict)} of {len(held)} limits"
+    where = "over drawn motions" if isinstance(study, program.DrawnStudy) else "along the path"
+    return f"{VERDICT_WORDS[study.verdict]}: {told} {where}{doubts}"
 
 
 def _table(path: Path, columns: Columns) -> Path:

@@ -11,10 +11,11 @@ from hrsafety.cli.cell.report import CONFIRM, NOT_COVERED, sha256_of
 from hrsafety.contact.cell.study import numbers_of
 from hrsafety.pages import sentence, versions
 from hrsafety.pages.report import Report, ReportTable, Section
-from hrsafety.program import ProgramStudy
+from hrsafety.program import DrawnStudy, ProgramStudy
+from hrsafety.program.draws import LISTED, Quantile
 from hrsafety.standards.verdicts import VERDICT_WORDS
 
-__all__ = ["report_of"]
+__all__ = ["report_of", "report_of_draws"]
 
 FORMAT = 1
 CLASSES = {"quasi_static": "clamped", "transient": "free"}
@@ -39,27 +40,7 @@ def report_of(path: str, study: ProgramStudy, *, command: str, date: str | None)
         Date to print; absent when ``None``.
     """
     program = study.program
-    values: dict[str, Any] = numbers_of(
-        {
-            "format": "hrsafety program report",
-            "format_version": FORMAT,
-            **({} if date is None else {"date": date}),
-            "answer": list(_answer(study)),
-            **study.fields,
-            "plan": study.plan.fields(),
-            "limits": {name: getattr(program.limits, name) for name in ("id", "title", "edition", "note")},
-            "inputs": canonical(dict(program.given)),
-            "not_covered": [*OF_PROGRAMS, *NOT_COVERED],
-            "confirmation": CONFIRM,
-            "audit": {
-                "hrsafety": __version__,
-                "versions": versions("numpy", "matplotlib", "jinja2"),
-                "command": command,
-                "inputs_sha256": sha256_of(canonical(dict(program.given))),
-                "files_sha256": dict(program.files),
-            },
-        }
-    )
+    values = _values(study, list(_answer(study)), command, date, {"plan": study.plan.fields()})
     return Report(
         title=program.title,
         facts=[("program", path), *_facts(values)],
@@ -70,6 +51,116 @@ def report_of(path: str, study: ProgramStudy, *, command: str, date: str | None)
         values=values,
         source=path,
     )
+
+
+def report_of_draws(path: str, study: DrawnStudy, *, command: str, date: str | None) -> Report:
+    """Return the report of a robot without a program; the arguments are those of `report_of`."""
+    program = study.program
+    values = _values(study, list(_answer_of_draws(study)), command, date, {})
+    return Report(
+        title=program.title,
+        facts=[("robot", path), *_facts(values)],
+        said=VERDICT_WORDS[study.verdict],
+        good=study.verdict == "within_limits",
+        sections=[
+            Section("Limits over drawn motions", [SHARES, _shares(study)]),
+            Section("Masses", [MASSES_TOLD, _masses(study)]),
+            Section("What is not covered", values["not_covered"]),
+        ],
+        warnings=study.warnings,
+        values=values,
+        files=["report.json"],
+        source=path,
+    )
+
+
+def _values(
+    study: ProgramStudy | DrawnStudy, answer: list[str], command: str, date: str | None, more: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return what report.json holds."""
+    program = study.program
+    inputs = canonical(dict(program.given))
+    values: dict[str, Any] = numbers_of(
+        {
+            "format": "hrsafety program report",
+            "format_version": FORMAT,
+            **({} if date is None else {"date": date}),
+            "answer": answer,
+            **study.fields,
+            **more,
+            "limits": {name: getattr(program.limits, name) for name in ("id", "title", "edition", "note")},
+            "inputs": inputs,
+            "not_covered": [*OF_PROGRAMS, *NOT_COVERED],
+            "confirmation": CONFIRM,
+            "audit": {
+                "hrsafety": __version__,
+                "versions": versions("numpy", "matplotlib", "jinja2"),
+                "command": command,
+                "inputs_sha256": sha256_of(inputs),
+                "files_sha256": dict(program.files),
+            },
+        }
+    )
+    return values
+
+
+SHARES = (
+    "Planned over allowed speed: quantiles of the drawn motions, each with its 95 % interval between order "
+    "statistics, and the worst one. Each motion is as fast as the joints and the speed of the tool center point allow."
+)
+MASSES_TOLD = "Directional masses in kg. Near a singular pose a mass is above ten medians."
+
+
+def _answer_of_draws(study: DrawnStudy) -> Iterator[str]:
+    """Yield the answer in three sentences: the verdict, the hardest limit, the masses."""
+    program, motion = study.program, study.program.motion
+    worst = next((each for each in study.rows if each.exposure.limit.permitted and each.waypoint >= 0), None)
+    held = "the worst one" if program.accept_quantile is None else f"the quantile of {program.accept_quantile:g}"
+    yield f"There is no program: {motion.draws} drawn motions are {VERDICT_WORDS[study.verdict]}, judged by {held}."
+    if worst is None:
+        yield "No point that may move is permitted or able to touch."
+    else:
+        name = f"{program.points[worst.exposure.point].name} ({_limit(worst.exposure)})"
+        speeds = f"{worst.speed:.3f} m/s where {worst.allowed_speed:.3f} m/s are allowed"
+        yield f"The hardest drawn motion is that of {name}: {speeds}."
+    near = max((each.near_singular for each in study.masses), default=0.0)
+    yield f"Up to {100.0 * near:.3g} % of the motions of a point are near a singular pose."
+
+
+def _quantile(found: Quantile) -> str:
+    low, high = (f"{each:.3g}" for each in (found.low, found.high))
+    return f"{found.value:.3g} ({low} to {high})"
+
+
+def _shares(study: DrawnStudy) -> ReportTable:
+    rows = [
+        (
+            f"{row['point']}, {(row['area_name'] or row['region']).replace('_', ' ')}, {CLASSES[row['contact']]}"
+            + (", with the drive" if row["with_drive"] else ""),
+            VERDICT_WORDS[row["verdict"]],
+            *(_quantile(each) for each in shares),
+            f"{row['share_worst']:.3g}",
+            ", ".join(row["doubts"]).replace("_", " ") or "-",
+        )
+        for row, shares in zip(study.fields["rows"], study.shares, strict=True)
+    ]
+    names = ("limit", "verdict", *(f"{100.0 * level:g} %" for level in LISTED), "worst", "doubts")
+    return ReportTable(headers=[names], rows=rows, left=(0, 1, len(names) - 1), printed=True)
+
+
+def _masses(study: DrawnStudy) -> ReportTable:
+    rows = [
+        (
+            each.point,
+            *(_quantile(one) for one in each.quantiles or ()),
+            f"{each.worst:.3g}",
+            f"{100.0 * each.near_singular:.3g} %",
+        )
+        for each in study.masses
+        if each.quantiles
+    ]
+    names = ("point", *(f"{100.0 * level:g} %" for level in LISTED), "worst", "near a singular pose")
+    return ReportTable(headers=[names], rows=rows, printed=True)
 
 
 def _facts(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
