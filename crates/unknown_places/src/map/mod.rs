@@ -1,5 +1,9 @@
 //! Square cells around a robot, filled by its scans.
 
+mod cells;
+mod rolling;
 mod walk;
 
+pub use cells::{Cells, Kind, Known};
+pub use rolling::{MapOptions, RollingMap, Scan};
 pub use walk::walk;

@@ -4,7 +4,6 @@
 ///
 /// As many cells are handed over as there are lines of the grid between the ends, and one: rounding may choose the
 /// other of two cells at a corner, but neither loses the last cell nor goes beyond it.
-#[allow(clippy::cast_possible_truncation)] // ends are checked to be cells of a grid
 pub fn walk(from: [f64; 2], to: [f64; 2], mut visit: impl FnMut([i64; 2])) {
     let mut cell = from.map(|axis| axis.floor() as i64);
     let last = to.map(|axis| axis.floor() as i64);

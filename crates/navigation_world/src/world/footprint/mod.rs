@@ -137,19 +137,26 @@ impl Footprint {
     /// Distance of a point in m; inside the outline minus the distance to the nearest side.
     #[must_use]
     pub fn signed_distance(&self, point: Vector2<f64>) -> f64 {
-        let beyond = |side: &Side| side.normal.dot(&(point - side.start));
-        let most = self
-            .sides
-            .iter()
-            .map(beyond)
-            .fold(f64::NEG_INFINITY, f64::max);
+        let most = self.beyond(point);
         if most <= 0.0 {
             return most;
         }
+        let beyond = |side: &Side| side.normal.dot(&(point - side.start));
         let outside = self.sides.iter().filter(|side| beyond(side) > 0.0);
         outside
             .map(|side| side.distance(point))
             .fold(f64::INFINITY, f64::min)
+    }
+
+    /// How far a point is beyond the side that it is farthest beyond, in m: no more than its signed distance.
+    #[inline]
+    #[must_use]
+    pub fn beyond(&self, point: Vector2<f64>) -> f64 {
+        let beyond = |side: &Side| side.normal.dot(&(point - side.start));
+        self.sides
+            .iter()
+            .map(beyond)
+            .fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Distance of a point in m, zero inside.

@@ -1,0 +1,360 @@
+//! Scans and a pose in, a verified twist out, once in a control period.
+
+use nalgebra::Vector2;
+use navigation_world::robots::differential::{DifferentialLimits, Twist};
+use navigation_world::world::footprint::Footprint;
+use navigation_world::world::frame::Frame;
+use numeric::error::{Failure, Given, Result, finite_pair, not_negative, positive};
+
+use super::recovery::Recovery;
+use super::rollouts::{Rated, Reach, Rollouts};
+use super::verify::{Chassis, Obstacle};
+use crate::guide::{GuideOptions, Progress, Search, Size, TimeToGo};
+use crate::map::{Cells, MapOptions, RollingMap, Scan};
+
+/// Under the robot and as far around it in m cells are free at the start.
+const STANDS: f64 = 0.03;
+
+/// A robot with two wheels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Robot {
+    /// Outline around the middle of the axle.
+    pub footprint: Footprint,
+    /// Limits of its speeds.
+    pub limits: DifferentialLimits,
+    /// Control period in s.
+    pub period: f64,
+}
+
+/// How it finds its way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExplorerOptions {
+    /// Map.
+    pub map: MapOptions,
+    /// Prices of ways.
+    pub guide: GuideOptions,
+    /// Distance from everything known in m.
+    pub margin: f64,
+    /// Control periods between two searches for a way.
+    pub replan: usize,
+    /// Nodes that a search looks at in a control period.
+    pub nodes: usize,
+    /// Whether plans are verified.
+    pub verify: bool,
+    /// Seed of what is driven without progress.
+    pub seed: u64,
+}
+
+impl Default for ExplorerOptions {
+    fn default() -> Self {
+        Self {
+            map: MapOptions::default(),
+            guide: GuideOptions::default(),
+            margin: 0.03,
+            replan: 3,
+            nodes: 8000,
+            verify: true,
+            seed: 0,
+        }
+    }
+}
+
+/// What became of the commands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// The best one is executed.
+    Kept,
+    /// Another one than the best is.
+    Changed,
+    /// None is verified: the plan runs on until rest.
+    Braking,
+}
+
+/// What to do until the next control period.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Decision {
+    /// Twist at its end; the present one becomes it at constant rates.
+    pub twist: Twist,
+    /// What became of the commands.
+    pub status: Status,
+    /// Time to the goal in s, where there is a way.
+    pub time_to_go: Option<f64>,
+    /// Whether the robot drives without progress somewhere else.
+    pub recovering: bool,
+}
+
+/// A robot at work.
+#[derive(Clone, Debug)]
+pub struct Explorer {
+    chassis: Chassis,
+    options: ExplorerOptions,
+    map: RollingMap,
+    cells: Cells,
+    search: Search,
+    plan: TimeToGo,
+    planned: bool,
+    since: usize,
+    rollouts: Rollouts,
+    recovery: Recovery,
+    goal: Vector2<f64>,
+    twist: Twist,
+    /// Periods until rest of the plan that is executed.
+    left: u32,
+    order: Vec<Rated>,
+    obstacles: Vec<Obstacle>,
+    started: bool,
+}
+
+impl Explorer {
+    /// A robot at rest that knows nothing.
+    ///
+    /// # Errors
+    /// Names the number that is not allowed, or says that the map is too small for the robot to stop in it.
+    pub fn new(robot: &Robot, options: ExplorerOptions, goal: [f64; 2]) -> Result<Self> {
+        let limits = robot.limits.checked()?;
+        positive("control_period", robot.period)?;
+        not_negative("margin", options.margin)?;
+        options.guide.checked()?;
+        if options.replan == 0 || options.nodes == 0 {
+            let name = if options.nodes == 0 {
+                "nodes"
+            } else {
+                "replan"
+            };
+            return Err(Failure::invalid(name, "be at least 1", Given::Count(0)));
+        }
+        let chassis = Chassis {
+            footprint: robot.footprint.clone(),
+            acceleration: limits.max_acceleration.min(limits.max_deceleration),
+            turn_acceleration: limits.max_angular_acceleration,
+            period: robot.period,
+            margin: options.margin,
+        };
+        let reach = Reach::of(&chassis, limits.max_speed, limits.max_turn_rate);
+        let outer = chassis.footprint.outer_radius();
+        let fastest = Twist {
+            speed: limits.max_speed,
+            turn_rate: limits.max_turn_rate,
+        };
+        let needed = chassis
+            .sight(chassis.travel(fastest))
+            .max(reach.longest(robot.period) + outer);
+        if needed > options.map.reach {
+            let rule = format!(
+                "be at least {needed:.3} m, within which the robot can come until it stops"
+            );
+            return Err(Failure::invalid(
+                "reach",
+                rule,
+                Given::Number(options.map.reach),
+            ));
+        }
+        let map = RollingMap::new(options.map)?;
+        let far = (outer + options.margin + 0.02 + 0.3).max(options.guide.near_distance);
+        let size = Size {
+            inner: chassis.footprint.inner_radius(),
+            outer,
+            max_speed: limits.max_speed,
+        };
+        Ok(Self {
+            cells: Cells::new(&map, far),
+            map,
+            search: Search::new(options.guide, size),
+            plan: TimeToGo::default(),
+            planned: false,
+            since: 0,
+            rollouts: Rollouts::new(reach),
+            recovery: Recovery::new(robot.period, reach.periods as f64, options.seed),
+            goal: finite_pair("goal", goal)?.into(),
+            twist: Twist::default(),
+            left: 0,
+            order: Vec::new(),
+            obstacles: Vec::new(),
+            started: false,
+            chassis,
+            options,
+        })
+    }
+
+    /// The cells as they were at the last decision.
+    #[must_use]
+    pub fn cells(&self) -> &Cells {
+        &self.cells
+    }
+
+    /// Times to the goal.
+    #[must_use]
+    pub fn plan(&self) -> Option<&TimeToGo> {
+        self.planned.then_some(&self.plan)
+    }
+
+    /// How often the robot made no progress.
+    #[must_use]
+    pub fn recoveries(&self) -> u64 {
+        self.recovery.begun()
+    }
+
+    /// The twist that its plan has now.
+    #[must_use]
+    pub fn twist(&self) -> Twist {
+        self.twist
+    }
+
+    /// Enters a scan, made at the pose of the lidar in it; `robot`: pose of the robot now.
+    ///
+    /// # Errors
+    /// The scan is not allowed.
+    pub fn see(&mut self, robot: &Frame, scan: Scan<'_>) -> Result<()> {
+        self.follow(robot);
+        self.map.enter(scan)
+    }
+
+    fn follow(&mut self, robot: &Frame) {
+        self.map.follow(robot.position);
+        if !self.started {
+            self.started = true;
+            self.map.stands(&self.chassis.footprint, robot, STANDS);
+        }
+    }
+
+    /// Decides for the next control period from a pose; all scans until now have been entered.
+    pub fn decide(&mut self, robot: &Frame) -> Decision {
+        self.follow(robot);
+        self.cells.read(&self.map);
+        self.guide(robot.position);
+        let present = self.look(robot);
+        let time_to_go = if self.planned {
+            self.plan.time(robot.position)
+        } else {
+            None
+        };
+        let escape = self.recovery.observe(time_to_go);
+        self.order.clear();
+        if self.planned {
+            let (cells, plan) = (&self.cells, &mut self.plan);
+            let rated = self
+                .rollouts
+                .rate(&self.chassis, cells, plan, robot, self.twist, present);
+            self.order
+                .extend(rated.iter().filter(|rated| rated.score < f64::INFINITY));
+            self.order
+                .sort_by(|one, other| one.score.total_cmp(&other.score));
+        }
+        let mut chosen = None;
+        if let Some(wanted) = escape {
+            let twist = self.approach(wanted);
+            chosen = self.verified(twist).then_some((twist, Status::Changed));
+        }
+        for at in 0..self.order.len() {
+            if chosen.is_some() {
+                break;
+            }
+            let twist = self.order[at].twist;
+            let status = if at == 0 {
+                Status::Kept
+            } else {
+                Status::Changed
+            };
+            chosen = self.verified(twist).then_some((twist, status));
+        }
+        let (twist, status) = chosen.unwrap_or_else(|| (self.braked(), Status::Braking));
+        if status == Status::Braking {
+            self.left = self.left.saturating_sub(1);
+        } else {
+            self.left = self.chassis.periods_to_rest(twist);
+        }
+        self.twist = twist;
+        Decision {
+            twist,
+            status,
+            time_to_go,
+            recovering: escape.is_some(),
+        }
+    }
+
+    /// The plan as it runs on.
+    fn braked(&self) -> Twist {
+        if self.left <= 1 {
+            return Twist::default();
+        }
+        let share = f64::from(self.left - 1) / f64::from(self.left);
+        Twist {
+            speed: self.twist.speed * share,
+            turn_rate: self.twist.turn_rate * share,
+        }
+    }
+
+    /// A twist as near to a wanted one as the robot can get in a period.
+    fn approach(&self, wanted: Twist) -> Twist {
+        let period = self.chassis.period;
+        let toward = |value: f64, to: f64, rate: f64| {
+            value + (to - value).clamp(-rate * period, rate * period)
+        };
+        Twist {
+            speed: toward(self.twist.speed, wanted.speed, self.chassis.acceleration),
+            turn_rate: toward(
+                self.twist.turn_rate,
+                wanted.turn_rate,
+                self.chassis.turn_acceleration,
+            ),
+        }
+    }
+
+    fn verified(&mut self, twist: Twist) -> bool {
+        if !self.options.verify {
+            return true;
+        }
+        match self.chassis.verify(self.twist, twist, &self.obstacles) {
+            Ok(()) => true,
+            Err(first) => {
+                // What stopped one command stops the next one, too.
+                self.obstacles.swap(0, first);
+                false
+            }
+        }
+    }
+
+    /// Gathers what a plan may touch, and returns the least distance from what is occupied in m.
+    fn look(&mut self, robot: &Frame) -> f64 {
+        let sight = self.chassis.sight(self.chassis.travel(self.twist));
+        let (chassis, obstacles) = (&self.chassis, &mut self.obstacles);
+        obstacles.clear();
+        let mut present = f64::INFINITY;
+        self.cells
+            .known_near(robot.position, sight + self.cells.cell(), |known| {
+                let obstacle =
+                    chassis.obstacle(robot.inward(known.place - robot.position), known.radius);
+                if known.radius == 0.0 {
+                    present = present.min(obstacle.present());
+                }
+                obstacles.push(obstacle);
+            });
+        obstacles.sort_by(|one, other| one.present().total_cmp(&other.present()));
+        present
+    }
+
+    /// Searches for a way: the first time to its end, then a part of it in every period.
+    fn guide(&mut self, place: Vector2<f64>) {
+        self.since += 1;
+        if !self.search.running() && (!self.planned || self.since >= self.options.replan) {
+            self.search.start(&self.cells, self.goal);
+            self.since = 0;
+        }
+        if !self.search.running() {
+            return;
+        }
+        let nodes = if self.planned {
+            self.options.nodes
+        } else {
+            usize::MAX
+        };
+        match self.search.go_on(place, nodes) {
+            Progress::Running => {}
+            Progress::Found => {
+                self.search.exchange(&mut self.plan);
+                self.planned = true;
+            }
+            Progress::NoWay => self.planned = false,
+        }
+    }
+}

@@ -1,0 +1,300 @@
+//! Kinds of the cells of a rolling map, the points that stand for them, and how far the nearest occupied cell is.
+
+use nalgebra::Vector2;
+
+use super::rolling::{RollingMap, WORD};
+
+/// What is known of a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// No beam tells.
+    Unknown,
+    /// Beams passed.
+    Free,
+    /// Beams were stopped.
+    Occupied,
+}
+
+/// A disc that stands for a cell: the mean of the points that were hit, or the front of the unknown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Known {
+    /// Middle in m, in the frame of the odometry.
+    pub place: Vector2<f64>,
+    /// Radius in m: 0 of a point.
+    pub radius: f64,
+}
+
+/// The cells of a rolling map at an instant.
+#[derive(Clone, Debug)]
+pub struct Cells {
+    size: usize,
+    words: usize,
+    cell: f64,
+    low: [i64; 2],
+    occupied: Vec<u64>,
+    free: Vec<u64>,
+    /// Unknown cells beside free ones.
+    front: Vec<u64>,
+    /// Point of each occupied cell, from the lowest corner of the window in m.
+    points: Vec<[f32; 2]>,
+    /// Square of the distance of the nearest occupied cell, in cells, up to `far` squared.
+    squares: Vec<i16>,
+    columns: Vec<i16>,
+    far: i16,
+}
+
+impl Cells {
+    /// No cells yet; distances are known up to `far` in m.
+    #[must_use]
+    pub fn new(map: &RollingMap, far: f64) -> Self {
+        let (size, cell) = (map.size(), map.options().cell);
+        let far = ((far / cell).ceil() + 1.0).min(100.0) as i16;
+        Self {
+            size,
+            words: size / WORD,
+            cell,
+            low: map.low(),
+            occupied: vec![0; size * size / WORD],
+            free: vec![0; size * size / WORD],
+            front: vec![0; size * size / WORD],
+            points: vec![[0.0; 2]; size * size],
+            squares: vec![far * far; size * size],
+            columns: vec![far; size * size],
+            far,
+        }
+    }
+
+    /// Cells along a side.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Side of a cell in m.
+    #[must_use]
+    pub fn cell(&self) -> f64 {
+        self.cell
+    }
+
+    /// The cell at the lowest corner of the window, counted from the origin of the odometry.
+    #[must_use]
+    pub fn low(&self) -> [i64; 2] {
+        self.low
+    }
+
+    /// Kind of a cell of the window.
+    #[must_use]
+    pub fn kind(&self, column: usize, row: usize) -> Kind {
+        let (word, bit) = (row * self.words + column / WORD, column % WORD);
+        if self.occupied[word] >> bit & 1 == 1 {
+            Kind::Occupied
+        } else if self.free[word] >> bit & 1 == 1 {
+            Kind::Free
+        } else {
+            Kind::Unknown
+        }
+    }
+
+    /// Largest square of a distance that is told, in cells.
+    #[must_use]
+    pub fn farthest(&self) -> i16 {
+        self.far * self.far
+    }
+
+    /// Squares of the distances of the nearest occupied cells in cells, row by row.
+    #[must_use]
+    pub fn squares(&self) -> &[i16] {
+        &self.squares
+    }
+
+    /// Distance in m from the middle of the cell at a place to that of the nearest occupied cell; `None` outside of the
+    /// window.
+    #[inline]
+    #[must_use]
+    pub fn distance(&self, place: Vector2<f64>) -> Option<f64> {
+        let index = self.index_of(place)?;
+        Some(f64::from(self.squares[index]).sqrt() * self.cell)
+    }
+
+    /// Index of the cell at a place.
+    #[inline]
+    #[must_use]
+    pub fn index_of(&self, place: Vector2<f64>) -> Option<usize> {
+        let axis = |index: usize| {
+            let found = (place[index] / self.cell).floor() - self.low[index] as f64;
+            (found >= 0.0 && found < self.size as f64).then_some(found as usize)
+        };
+        Some(axis(1)? * self.size + axis(0)?)
+    }
+
+    /// Middle of a cell in m.
+    #[must_use]
+    pub fn middle(&self, index: usize) -> Vector2<f64> {
+        let axis = |place: usize, low: i64| ((place as i64 + low) as f64 + 0.5) * self.cell;
+        Vector2::new(
+            axis(index % self.size, self.low[0]),
+            axis(index / self.size, self.low[1]),
+        )
+    }
+
+    /// Reads the cells of the map again.
+    pub fn read(&mut self, map: &RollingMap) {
+        self.low = map.low();
+        let (share, least) = (
+            map.options().hit_share as f32,
+            map.options().least_hits as f32,
+        );
+        let half = 0.5 * self.cell as f32;
+        for (word, chunk) in map.evidence().chunks_exact(WORD).enumerate() {
+            let (mut occupied, mut free) = (0_u64, 0_u64);
+            for (bit, cell) in chunk.iter().enumerate() {
+                let hit = cell.hits >= least && cell.hits >= share * (cell.hits + cell.passes);
+                occupied |= u64::from(hit) << bit;
+                free |= u64::from(!hit && cell.passes > 0.0) << bit;
+            }
+            self.occupied[word] = occupied;
+            self.free[word] = free;
+            let mut left = occupied;
+            while left != 0 {
+                let bit = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let (cell, index) = (&chunk[bit], word * WORD + bit);
+                let corner = [index % self.size, index / self.size];
+                self.points[index] = [0, 1].map(|axis: usize| {
+                    corner[axis] as f32 * self.cell as f32 + half + cell.sum[axis] / cell.hits
+                });
+            }
+        }
+        self.find_front();
+        self.transform();
+    }
+
+    /// Finds unknown cells with a free neighbor.
+    fn find_front(&mut self) {
+        let words = self.words;
+        for row in 0..self.size {
+            for word in 0..words {
+                let at = row * words + word;
+                let free = self.free[at];
+                let left = if word > 0 {
+                    self.free[at - 1] >> (WORD - 1)
+                } else {
+                    0
+                };
+                let right = if word + 1 < words {
+                    self.free[at + 1] << (WORD - 1)
+                } else {
+                    0
+                };
+                let below = if row > 0 { self.free[at - words] } else { 0 };
+                let above = if row + 1 < self.size {
+                    self.free[at + words]
+                } else {
+                    0
+                };
+                let beside = free << 1 | left | free >> 1 | right | below | above;
+                self.front[at] = beside & !(free | self.occupied[at]);
+            }
+        }
+    }
+
+    /// Distance transform: first along columns, then along rows.
+    fn transform(&mut self) {
+        let (size, far) = (self.size, self.far);
+        let mut last = vec![far; size];
+        for up in [true, false] {
+            last.fill(far);
+            for place in 0..size {
+                let row = if up { place } else { size - 1 - place };
+                let words = &self.occupied[row * self.words..(row + 1) * self.words];
+                let cells = &mut self.columns[row * size..(row + 1) * size];
+                for ((column, last), cell) in last.iter_mut().enumerate().zip(cells) {
+                    let hit = words[column / WORD] >> (column % WORD) & 1;
+                    *last = (*last + 1).min(far) * (1 - hit as i16);
+                    *cell = if up { *last } else { (*cell).min(*last) };
+                }
+            }
+        }
+        let wide = far.unsigned_abs() as usize;
+        let mut squared = vec![far * far; size + 2 * wide];
+        for row in 0..size {
+            let column = &self.columns[row * size..(row + 1) * size];
+            for (square, away) in squared[wide..wide + size].iter_mut().zip(column) {
+                *square = away * away;
+            }
+            let out = &mut self.squares[row * size..(row + 1) * size];
+            out.copy_from_slice(&squared[wide..wide + size]);
+            for off in 1..far {
+                let (square, step) = (off * off, off.unsigned_abs() as usize);
+                let left = &squared[wide - step..wide - step + size];
+                let right = &squared[wide + step..wide + step + size];
+                for ((least, one), other) in out.iter_mut().zip(left).zip(right) {
+                    *least = (*least).min((*one).min(*other) + square);
+                }
+            }
+        }
+    }
+
+    /// Hands over the points of the occupied cells in a square of half a side in m around a place.
+    #[inline]
+    pub fn occupied_near(
+        &self,
+        place: Vector2<f64>,
+        half: f64,
+        mut visit: impl FnMut(Vector2<f64>),
+    ) {
+        let corner = Vector2::new(self.low[0] as f64, self.low[1] as f64) * self.cell;
+        self.near(&self.occupied, place, half, |index| {
+            let [x, y] = self.points[index];
+            visit(corner + Vector2::new(f64::from(x), f64::from(y)));
+        });
+    }
+
+    /// Hands over everything that a plan may not touch in a square of half a side in m around a place: points of
+    /// occupied cells, and the front of the unknown.
+    pub fn known_near(&self, place: Vector2<f64>, half: f64, mut visit: impl FnMut(Known)) {
+        self.occupied_near(place, half, |place| visit(Known { place, radius: 0.0 }));
+        let radius = 0.5 * self.cell;
+        self.near(&self.front, place, half, |index| {
+            visit(Known {
+                place: self.middle(index),
+                radius,
+            });
+        });
+    }
+
+    #[inline]
+    fn near(&self, bits: &[u64], place: Vector2<f64>, half: f64, mut visit: impl FnMut(usize)) {
+        let most = self.size as f64 - 1.0;
+        let bound = |axis: usize, off: f64| {
+            ((place[axis] + off) / self.cell - self.low[axis] as f64)
+                .floor()
+                .clamp(0.0, most) as usize
+        };
+        let (first, last) = (bound(0, -half), bound(0, half));
+        for row in bound(1, -half)..=bound(1, half) {
+            for word in first / WORD..=last / WORD {
+                let mut left = bits[row * self.words + word];
+                if word == first / WORD {
+                    left &= !0 << (first % WORD);
+                }
+                if word == last / WORD {
+                    left &= !0 >> (WORD - 1 - last % WORD);
+                }
+                while left != 0 {
+                    let bit = left.trailing_zeros() as usize;
+                    left &= left - 1;
+                    visit(row * self.size + word * WORD + bit);
+                }
+            }
+        }
+    }
+
+    /// Whether any unknown cell is in the row-major index.
+    #[inline]
+    #[must_use]
+    pub fn is_unknown(&self, index: usize) -> bool {
+        let word = index / WORD;
+        (self.occupied[word] | self.free[word]) >> (index % WORD) & 1 == 0
+    }
+}
