@@ -32,6 +32,8 @@ FASTEST = 20.0
 """Speeds up to this one are looked at, in m/s."""
 SLOWEST = 1e-4
 SCANS = 49
+SCAN_STEP, SCAN_BLOCK = 1.08, 8
+"""Ratio of neighboring speeds of a scan where a force has to be detected, and how many are simulated together."""
 SHORTEST, LONGEST = 1e-3, 60.0
 """Shortest and longest time in s that a simulation follows."""
 LONGER = 1.137
@@ -192,13 +194,12 @@ class _Pressing:
         (loads,) = self._simulated(np.array([speed]), np.array([drive.stiffness]))
         return loads
 
-    def _any(self, speed: float) -> DrivenLoads:
-        """Return the loads of the hardest one of drives of all stiffnesses."""
-        stiffness = self.rest.stiffness * STIFFNESSES
+    def _any(self, speed: float, rows: list[DrivenLoads] | None = None) -> DrivenLoads:
+        """Return the loads of the hardest one of drives of all stiffnesses, with those of a scan where it was made."""
         rigid = self._rigid(speed)
         bare = self.rest.hurried(self.rest.pushed(0.5 * self.mass * speed**2, 0.0), speed)
         kinetic = self._told(bare, stiffness=0.0)
-        found = [kinetic, rigid, *self._simulated(np.full(len(stiffness), speed), stiffness)]
+        found = [kinetic, rigid, *(self._scanned(speed) if rows is None else rows)]
         worst = max(found, key=lambda each: (each.status != "ok", each.force))
         return DrivenLoads(
             force=worst.force,
@@ -210,6 +211,10 @@ class _Pressing:
             stiffness=worst.stiffness,
             status=worst.status,
         )
+
+    def _scanned(self, speed: float) -> list[DrivenLoads]:
+        """Return the loads with each stiffness of the scan."""
+        return self._simulated(np.full(len(STIFFNESSES), speed), self.rest.stiffness * STIFFNESSES)
 
     def _simulated(self, speed: Array, stiffness: Array, longer: float = 1.0) -> list[DrivenLoads]:
         """Return the loads with some drives by the equation of motion, each with its own horizon."""
@@ -321,7 +326,7 @@ class _Pressing:
     def _share(self, speed: float, chosen: Array | None = None) -> float:
         """Return the largest load over its limit, or that with some stiffnesses of the drive."""
         found = [self.loads(speed)] if chosen is None else self._simulated(np.full(len(chosen), speed), chosen)
-        return max(self.rest.share(Loads(each.force, each.pressure, each.strain))[0] for each in found)
+        return max(self._shared(each)[0] for each in found)
 
     def _inside(self, speed: float, chosen: Array | None = None) -> float:
         """Return that share of a simulation, more than 1 where its error may exceed the limit."""
@@ -331,7 +336,12 @@ class _Pressing:
         """Return the lowest speed at which a load reaches its limit, by simulations."""
         if self.drive.model == "any_stiffness":
             return self._any_speed()
-        speeds = np.geomspace(SLOWEST, min(FASTEST, _top(self.drive)), SCANS)
+        top = min(FASTEST, _top(self.drive))
+        fine = math.ceil(math.log(top / SLOWEST) / math.log(SCAN_STEP)) if self.drive.detection_force > 0.0 else SCANS
+        slow = self._quiet(top) if self.drive.damping == 0.0 else SLOWEST
+        if slow >= top:
+            return self._within(top)
+        speeds = np.geomspace(min(max(slow, SLOWEST), 0.5 * top), top, fine)
         shares = np.array([self._share(speed) for speed in speeds])
         beyond = np.flatnonzero(shares > 1.0)
         if not len(beyond):
@@ -348,27 +358,67 @@ class _Pressing:
         kinetic = allowed_of(self.given, 0.0).speed
         rigid = self._rigid_speed()
         start = min(each for each in (kinetic, rigid[0], FASTEST) if each is not None)
-        hardest = self._hardest(start)
-        found, governs = start, self.governs
+        if self.drive.detection_force > 0.0:
+            start = self._unnoticed(start)
+        found, governs, looked_at = start, self.governs, start
+        rows, hardest = self._scanned(start), np.zeros(0)
         for _ in STIFFNESSES:
-            found = _rising(partial(self._inside, chosen=hardest), start, near=SIMULATED)
+            hardest = np.union1d(hardest, self._hardest(rows))
+            found = _rising(partial(self._inside, chosen=hardest), found, near=SIMULATED)
             if found == 0.0:
                 return 0.0, self.governs, "unfinished"
-            loads = self.loads(found)
-            share, governs = self.rest.share(Loads(loads.force, loads.pressure, loads.strain))
-            if share <= 1.0:
+            if found != looked_at:
+                rows, looked_at = self._scanned(found), found
+            share, governs = self._shared(self._any(found, rows))
+            # The speeds of no drive and of a rigid one are exact: at them a load is its limit but for rounding.
+            if share <= 1.0 + PRECISE:
                 break
-            hardest = np.union1d(hardest, self._hardest(found))
         if found == rigid[0] and rigid[2] != "ok":
             return found, "nothing", rigid[2]
         return (None, "nothing", "unlimited_up_to_20") if found >= FASTEST else (found, governs, "ok")
 
-    def _hardest(self, speed: float) -> Array:
-        """Return the two stiffnesses with the largest loads."""
+    def _unnoticed(self, top: float) -> float:
+        """Return the lowest speed of a scan up to `top` at which a load exceeds its limit, else `top`.
+
+        A robot that touches gently is noticed late, and presses harder than a faster one that is noticed at once:
+        loads do not rise with the speed where a force has to be detected.
+        """
+        slow = self._quiet(top)
+        if not 0.0 < slow < top:
+            return top
+        speeds = np.geomspace(slow, top, 2 + math.ceil(math.log(top / slow) / math.log(SCAN_STEP)))
         stiffness = self.rest.stiffness * STIFFNESSES
-        rows = self._simulated(np.full(len(stiffness), speed), stiffness)
-        shares = [self.rest.share(Loads(each.force, each.pressure, each.strain))[0] for each in rows]
-        return np.asarray(np.sort(stiffness[np.argsort(shares)[-2:]]))
+        for first in range(0, len(speeds), SCAN_BLOCK):
+            block = speeds[first : first + SCAN_BLOCK]
+            rows = self._simulated(np.repeat(block, len(stiffness)), np.tile(stiffness, len(block)))
+            shares = np.array([self._shared(each)[0] for each in rows]).reshape(len(block), -1).max(axis=1)
+            beyond = np.flatnonzero(shares > 1.0)
+            if len(beyond):
+                return float(block[beyond[0]])
+        return top
+
+    def _quiet(self, top: float) -> float:
+        """Return a speed up to `top` below which no spring of a drive presses a region to its limit.
+
+        The largest load of an undamped drive of any stiffness is at most F_d + k X + 2 v sqrt(k m), with the stiffness
+        of the region, that a covering in series does not exceed.
+        """
+        drive, k = self.drive, self.rest.stiffness
+
+        def bound(speed: float) -> float:
+            pressed = k * float(drive.path(speed)) + 2.0 * speed * math.sqrt(k * self.mass)
+            return (drive.detection_force + pressed) / self.force
+
+        return _rising(bound, top)
+
+    def _hardest(self, rows: list[DrivenLoads]) -> Array:
+        """Return the two stiffnesses of a scan with the largest loads."""
+        shares = [self._shared(each)[0] for each in rows]
+        return np.asarray(self.rest.stiffness * STIFFNESSES[np.argsort(shares)[-2:]])
+
+    def _shared(self, loads: DrivenLoads) -> tuple[float, str]:
+        """Return the largest load over its limit, and which one that is."""
+        return self.rest.share(Loads(loads.force, loads.pressure, loads.strain))
 
 
 def _most(values: Any) -> float:

@@ -119,6 +119,28 @@ def test_allowed_speeds_keep_their_limits() -> None:
             assert contact.driven_loads(hit, 1.02 * found.speed, drive).force > 140.0
 
 
+@pytest.mark.parametrize(("model", "stiffness"), [("any_stiffness", None), ("elastic", 1000.0)])
+@pytest.mark.parametrize("covered", [False, True])
+def test_no_slower_speed_exceeds_a_limit_where_a_force_has_to_be_noticed(
+    model: str, stiffness: float | None, covered: bool
+) -> None:
+    # A gentle touch is noticed late, and presses harder than a faster one that is noticed at once.
+    material = contact.GibsonAshby(modulus=6e5, plateau=41e3, lock=0.9)
+    pad = contact.Covering(material=material, thickness=0.022, shape="flat", area=9.6e-4)
+    hit = contact.Contact(robot=41.2, region=25e3, covering=pad if covered else None)
+    drive = contact.Drive(
+        model=model, stiffness=stiffness, reaction_time=0.025, deceleration=21.0, detection_force=40.0
+    )
+    found = contact.driven_speed(hit, drive, LIMIT).speed
+    assert found is not None
+    assert found > 0.0
+    for slower in found * np.geomspace(0.4, 1.0, 12):
+        assert contact.driven_loads(hit, float(slower), drive).force <= 140.0 * (1.0 + 1e-4)
+    if model == "any_stiffness" and covered:
+        faster = [contact.driven_loads(hit, found * factor, drive).force for factor in (1.6, 2.4)]
+        assert faster[0] > 140.0 > faster[1]
+
+
 def test_a_push_limit_is_never_exceeded_at_rest() -> None:
     hit = contact.Contact(robot=12.0, region=75e3)
     strong = contact.Drive(model="elastic", stiffness=1e6, damping=3e3, reaction_time=0.2, deceleration=1.0)
