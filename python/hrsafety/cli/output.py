@@ -27,7 +27,6 @@ from hrsafety.errors import InvalidParameterError, MissingExtraError, Shown
 from hrsafety.pages import Picture, require_jinja
 from hrsafety.pages.report import Report, Section
 from hrsafety.plausibility import ResultWarning
-from hrsafety.scenarios.laws import law_named, name_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -72,6 +71,8 @@ def decimal(value: float, digits: int = 2) -> str:
 def with_options(law: nav.Law, options: argparse.Namespace) -> nav.Law:
     """Return the law with what the command line changes."""
     if options.law is not None:
+        from hrsafety.scenarios.laws import law_named
+
         named = law_named("--law", options.law)
         law = law if type(law) is named else named()
     changes: dict[str, object] = {}
@@ -106,6 +107,8 @@ def law_words(law: nav.Law) -> str:
         return f"{law_words(law.law)}; with {law.parts_words}"
     if not isinstance(law, nav.VirtualForceField):
         numbers = (f"{name} {value:g}" for name, value in zip(law.GAIN_NAMES, law.gains, strict=True))
+        from hrsafety.scenarios.laws import name_of
+
         return f"{name_of(law).replace('_', ' ')}, {', '.join(numbers)}"
     attraction, repulsion, detour, ratio = (f"{gain:g}" for gain in law.gains)
     return (

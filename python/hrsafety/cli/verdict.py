@@ -6,6 +6,7 @@ import argparse
 import sys
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,8 +16,10 @@ from hrsafety.cli import output, terminal
 from hrsafety.cli.exit_codes import DONE, FAILED_RUN, NOT_CHECKED
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.outcomes import OUTCOMES
-from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.plausibility import ResultWarning, unsafe_doubts
+
+if TYPE_CHECKING:
+    from hrsafety.navigation.tables.runs import RunTable
 
 __all__ = ["FAILURES", "LOOKS", "OF_VERDICTS", "counted", "end", "failures_of", "leave", "sentence"]
 
