@@ -61,6 +61,23 @@ def test_map(benchmark: Any) -> None:
     benchmark.pedantic(speeds, rounds=1)
 
 
+def test_clamped_speeds_with_a_drive(benchmark: Any) -> None:
+    """Drives of any stiffness: bare regions in closed form, coverings by simulations, with and without a detection."""
+    masses = np.geomspace(3.0, 80.0, 12)
+    drive = contact.Drive(reaction_time=0.02, deceleration=20.0)
+    noticing = contact.Drive(reaction_time=0.02, deceleration=20.0, detection_force=20.0)
+    bare = contact.Contact(robot=8.0, region=75e3)
+    padded = contact.Contact(robot=8.0, region=75e3, covering=pad(FOAM))
+    many = np.geomspace(3.0, 80.0, 100_000)
+    info = benchmark.extra_info
+    info["bare per s"] = rate(len(many), lambda: contact.driven_speeds(bare, drive, many, LIMITS))
+    info["covered per s"] = rate(len(masses), lambda: contact.driven_speeds(padded, drive, masses, LIMITS))
+    benchmark.pedantic(lambda: contact.driven_speeds(padded, noticing, masses[:2], LIMITS), rounds=1)
+    noticed = rate(2, lambda: contact.driven_speeds(padded, noticing, masses[:2], LIMITS))
+    info["covered, with a detection force, per s"] = noticed
+    print({name: f"{value:.3g}" for name, value in info.items()})
+
+
 def test_chance(benchmark: Any) -> None:
     def chance() -> object:
         return hand(pad(FOAM)).probability(

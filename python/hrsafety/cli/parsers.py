@@ -330,7 +330,7 @@ def _add_record(commands: Any) -> None:
     foil.add_argument("--pressure", type=_number, metavar="PA", help="limit in Pa")
     foil.add_argument("--patch", action="store_true", help="judge the mean over 1 cm2, not the largest cell")
     cell = parser.add_argument_group("--kind force and pressure")
-    cell.add_argument("--predict", metavar="CELL.toml", help="cell file whose prediction stands beside the records")
+    cell.add_argument("--predict", metavar="FILE.toml", help="cell or program with the prediction beside the records")
     cell.add_argument("--plan-row", type=_count, metavar="N", help="row of its measurement plan, from 1")
     every = parser.add_argument_group("all kinds")
     every.add_argument("--full-scale", type=_number, metavar="X", help="full scale of the channel in SI units")

@@ -1,10 +1,12 @@
-"""Prediction of a cell beside measured records: a row of its measurement plan, filled and never tuned."""
+"""Prediction of a cell or a program beside measured records: a row of its measurement plan, filled and never tuned."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 from hrsafety import contact
+from hrsafety._keys import parsed
 from hrsafety.cli import output
 from hrsafety.contact.cell.handover import plan_of
 from hrsafety.contact.cell.study import verdicts_of
@@ -17,14 +19,14 @@ __all__ = ["predicted", "prediction_section"]
 def predicted(
     path: str, row: int | None, load: str, measured: Sequence[float], device_uncertainty: float
 ) -> contact.MeasurementPlan:
-    """Return the row of the measurement plan of a cell file that records are about, with what they measured.
+    """Return the row of the measurement plan of a cell or a program that records are about, with what they measured.
 
     Parameters
     ----------
     path : str
-        The cell file.
+        The file of the cell or the program.
     row : int or None
-        Number of the row on the page of the cell, from 1; ``None`` for a plan of one row.
+        Number of the row on its page, from 1; ``None`` for a plan of one row.
     load : {"force", "pressure"}
         Load of the records.
     measured : sequence of float
@@ -43,9 +45,7 @@ def predicted(
         If the file cannot be read, or the plan has no such row or one of another load.
     """
     with output.located(path):
-        cell = contact.load_cell(path)
-        judged, loads, _ = verdicts_of(cell)
-        rows = plan_of(cell, judged, loads).rows
+        rows = _planned(path)
     if row is None and len(rows) != 1:
         raise InvalidParameterError("--plan-row", f"be given: the plan of {path} has {len(rows)} rows", row)
     number = 1 if row is None else row
@@ -56,6 +56,18 @@ def predicted(
         rule = f"be a row of {load}: what governs there is the {chosen.load}"
         raise InvalidParameterError("--plan-row", rule, number)
     return contact.MeasurementPlan(rows=(chosen,)).filled({0: measured}, device_uncertainty=device_uncertainty)
+
+
+def _planned(path: str) -> tuple[contact.PlannedMeasurement, ...]:
+    """Return the measurement plan of a cell file, or of that of a program."""
+    from hrsafety import program
+
+    if "motion" in parsed(Path(path)):
+        study = program.load_program(path).report()
+        return study.plan.rows if isinstance(study, program.ProgramStudy) else ()
+    cell = contact.load_cell(path)
+    judged, loads, _ = verdicts_of(cell)
+    return plan_of(cell, judged, loads).rows
 
 
 def prediction_section(plan: contact.MeasurementPlan) -> Section:
@@ -80,5 +92,5 @@ def prediction_section(plan: contact.MeasurementPlan) -> Section:
     cells = (place, row.load, shown[0], f"{largest:.4g}", share, found, shown[1], row.accept)
     titles = ("contact", "load", "prediction", "largest measured", "of the prediction", "U", "limit", "accept")
     table = ReportTable(headers=[titles], rows=[cells], left=(0, 1, 7), printed=True)
-    words = "The prediction is that of the cell file as it is: nothing was tuned to the records."
+    words = "The prediction is that of the file as it is: nothing was tuned to the records."
     return Section("Prediction beside the measurement", [words, table])

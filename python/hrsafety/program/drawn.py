@@ -10,8 +10,10 @@ import numpy as np
 
 from hrsafety._arguments import Array, instance, number
 from hrsafety._records import dataclass
+from hrsafety.contact import Annex
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning, unsafe_doubts
+from hrsafety.program.annexed import annex_of_task
 from hrsafety.program.contacts import BLOCK, Contacts, Waypoints
 from hrsafety.program.draws import LISTED, OUTSIDE, DrawnMotions, Quantile, quantiles_of
 from hrsafety.program.judged import EVEN, JudgedExposure, fields_of, judged, robot_fields, shares_of
@@ -59,7 +61,7 @@ class DrawnProgram(ContactTask):
         Share of the motions, 0.9 to below 1, whose speed has to be allowed: the upper end of the interval of that
         quantile is held against the limit. ``None``: the worst drawn motion counts, and that others may be worse is a
         doubt.
-    points, limits, coverings, strains, drive, robot_mass, direction, link, point, tcp_speed, confirmed, title
+    points, limits, coverings, strains, drive, robot_mass, direction, link, point, tcp_speed, confirmed, annex, title
         As for `Program`.
     segments : sequence of Segment
         Regions of the body within reach; they begin and end nowhere.
@@ -149,6 +151,8 @@ class DrawnStudy(Table):
         Of each row: planned speed over the allowed one.
     masses : tuple of PointMassesDrawn
         Of each point.
+    annex : Annex
+        For the technical file of Regulation (EU) 2023/1230.
     warnings : tuple of ResultWarning
         Of all results.
     fields : dict
@@ -160,6 +164,7 @@ class DrawnStudy(Table):
     rows: tuple[JudgedExposure, ...]
     shares: tuple[tuple[Quantile, ...], ...]
     masses: tuple[PointMassesDrawn, ...]
+    annex: Annex
     warnings: tuple[ResultWarning, ...]
     fields: dict[str, Any]
 
@@ -202,6 +207,7 @@ def study_of_draws(program: DrawnProgram, threads: int | None) -> DrawnStudy:
     order = sorted(range(len(held)), key=lambda at: (held[at].exposure.limit.permitted, -held[at].share))
     held, told = [held[at] for at in order], [told[at] for at in order]
     warnings = tuple(dict.fromkeys([*(each for row in held for each in row.warnings), *doubts]))
+    annex = annex_of_task(program, held, max((each.speed for each in held), default=0.0))
     own = [each for each in doubts if each.code not in program.confirmed]
     verdict = doubted(strictest(each.verdict for each in held) if held else "within_limits", own)
     return DrawnStudy(
@@ -210,8 +216,9 @@ def study_of_draws(program: DrawnProgram, threads: int | None) -> DrawnStudy:
         rows=tuple(held),
         shares=tuple(each[: len(LISTED)] for each in told),
         masses=masses,
+        annex=annex,
         warnings=warnings,
-        fields=_fields(contacts, program, verdict, held, told, masses),
+        fields=_fields(contacts, program, verdict, held, told, masses) | {"annex": annex.fields()},
     )
 
 

@@ -55,6 +55,7 @@ _TOP: Keys = MappingProxyType(
         "zones": kind.table,
         "separation": kind.table,
         "confirmed": kind.table,
+        "annex": kind.table,
     }
 )
 _OF_CELLS = (
@@ -156,7 +157,9 @@ def load_program(path: str | PathLike[str]) -> Program | DrawnProgram:
         mass_rule = one_of("robot_mass", robot.get("robot_mass", "larger"), RULES)
         direction = one_of("direction", robot.get("direction", "motion"), DIRECTIONS)
     read["robot"] = arm.sha256
-    more: dict[str, Any] = {name: given[name] for name in ("title", "separation", "confirmed") if name in given}
+    more: dict[str, Any] = {
+        name: given[name] for name in ("title", "separation", "confirmed", "annex") if name in given
+    }
     more |= {name: robot[name] for name in ("link", "point") if name in robot}
     if "drive" in given:
         more["drive"] = drive_of(given["drive"])

@@ -78,6 +78,7 @@ def _measured(
     program, arm = runs.program, runs.program.motion.arm
     mass = float(mass_by_rule(program.robot_mass, found[runs.own][at, row.point], arm.iso_mass))
     velocity = found["velocity"][at, row.point]
+    load = "pressure" if row.governs == "pressure" else "force"
     return [
         PlannedMeasurement(
             place=f"{program.segment_name(row.segment)}, {program.points[row.point].name}",
@@ -89,25 +90,30 @@ def _measured(
             payload=arm.payload_mass,
             spring=row.limit.spring_constant,
             covering=row.covering,
-            prediction=_predicted(runs, row, mass, speed + row.human_speed),
-            limit=row.limit.force,
+            load=load,
+            prediction=_predicted(runs, row, mass, speed + row.human_speed, load),
+            limit=getattr(row.limit, load),
         )
     ]
 
 
-def _predicted(runs: Runs, row: Exposure, mass: float, speed: float) -> float | None:
-    """Return the peak force in N of a contact at a closing speed."""
+def _predicted(runs: Runs, row: Exposure, mass: float, speed: float, load: str) -> float | None:
+    """Return the peak force in N or pressure in Pa of a contact at a closing speed."""
     program, drive = runs.program, runs.drive(row.point)
     pad = None if row.covering is None else program.coverings[row.covering]
     strain = None if row.covering is None else program.strains.get(row.covering)
     hit = Contact(robot=mass, body=row.limit, covering=pad, area=row.area, max_strain=strain)
     try:
         if row.how == "drive" and drive is not None:
-            force = driven_loads(hit, speed, drive).force
-            return force if math.isfinite(force) else None
-        return hit.simulate(speed, head=False).peak_force
+            found: float | None = getattr(driven_loads(hit, speed, drive), load)
+        else:
+            impact = hit.simulate(speed, head=False)
+            found = getattr(impact, f"peak_{load}")
+            if load == "pressure" and pad is None and row.area is not None:
+                found = None if impact.peak_force is None else impact.peak_force / row.area
     except InvalidParameterError as error:
         # A covering that is compressed by more than was measured has no loads; its rows say so.
         if "beyond_data" not in error.requirement:
             raise
         return None
+    return found if found is not None and math.isfinite(found) else None

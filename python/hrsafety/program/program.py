@@ -49,6 +49,8 @@ class Program(ProgramTask):
         Rules of the stop, as in a cell file, for the distances of a scanner field.
     confirmed : mapping of str to str
         Doubts by code that somebody has confirmed not to hold here, with reason and name.
+    annex : mapping
+        Texts, hazards and assumptions of the annex for Regulation (EU) 2023/1230, see `contact.annex_of`.
     title : str
         Heading of the page.
     given : mapping

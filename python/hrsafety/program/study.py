@@ -9,10 +9,11 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from hrsafety._records import dataclass
-from hrsafety.contact import MeasurementPlan
+from hrsafety.contact import Annex, MeasurementPlan
 from hrsafety.contact.cell.handover import distances_fields
 from hrsafety.contact.cell.stops import stopping_of
 from hrsafety.plausibility import ResultWarning
+from hrsafety.program.annexed import annex_of_task
 from hrsafety.program.contacts import MASSES, Choice, Waypoints
 from hrsafety.program.judged import JudgedExposure, fields_of, judged, path_doubts, robot_fields
 from hrsafety.program.motion import Retimed
@@ -89,6 +90,8 @@ class ProgramStudy(Table):
         As typed into the pendant.
     plan : MeasurementPlan
         What has to be measured.
+    annex : Annex
+        For the technical file of Regulation (EU) 2023/1230.
     distances : FieldDistances or None
         Of the scanner field, with a separation.
     fastest, least_allowed : float
@@ -112,6 +115,7 @@ class ProgramStudy(Table):
     limited: Retimed
     zones: SpeedZones | None
     plan: MeasurementPlan
+    annex: Annex
     distances: FieldDistances | None
     fastest: Annotated[float, "m/s"]
     least_allowed: Annotated[float, "m/s"]
@@ -152,7 +156,8 @@ def study_of(program: ProgramTask, *, intervals: int | None = None, threads: int
         slow = min(least, fastest) if least > 0.0 else None
         distances = _field(program.separation, fastest, slow)
     plan = plan_of(runs, limited, choice)
-    fields = _fields(runs, verdict, found, times, segments, zones, distances)
+    annex = annex_of_task(program, found, fastest, distances)
+    fields = _fields(runs, verdict, found, times, segments, zones, distances) | {"annex": annex.fields()}
     return ProgramStudy(
         program=program,
         verdict=verdict,
@@ -163,6 +168,7 @@ def study_of(program: ProgramTask, *, intervals: int | None = None, threads: int
         limited=limited,
         zones=zones,
         plan=plan,
+        annex=annex,
         distances=distances,
         fastest=fastest,
         least_allowed=least,

@@ -12,7 +12,7 @@ from hrsafety._arguments import checked_text, count, instance, number, positive,
 from hrsafety._records import dataclass
 from hrsafety._words import meant
 from hrsafety.arms.masses import RULES
-from hrsafety.contact import Covering, Drive
+from hrsafety.contact import Covering, Drive, annex_of
 from hrsafety.contact.cell.cell import MOST_COVERINGS, confirmed_of
 from hrsafety.contact.cell.stops import separation_of
 from hrsafety.errors import InvalidParameterError
@@ -88,6 +88,7 @@ class ContactTask:
     tcp_speed: float | None = None
     separation: Mapping[str, Any] | None = None
     confirmed: Mapping[str, str] = field(default_factory=dict)
+    annex: Mapping[str, Any] = field(default_factory=dict)
     title: str = "Contact of a robot program with people"
     given: Mapping[str, Any] = field(default_factory=dict)
     files: Mapping[str, str] = field(default_factory=dict)
@@ -98,9 +99,10 @@ class ContactTask:
         checked_text("title", self.title, "be a text")
         word("robot_mass", self.robot_mass, RULES)
         word("direction", self.direction, DIRECTIONS)
-        for name in ("coverings", "strains", "confirmed", "given", "files"):
+        for name in ("coverings", "strains", "confirmed", "annex", "given", "files"):
             if not isinstance(getattr(self, name), Mapping):
                 raise InvalidParameterError(name, "be a mapping", getattr(self, name))
+        annex_of(self.annex)
         if self.drive is not None:
             instance("drive", self.drive, Drive)
         made: dict[str, Any] = {

@@ -146,6 +146,47 @@ def test_a_robot_without_a_program_is_judged_by_a_quantile(reported: Any) -> Non
     assert [each["level"] for each in report["rows"][0]["shares"]] == [0.5, 0.95, 0.99, 0.99]
 
 
+def test_the_annex_says_what_the_verdict_rests_on(reported: Any) -> None:
+    own = '[annex]\nmaker = "Example Ltd"\n[[annex.assumptions]]\nname = "payload"\nheld_by = "payload switch, PL d"\n'
+    report, page = reported(SMALL + own)
+    annex = report["annex"]
+    assert annex["maker"] == "Example Ltd"
+    assert [(each["contact"], each["hazard"]) for each in annex["hazards"]] == [
+        ("free", "contact with chest by gripper in segment 1")
+    ]
+    held = {each["name"]: each for each in annex["assumptions"]}
+    assert held["payload"]["held_by"] == "payload switch, PL d"
+    assert held["nobody is clamped in segment 1"]["value"] == "open space behind"
+    assert "280 N" in annex["limits"][0]["limit"]
+    assert annex["hashes"]["robot"] == report["robot"]["sha256"]
+    for words in ("Example Ltd", "payload switch, PL d", "Residual risk", "compared with my copy"):
+        assert words.lower() in page.lower()
+
+
+def test_records_fill_a_row_of_the_plan(reported: Any) -> None:
+    bare, _ = reported(SMALL)
+    # A small area is one of pressure, with that of the bare contact.
+    (row,) = bare["plan"]
+    assert row["load"] == "pressure"
+    assert row["prediction"] <= row["limit"] * (1.0 + 1e-3)
+    report, _ = reported(SMALL.replace("area = 1e-4", "area = 6e-4"))
+    rows = report["plan"]
+    assert rows[0]["load"] == "force"
+    for number in (1, 2, 3):
+        time = np.arange(0.0, 0.8, 5e-4)
+        force = np.where(time < 0.05, 0.0, (60.0 + number) * np.exp(-(((time - 0.08) / 0.01) ** 2)))
+        lines = [f"{one:.4f},{each:.6f}" for one, each in zip(time, force, strict=True)]
+        Path(f"run_{number}.csv").write_text("t [s],F [N]\n" + "\n".join(lines) + "\n", encoding="utf-8")
+    files = [f"run_{number}.csv" for number in (1, 2, 3)]
+    command = ["record", *files, "--kind", "force", "--transient", "280", "--free", "--predict", "task.toml"]
+    assert main([*command, "--plan-row", "1", "--json", "filled.json"]) == 0
+    filled = json.loads(Path("filled.json").read_text(encoding="utf-8"))["prediction"]
+    for name in ("place", "region", "speed", "prediction", "limit"):
+        assert filled[name] == rows[0][name]
+    assert filled["measured"] == pytest.approx([61.0, 62.0, 63.0], rel=0.02)
+    assert filled["accept"] == "accept"
+
+
 def test_the_joint_log_is_read_again_and_keeps_its_limits(reported: Any) -> None:
     report, _ = reported(SMALL)
     Path("log.toml").write_text(

@@ -39,7 +39,7 @@ def report_program(options: argparse.Namespace) -> None:
         page, tables = report.page(), {}
     else:
         report = program_report.report_of(options.file, study, command=command, date=date)
-        page = program_page.html(report, program_pictures.drawings(study))
+        page = program_page.html(report, program_pictures.drawings(study), study.annex.tables())
         tables = {"measurement_plan": study.plan.columns(), "waypoints": study.columns()}
         if study.limited.standstill < 0:
             tables["joint_log"] = study.limited.columns()

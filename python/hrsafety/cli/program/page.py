@@ -16,7 +16,9 @@ if TYPE_CHECKING:
 __all__ = ["html"]
 
 
-def html(report: Report, drawings: Sequence[Drawing]) -> str:
+def html(
+    report: Report, drawings: Sequence[Drawing], annex: Sequence[tuple[str, Sequence[str], Sequence[Sequence[str]]]]
+) -> str:
     """Return the page.
 
     Parameters
@@ -25,6 +27,8 @@ def html(report: Report, drawings: Sequence[Drawing]) -> str:
         With the values of report.json.
     drawings : sequence of Drawing
         Pictures.
+    annex : sequence of tuple
+        Heading, titles and rows of the tables of the annex.
 
     Returns
     -------
@@ -40,6 +44,7 @@ def html(report: Report, drawings: Sequence[Drawing]) -> str:
         n=numbers_in(values),
         drawings=drawings,
         layers=LAYERS,
+        annex=annex,
         svg=Markup,
         verdict_words=VERDICT_WORDS,
         contact_words=CONTACT_WORDS,

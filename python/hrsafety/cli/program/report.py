@@ -66,6 +66,8 @@ def report_of_draws(path: str, study: DrawnStudy, *, command: str, date: str | N
             Section("Limits over drawn motions", [SHARES, _shares(study)]),
             Section("Masses", [MASSES_TOLD, _masses(study)]),
             Section("What is not covered", values["not_covered"]),
+            Section("Annex for Regulation (EU) 2023/1230", [values["annex"]["regulation"]]),
+            *_annexed(study),
         ],
         warnings=study.warnings,
         values=values,
@@ -146,6 +148,13 @@ def _shares(study: DrawnStudy) -> ReportTable:
     ]
     names = ("limit", "verdict", *(f"{100.0 * level:g} %" for level in LISTED), "worst", "doubts")
     return ReportTable(headers=[names], rows=rows, left=(0, 1, len(names) - 1), printed=True)
+
+
+def _annexed(study: DrawnStudy) -> Iterator[Section]:
+    """Yield the tables of the annex."""
+    for heading, titles, rows in study.annex.tables():
+        if rows:
+            yield Section(heading, [ReportTable(headers=[titles], rows=rows, left=tuple(range(len(titles))))])
 
 
 def _masses(study: DrawnStudy) -> ReportTable:

@@ -3,19 +3,34 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from hrsafety.contact.annex import Annex, Assumption, Hazard, annex_of
 from hrsafety.contact.cell.cell import Cell
 from hrsafety.contact.cell.judgement import Judged
 from hrsafety.contact.cell.stops import stopping_of
+from hrsafety.contact.covering import Covering
+from hrsafety.contact.drive import Drive
 from hrsafety.contact.plan import MeasurementPlan, PlannedMeasurement
 from hrsafety.contact.simulation import ContactImpact
 from hrsafety.errors import InvalidParameterError
+from hrsafety.standards.contact_limits import ContactLimit
 from hrsafety.standards.fields import FieldDistances, field_distances
+from hrsafety.standards.limit_sets import LimitSet
 
-__all__ = ["annex_of_cell", "distances_fields", "distances_of", "plan_of"]
+__all__ = [
+    "HUMAN_SPEED",
+    "annex_of_cell",
+    "assumed",
+    "assumptions_about",
+    "distances_fields",
+    "distances_of",
+    "hazard_of",
+    "limit_words",
+    "payload_assumed",
+    "plan_of",
+]
 
 CLASSES = {"quasi_static": "clamped", "transient": "free"}
 
@@ -123,20 +138,9 @@ def annex_of_cell(cell: Cell, judged: Sequence[Judged], distances: FieldDistance
     hazards, limits = [], []
     for each in judged:
         planned, limit = each.planned, each.planned.limit
-        region = f"{limit.region} ({limit.area})" if limit.area else limit.region
-        kind = CLASSES[limit.contact]
         covering = "bare" if planned.covering is None else f"covering {planned.covering!r}"
-        measure = f"speed at most {planned.speed:g} m/s, {covering}"
-        hazards.append(Hazard(hazard=f"contact with {region}".replace("_", " "), contact=kind, measures=measure))
-        loads = [
-            f"{name} {value:g} {unit}"
-            for name, value, unit in (("force", limit.force, "N"), ("pressure", limit.pressure, "Pa"))
-            if value is not None
-        ]
-        words = ", ".join(loads) if limit.permitted else "not permitted"
-        limits.append(
-            f"{region}, {kind}: {words} ({cell.limits.title}, edition {cell.limits.edition})".replace("_", " ")
-        )
+        hazards.append(hazard_of(limit, f"speed at most {planned.speed:g} m/s, {covering}"))
+        limits.append(limit_words(limit, cell.limits))
     return annex_of(
         cell.annex,
         hazards=hazards,
@@ -146,38 +150,80 @@ def annex_of_cell(cell: Cell, judged: Sequence[Judged], distances: FieldDistance
     )
 
 
-def _assumptions(cell: Cell, distances: FieldDistances | None) -> list[Assumption]:
-    def told(name: str, value: str, broken_by: str) -> Assumption:
-        return Assumption(name=name, value=value, broken_by=broken_by)
+def hazard_of(limit: ContactLimit, measures: str, where: str = "") -> Hazard:
+    """Return the contact with a region as a hazard with what is done against it."""
+    return Hazard(
+        hazard=f"contact with {_region(limit)}{where}".replace("_", " "),
+        contact=CLASSES[limit.contact],
+        measures=measures,
+    )
 
+
+def limit_words(limit: ContactLimit, limits: LimitSet) -> str:
+    """Return a limit with its edition, to be compared with one's own copy."""
+    loads = [
+        f"{name} {value:g} {unit}"
+        for name, value, unit in (("force", limit.force, "N"), ("pressure", limit.pressure, "Pa"))
+        if value is not None
+    ]
+    words = ", ".join(loads) if limit.permitted else "not permitted"
+    edition = f"({limits.title}, edition {limits.edition})"
+    return f"{_region(limit)}, {CLASSES[limit.contact]}: {words} {edition}".replace("_", " ")
+
+
+def _region(limit: ContactLimit) -> str:
+    return f"{limit.region} ({limit.area})" if limit.area else limit.region
+
+
+def assumed(name: str, value: str, broken_by: str) -> Assumption:
+    """Return an assumption with what breaks it."""
+    return Assumption(name=name, value=value, broken_by=broken_by)
+
+
+def _assumptions(cell: Cell, distances: FieldDistances | None) -> Iterator[Assumption]:
     speeds = [each.speed for each in cell.contacts]
     robot = cell.robot
     mass = "unbounded" if math.isinf(robot.mass) else f"{robot.mass:.4g} kg"
-    found = [
-        told("speed of the robot in a contact", f"at most {max(speeds):g} m/s", "another program, a changed override"),
-        told("mass of the robot", mass, "a heavier payload or tool, other poses"),
-        told("speed of the person towards the robot", f"at most {cell.human_speed:g} m/s", "people who walk there"),
-    ]
+    yield assumed(
+        "speed of the robot in a contact", f"at most {max(speeds):g} m/s", "another program, a changed override"
+    )
+    yield assumed("mass of the robot", mass, "a heavier payload or tool, other poses")
+    yield assumed(HUMAN_SPEED, f"at most {cell.human_speed:g} m/s", "people who walk there")
     if robot.payload_mass is not None:
-        found.append(told("payload", f"at most {robot.payload_mass:g} kg", "another tool or workpiece"))
-    for name, pad in cell.coverings.items():
+        yield payload_assumed(robot.payload_mass)
+    yield from assumptions_about(cell.coverings, cell.drive, distances, cell.confirmed)
+
+
+HUMAN_SPEED = "speed of the person towards the robot"
+
+
+def payload_assumed(mass: float) -> Assumption:
+    """Return the assumption about the payload."""
+    return assumed("payload", f"at most {mass:g} kg", "another tool or workpiece")
+
+
+def assumptions_about(
+    coverings: Mapping[str, Covering],
+    drive: Drive | None,
+    distances: FieldDistances | None,
+    confirmed: Mapping[str, str],
+) -> Iterator[Assumption]:
+    """Yield what verdicts assume of coverings, the drive, the field of a scanner, and what somebody has confirmed."""
+    for name, pad in coverings.items():
         value = f"{1e3 * pad.thickness:g} mm, {pad.material.law.replace('_', ' ')}"
-        found.append(told(f"covering {name!r}", value, "wear, dirt, another material, a place without it"))
-    if cell.drive is not None and cell.drive.model != "none":
-        drive = cell.drive
+        yield assumed(f"covering {name!r}", value, "wear, dirt, another material, a place without it")
+    if drive is not None and drive.model != "none":
         if drive.reaction_time is not None:
-            found.append(told("reaction time of the drive", f"{drive.reaction_time:g} s", "filters, a slower bus"))
-            found.append(told("detection force", f"{drive.detection_force:g} N", "a coarser setting"))
+            yield assumed("reaction time of the drive", f"{drive.reaction_time:g} s", "filters, a slower bus")
+            yield assumed("detection force", f"{drive.detection_force:g} N", "a coarser setting")
         if drive.deceleration is not None:
-            found.append(
-                told("deceleration of the drive", f"{drive.deceleration:g} m/s^2", "worn brakes, more payload")
-            )
+            value = f"{drive.deceleration:g} m/s^2"
+            yield assumed("deceleration of the drive", value, "worn brakes, more payload")
         if drive.push_limit is not None:
-            found.append(told("push limit of the drive", f"{drive.push_limit:g} N", "other settings, another pose"))
+            yield assumed("push limit of the drive", f"{drive.push_limit:g} N", "other settings, another pose")
     if distances is not None:
         slow = "" if distances.slow_down is None else f", {distances.slow_down:.3f} m to slow down"
         value = f"{distances.stop:.3f} m to stop{slow}"
-        found.append(told("distance of the scanner field", value, "faster people, objects that hide somebody"))
-    for code, reason in cell.confirmed.items():
-        found.append(told(f"confirmed: {code.replace('_', ' ')}", reason, "a change of the machine"))
-    return found
+        yield assumed("distance of the scanner field", value, "faster people, objects that hide somebody")
+    for code, reason in confirmed.items():
+        yield assumed(f"confirmed: {code.replace('_', ' ')}", reason, "a change of the machine")
