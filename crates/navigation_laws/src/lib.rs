@@ -148,6 +148,11 @@ pub trait Law<R: Real>: Send {
     /// Laws that plan the whole way themselves keep theirs.
     fn aim(&mut self, _goal: [f64; 2]) {}
 
+    /// Whether [`Self::aim`] changes where it heads.
+    fn can_aim(&self) -> bool {
+        true
+    }
+
     /// Record of the parts around the law in the last control period, if there are any.
     fn trace(&self) -> Option<Trace> {
         None

@@ -16,6 +16,7 @@ from hrsafety.navigation.regions import region_radii
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
+from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.navigation.sensing.robot_sensor import RobotSensor
 from hrsafety.navigation.sensing.vision import Vision
 from hrsafety.navigation.warnings.scenarios import BELOW_SAFE, ROUNDING, own_speed
@@ -90,12 +91,16 @@ def sensing_of(scenario: Scenario, built: AsBuilt) -> Sensing:
     >>> nav.knowledge.sensing_of(scenarios.configuration("c1"), camera)
     Sensing(robot='camera', obstacles=('exact',))
     """
-    measurement = instance("scenario", scenario, Scenario).measurement
+    return told_by(instance("scenario", scenario, Scenario).measurement, instance("built", built, AsBuilt))
+
+
+def told_by(measurement: Measurement | None, built: AsBuilt) -> Sensing:
+    """Return which of a measurement and the sensors of a robot tell its law of the robot and of the obstacles."""
     measured = "" if measurement is None else measurement.of
     told = {
         "measurement": measured in ("both", "obstacles"),
-        "camera": instance("built", built, AsBuilt).obstacle_vision is not None,
-        **{sensor.NAME: True for sensor in built.sensors},
+        "camera": built.obstacle_vision is not None,
+        **{sensor.NAME: sensor.TELLS for sensor in built.sensors},
     }
     robot = "measurement" if measured in ("both", "robot") else "exact"
     return Sensing(
@@ -143,6 +148,8 @@ def warnings_of(scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:
     yield from _unseen_at_start(scenario, built.obstacle_vision)
     speeds = [own_speed(obstacle, scenario.time_limit) for obstacle in scenario.obstacles]
     for index, sensor in enumerate(built.sensors):
+        if not sensor.TELLS:
+            continue
         regions = echo_regions(scenario, sensor)
         fastest = max(range(len(speeds)), key=speeds.__getitem__, default=None)
         sees = not isinstance(sensor, Lidar) or sensor.sees_obstacles

@@ -303,7 +303,7 @@ impl Sensor {
     fn sight(&self, scenario: &Scenario) -> CoreResult<(f64, f64, f64)> {
         let Some((regions, reach)) = self.0.sight(&scenario.0)? else {
             let rule = "be a sensor on a robot, whose readings have regions";
-            let given = Given::Found("a camera".into());
+            let given = Given::Found("one without".into());
             return Err(Failure::invalid("sensor", rule, given).into());
         };
         Ok((regions.critical_radius, regions.active_radius, reach))

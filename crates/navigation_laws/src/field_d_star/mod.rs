@@ -235,6 +235,10 @@ impl Planner for FieldDStarPlanner {
             _ => [0.0; 2],
         }
     }
+
+    fn can_aim(&self) -> bool {
+        false
+    }
 }
 
 fn relative(position: [f64; 2], origin: [f64; 2]) -> [f64; 2] {

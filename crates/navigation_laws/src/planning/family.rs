@@ -68,6 +68,10 @@ impl<P: Planner> Law<f64> for PlannerLaw<P> {
     fn aim(&mut self, goal: [f64; 2]) {
         self.planner.aim(goal);
     }
+
+    fn can_aim(&self) -> bool {
+        self.planner.can_aim()
+    }
 }
 
 /// Planners of robots side by side, one a lane.

@@ -26,6 +26,11 @@ pub trait Planner: Send + 'static {
 
     /// Heads for another goal from now on, in m; planners of a whole way keep theirs.
     fn aim(&mut self, _goal: [f64; 2]) {}
+
+    /// Whether [`Self::aim`] changes where it heads.
+    fn can_aim(&self) -> bool {
+        true
+    }
 }
 
 /// A planner that decides for robots side by side, each in a scene of its own.

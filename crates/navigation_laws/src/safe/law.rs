@@ -189,6 +189,10 @@ impl Law<f64> for SafeLaw {
         }
     }
 
+    fn can_aim(&self) -> bool {
+        self.guidance.is_none() && self.law.can_aim()
+    }
+
     fn trace(&self) -> Option<Trace> {
         Some(self.trace)
     }

@@ -388,4 +388,8 @@ impl Planner for TreePlanner {
         }
         self.safe(situation, wanted)
     }
+
+    fn can_aim(&self) -> bool {
+        false
+    }
 }

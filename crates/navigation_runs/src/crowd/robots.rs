@@ -400,8 +400,13 @@ impl CrowdRobot {
                 situation.robot = known.robot;
                 let (sight, sensing) = (&pilot.sight, pilot.sensing.as_ref());
                 let seen = shown(situation, sight, sensing);
-                let law = pilot.law.as_mut();
-                law.map_or(Vector2::zeros(), |law| law.command(&seen).force)
+                match &mut pilot.law {
+                    Some(law) => {
+                        sensing.map_or(Ok(()), |sensing| sensing.sensors.send(&mut **law))?;
+                        law.command(&seen).force
+                    }
+                    None => Vector2::zeros(),
+                }
             }
             (Request::Law, _) => toward(Vector2::zeros(), &situation),
         };

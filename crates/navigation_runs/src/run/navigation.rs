@@ -228,6 +228,9 @@ impl<L: Listener> Parts for Navigation<L> {
         interrupted: Interrupted<'_>,
     ) -> Result<bool> {
         self.runs.check_finite(time)?;
+        if let Some(law) = &mut self.law {
+            self.sight.send(&mut **law)?;
+        }
         let Some(command) = self.command(time, request, interrupted) else {
             return Ok(false);
         };

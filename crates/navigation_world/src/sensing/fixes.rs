@@ -77,6 +77,16 @@ impl FixNoise {
         })
     }
 
+    /// Scatter with all deviations times a factor.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        let scaled = |each: &[f64; 2]| each.map(|one| factor * one);
+        Self {
+            deviations: self.deviations.iter().map(scaled).collect(),
+            ..self
+        }
+    }
+
     /// No scatter at all.
     #[must_use]
     pub fn none() -> Self {

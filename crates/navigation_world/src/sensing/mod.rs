@@ -5,6 +5,7 @@ macro_rules! robot_sensors {
     ($list:ident) => {
         $list! {
             ultrasonic::Ultrasonic,
+            sound_localizer::SoundLocalizer,
         }
     };
 }
@@ -24,6 +25,7 @@ pub mod sampled;
 pub mod sensor;
 pub mod sonar;
 pub mod sound;
+pub mod sound_localizer;
 pub mod ultrasonic;
 pub mod vision;
 
@@ -35,5 +37,6 @@ pub use lidar::Lidar;
 pub use linearized::{LinearizedCamera, PARAMETERS};
 pub use options::{SensorOptions, sensor_named};
 pub use sensor::{Located, RobotSensor, Sensor, Truth};
+pub use sound_localizer::SoundLocalizer;
 pub use ultrasonic::Ultrasonic;
 pub use vision::{PositionError, Vision, VisionSensor};

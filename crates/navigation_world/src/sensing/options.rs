@@ -107,7 +107,7 @@ impl SensorOptions {
     pub fn sight(&self, scenario: &Scenario) -> Result<Option<(Regions, f64)>> {
         match self.place() {
             MountedSensor::AboveRobot(_) | MountedSensor::AboveObstacles(_) => Ok(None),
-            MountedSensor::OnRobot(sensor) => Ok(Some((sensor.regions(scenario)?, sensor.reach()))),
+            MountedSensor::OnRobot(sensor) => sensor.sight(scenario),
         }
     }
 

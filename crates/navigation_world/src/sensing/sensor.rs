@@ -97,6 +97,11 @@ pub trait Sensor: Send {
     /// the robot as it knows itself.
     fn observe(&mut self, _truth: &Truth<'_>, _known: &Frame, _bodies: &mut [Body]) {}
 
+    /// Goal in m to which the sensor sends the robot, once it has found one.
+    fn goal(&self) -> Option<Vector2<f64>> {
+        None
+    }
+
     /// Tells how old at a time in s what it told of these obstacles is; of now, unless it knows better.
     fn date(&self, _time: f64, _ages: &mut [f64]) {}
 }
@@ -110,12 +115,10 @@ pub trait RobotSensor {
     /// An option is out of range in this scenario.
     fn at_work(&self, scenario: &Scenario, index: u64) -> Result<Box<dyn Sensor>>;
 
-    /// Regions of what it reads, for the robot of a scenario.
+    /// Regions of what it reads, for the robot of a scenario, and the distance from the center of the robot within which
+    /// it reads, in m; `None` for a sensor that does not tell of obstacles.
     ///
     /// # Errors
     /// Errors of [`crate::world::region::radii`].
-    fn regions(&self, scenario: &Scenario) -> Result<Regions>;
-
-    /// Distance from the center of the robot within which it reads, in m.
-    fn reach(&self) -> f64;
+    fn sight(&self, scenario: &Scenario) -> Result<Option<(Regions, f64)>>;
 }

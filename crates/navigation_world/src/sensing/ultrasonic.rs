@@ -64,15 +64,12 @@ impl Ultrasonic {
         not_negative("assumed_speed", self.assumed_speed)?;
         Ok(self)
     }
-}
 
-impl RobotSensor for Ultrasonic {
-    fn at_work(&self, scenario: &Scenario, index: u64) -> Result<Box<dyn Sensor>> {
-        Ok(Box::new(Echoes::new(scenario, self, index)?))
-    }
-
-    /// An array that fires in turn is late by a round.
-    fn regions(&self, scenario: &Scenario) -> Result<Regions> {
+    /// Regions of what it reads; an array that fires in turn is late by a round.
+    ///
+    /// # Errors
+    /// Errors of [`region::radii`].
+    pub fn regions(&self, scenario: &Scenario) -> Result<Regions> {
         let round = self.array.mounts().len()
             / self
                 .array
@@ -93,6 +90,16 @@ impl RobotSensor for Ultrasonic {
         let forward = |mount: &Frame| mount.inward(mount.position).x;
         let mounts = self.array.mounts().iter();
         self.array.ranging().reach() + mounts.map(forward).fold(f64::INFINITY, f64::min)
+    }
+}
+
+impl RobotSensor for Ultrasonic {
+    fn at_work(&self, scenario: &Scenario, index: u64) -> Result<Box<dyn Sensor>> {
+        Ok(Box::new(Echoes::new(scenario, self, index)?))
+    }
+
+    fn sight(&self, scenario: &Scenario) -> Result<Option<(Regions, f64)>> {
+        Ok(Some((self.regions(scenario)?, self.reach())))
     }
 }
 

@@ -13,8 +13,10 @@ from hrsafety.navigation.crowd.contacts import touches_of
 from hrsafety.navigation.crowd.doubts import of_people
 from hrsafety.navigation.crowd.episodes import episodes_in, outcome_of
 from hrsafety.navigation.crowd.world import World
+from hrsafety.navigation.knowledge import Sensing, told_by
 from hrsafety.navigation.metrics.between import first_wall_contact, paths_of, until_arrival, wrapped
 from hrsafety.navigation.metrics.scores import table_of
+from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.trajectory import Divergence, Trajectory
 from hrsafety.navigation.warnings.runs import of_commands
 from hrsafety.plausibility import ResultWarning
@@ -93,6 +95,12 @@ class WorldRun(Trajectory):
         if self._robot is None:
             self._refuse("robot")
         return int(self._robot)
+
+    @property
+    def sensing(self) -> Sensing:
+        """Which sensors told the law of the robot and of the others."""
+        own = self.scenario.robots[self.robot]
+        return told_by(own.measurement, own.as_built() or AsBuilt())
 
     @property
     def robots(self) -> tuple[Trajectory, ...]:

@@ -19,13 +19,16 @@ class RobotSensor(Parameters):
         Name in the core's list of sensors, which also tells what told a law of obstacles.
     RANGE : str
         Name of the option that says how far it reads.
+    TELLS : bool
+        Whether it tells a law of obstacles.
     max_speed : float
-        Largest speed in m/s of what it sees, for which the regions of its readings are sized.
+        Largest speed in m/s of what it sees, for which the regions of its readings are sized; of one that tells.
     """
 
     __slots__ = ("_native",)
     NAME: ClassVar[str]
     RANGE: ClassVar[str]
+    TELLS: ClassVar[bool] = True
     max_speed: float
     _native: _hrsafety.Sensor
 

@@ -243,7 +243,7 @@ def of_built(shield: Shield, built: AsBuilt) -> Iterator[ResultWarning]:
             f"margin of the shield is {shield.margin:.4g}, but a camera tells the robot its own place with noise and "
             "late: it may let the robot move into somebody; give a margin that covers noise and the way in between",
         )
-    if built.obstacle_vision is not None or built.sensors:
+    if built.obstacle_vision is not None or any(sensor.TELLS for sensor in built.sensors):
         yield ResultWarning(
             SEES_LESS,
             "sensors",

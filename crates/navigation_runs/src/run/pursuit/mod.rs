@@ -374,6 +374,7 @@ impl Parts for PursuitParts<'_> {
 
     fn decide(&mut self, time: f64, _request: (), interrupted: Interrupted<'_>) -> Result<bool> {
         self.keep();
+        self.sight.send(&mut *self.law)?;
         let command = self.law.command(&Situation {
             time,
             bodies: &self.seen,

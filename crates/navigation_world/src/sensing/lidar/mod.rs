@@ -189,13 +189,12 @@ impl Lidar {
     }
 }
 
-impl RobotSensor for Lidar {
-    fn at_work(&self, scenario: &Scenario, index: u64) -> Result<Box<dyn Sensor>> {
-        Ok(Box::new(Scans::new(scenario, self, index)?))
-    }
-
-    /// At the wall and `influence` ahead of it, or sized for the largest speed of what is seen.
-    fn regions(&self, scenario: &Scenario) -> Result<Regions> {
+impl Lidar {
+    /// Regions of what it reads: at the wall and `influence` ahead of it, or sized for the largest speed of what is seen.
+    ///
+    /// # Errors
+    /// Errors of [`region::radii`].
+    pub fn regions(&self, scenario: &Scenario) -> Result<Regions> {
         let limits = scenario.limits();
         if self.max_speed == 0.0 {
             return Ok(Regions {
@@ -206,9 +205,15 @@ impl RobotSensor for Lidar {
         let (point, period) = (Obstacle::point(self.max_speed), scenario.control_period());
         region::radii(&limits, &point, period, None, &Sensing::default())
     }
+}
 
-    fn reach(&self) -> f64 {
-        self.range_max
+impl RobotSensor for Lidar {
+    fn at_work(&self, scenario: &Scenario, index: u64) -> Result<Box<dyn Sensor>> {
+        Ok(Box::new(Scans::new(scenario, self, index)?))
+    }
+
+    fn sight(&self, scenario: &Scenario) -> Result<Option<(Regions, f64)>> {
+        Ok(Some((self.regions(scenario)?, self.range_max)))
     }
 }
 

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use numeric::random::Stream;
 
 use super::{Lidar, boundary_points_of};
-use crate::sensing::sensor::{RobotSensor, Sensor, Truth};
+use crate::sensing::sensor::{Sensor, Truth};
 use crate::sensing::sonar::ranging::Normals;
 use crate::world::frame::Frame;
 use crate::world::geometry::Body;
