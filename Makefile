@@ -61,10 +61,12 @@ lint: build
 	$(BIN)/python -m mypy.stubtest hrsafety._hrsafety
 
 docs: build
-	$(BIN)/sphinx-build -W --keep-going -b html docs target/docs
+	$(BIN)/sphinx-build -W --keep-going -j auto -b html docs target/docs
 	$(BIN)/python docs/check_links.py target/docs
 
-check: lint docs
+# The linters wait for one core most of the time: pages are written beside them.
+check: build
+	$(MAKE) -j2 --output-sync=target lint docs
 
 # RECORDING names a table of recorded people for the gallery.
 RECORDING ?= zara01.csv
