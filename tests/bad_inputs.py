@@ -314,7 +314,7 @@ BAD_INPUTS: Mapping[str, Mapping[str, str]] = {
     },
     "Arms": {
         "SDF for a URDF": "arms.Arm.from_urdf('<sdf version=\"1.9\"/>')",
-        "MJCF for a URDF": "arms.Arm.from_urdf('<mujoco/>')",
+        "MJCF for the text of a URDF": "arms.Arm('<mujoco/>')",
         "inertia that no body has": "arms.Arm(arms.Arm.example().urdf.replace('ixx=\"0.42\"', 'ixx=\"0.9\"'))",
         "units in a URDF": "arms.Arm.from_urdf(arms.Arm.example().urdf.replace('<mass ', '<mass unit=\"g\" '))",
         "type plate of 0 kg": "arms.Arm.example(type_plate_mass=0.0)",

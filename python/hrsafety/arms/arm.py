@@ -6,6 +6,7 @@ import hashlib
 import os
 from dataclasses import field
 from importlib import resources
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,7 @@ from hrsafety.arms.inputs import (
     vectors_of,
 )
 from hrsafety.arms.masses import RULES, EffectiveMass, Extremes, PointMasses, mass_by_rule
+from hrsafety.arms.mjcf import is_mjcf, mjcf_arm
 from hrsafety.arms.payload import Payload, payloads_of
 from hrsafety.arms.rolling import RollingBase
 from hrsafety.errors import InvalidParameterError
@@ -64,6 +66,8 @@ class Arm(Facts):
         Masses in kg of links whose URDF has none.
     base : RollingBase, "fixed" or None
         What the arm stands on; ``None``: it is taken to stand still, and doubted where it looks like one that rolls.
+    notes : tuple of ResultWarning
+        Doubts about the file that the URDF was made of.
 
     Raises
     ------
@@ -93,6 +97,7 @@ class Arm(Facts):
     mass_source: str = "links"
     link_masses: tuple[tuple[str, float], ...] = ()
     base: RollingBase | str | None = None
+    notes: tuple[ResultWarning, ...] = ()
     _native: _hrsafety.Arm = field(init=False, repr=False, compare=False)
     _facts: dict[str, Any] = field(init=False, repr=False, compare=False)
     _doubts: tuple[ResultWarning, ...] = field(init=False, repr=False, compare=False)
@@ -114,6 +119,9 @@ class Arm(Facts):
         self._set(link_masses=motors_of(self.link_masses, "link_masses", "a link and its mass"))
         if self.base != "fixed" and self.base is not None:
             instance("base", self.base, RollingBase)
+        for each in sequence("notes", "be a tuple of ResultWarning", self.notes):
+            instance("notes", each, ResultWarning)
+        self._set(notes=tuple(self.notes))
         rolls = self.base.native if isinstance(self.base, RollingBase) else None
         scaled = self.type_plate_mass if self.mass_source == "scaled" else None
         masses = list(self.link_masses)
@@ -143,7 +151,8 @@ class Arm(Facts):
         Parameters
         ----------
         path_or_text : path-like or str
-            A URDF file, a file of macros (``.xacro``, with the extra ``arms``), or the text of a URDF.
+            A URDF file, a file of macros (``.xacro``, with the extra ``arms``), or one of MuJoCo (with the extra
+            ``mjcf``), or the text of a URDF or MJCF. Motor inertias of MJCF are taken unless others are given.
         payload : Payload, mapping, tuple, or sequence of them, or None
             What the arm carries: link, mass, center and inertia of each.
         armature : mapping of str to float, array_like (n,), float or None
@@ -181,11 +190,16 @@ class Arm(Facts):
             If the file cannot be read, or an element breaks a rule, which the message names.
         """
         text, name = urdf_text(path_or_text)
+        notes: tuple[ResultWarning, ...] = ()
+        if is_mjcf(text):
+            found = mjcf_arm(text, Path(str(path_or_text)) if name else None)
+            text, notes = found.urdf, found.doubts
+            armature = found.armature or None if armature is None else armature
         try:
             motors = armature_of(armature, () if armature is None else tuple(_hrsafety.urdf_joint_names(text)))
             masses = armature_of(link_masses, (), "link_masses")
             more = (repair_inertia, type_plate_mass, mass_source, masses, base)
-            return cls(text, payloads_of(payload), motors, locked_of(locked), *more)
+            return cls(text, payloads_of(payload), motors, locked_of(locked), *more, notes)
         except InvalidParameterError as error:
             options = ("payload", "armature", "locked", "repair_inertia", "type_plate_mass")
             if not name or error.argument.startswith((*options, "mass_source", "link_masses", "base")):

@@ -29,6 +29,7 @@ class Facts(Parameters):
     mass_source: str
     link_masses: tuple[tuple[str, float], ...]
     base: RollingBase | str | None
+    notes: tuple[ResultWarning, ...]
 
     @property
     def name(self) -> str:
@@ -56,14 +57,22 @@ class Facts(Parameters):
         return tuple(name for name, free in zip(self.joint_names, self._facts["free"], strict=True) if free)
 
     @property
+    def base_joints(self) -> tuple[str, ...]:
+        """Joints of a base that rolls."""
+        rolls = isinstance(self.base, RollingBase)
+        return tuple(name for name in self.joint_names if rolls and name in BASE_JOINTS)
+
+    @property
     def link_names(self) -> tuple[str, ...]:
         """Links in the order of the file."""
         return tuple(self._facts["link_names"])
 
     @property
     def moved_links(self) -> tuple[str, ...]:
-        """Links that some joint moves."""
-        return tuple(name for name, moved in zip(self.link_names, self._facts["moved"], strict=True) if moved)
+        """Links of the URDF that some joint moves."""
+        below = [f"{name}_link" for name in self.base_joints]
+        moved = zip(self.link_names, self._facts["moved"], strict=True)
+        return tuple(name for name, moves in moved if moves and name not in below)
 
     @property
     def moving_mass(self) -> float:
@@ -118,7 +127,7 @@ class Facts(Parameters):
     def _doubted(self) -> tuple[ResultWarning, ...]:
         facts, rolling = self._facts, isinstance(self.base, RollingBase)
         # Wheels have their motors in the mass of the base; the type plate is that of the arm.
-        driven = tuple(name for name in self.free_joints if not (rolling and name in BASE_JOINTS))
+        driven = tuple(name for name in self.free_joints if name not in self.base_joints)
         below = self.base.mass if isinstance(self.base, RollingBase) else 0.0
         plate = None if rolling and self.mass_source == "scaled" else self.type_plate_mass
         return (
@@ -128,4 +137,5 @@ class Facts(Parameters):
             *doubts.doubts_of_plate(self.total_mass - below, self.moving_mass - below, plate),
             *doubts.doubts_of_payloads(self.payloads, self.moving_mass),
             *doubts.doubts_of_reading(facts),
+            *self.notes,
         )

@@ -10,7 +10,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, checked_seed, count, instance
 from hrsafety._records import dataclass
 from hrsafety.arms import Arm
-from hrsafety.errors import InvalidParameterError
+from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.program.motion import velocities_of
 
 __all__ = ["LISTED", "OUTSIDE", "DrawnMotions", "Quantile", "quantiles_of"]
@@ -104,7 +104,8 @@ class DrawnMotions:
 
     def __post_init__(self) -> None:
         """Check the values."""
-        instance("arm", self.arm, Arm)
+        if instance("arm", self.arm, Arm).base_joints:
+            raise InvalidParameterError("arm", "stand still without a program", Shown("a base that rolls"))
         count("draws", self.draws, least=FEWEST_DRAWS, most=MOST_DRAWS)
         object.__setattr__(self, "seed", checked_seed("seed", self.seed))
         object.__setattr__(self, "velocity", velocities_of(self.arm, self.velocity))

@@ -58,11 +58,8 @@ _TOP: Keys = MappingProxyType(
         "annex": kind.table,
     }
 )
-_OF_CELLS = (
-    *("poses", "samples", "seed", "mass_rule", "direction"),
-    *("base", "base_axle", "base_mass", "base_inertia", "base_heading"),
-)
-"""Keys of the robot of a cell that are others here; programs are those of an arm whose base stands still."""
+_OF_CELLS = ("poses", "samples", "seed", "mass_rule", "direction")
+"""Keys of the robot of a cell that are others here."""
 _ROBOT: Keys = MappingProxyType(
     {name: check for name, check in ARM_KEYS.items() if name not in _OF_CELLS} | {"direction": kind.word}
 )

@@ -34,6 +34,8 @@ MOST_INTERVALS = 10**6
 LOG_STEP = 0.004
 """Step of a joint log in s."""
 MOST_LOGGED = 10**6
+STANDS = 1e-9
+"""A base moves less than this, in m or rad, where it stands."""
 PATH_TOLERANCE = 1e-3
 REASONS = ("acceleration", "velocity", "contact", "zone")
 """Limits that bind at a place of the path, by the code of the core."""
@@ -249,6 +251,11 @@ class ArmMotion:
 
     @classmethod
     def _of(cls, arm: Arm, curves: list[JointCurve], dwells: list[float], limits: tuple[Array, Array]) -> Self:
+        for name in arm.base_joints:
+            driven = np.abs(np.concatenate([each.coefficients[..., arm.joint_names.index(name)] for each in curves]))
+            if driven.max() > STANDS:
+                rule = "stay at 0: a program is that of an arm whose base is parked, free to roll when it is pushed"
+                raise InvalidParameterError(f"joint {name}", rule, Shown("a base that drives"))
         stops = np.cumsum([len(each.coefficients) for each in curves])[:-1].tolist()
         velocity, acceleration = limits
         return cls(
@@ -527,7 +534,7 @@ def _of_file(arm: Arm) -> Array:
         except ValueError:
             value = 0.0
         if not value > 0.0:
-            if name in arm.locked:
+            if name in (*arm.locked, *arm.base_joints):
                 value = 1.0
             else:
                 rule = f"be given: the URDF has no limit of velocity for joint {name}"

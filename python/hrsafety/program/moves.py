@@ -175,7 +175,7 @@ def _start(arm: Arm, move: Move) -> Array:
         raise InvalidParameterError("moves[0].blend", "be left out at the start", move.blend)
     if isinstance(move.to, Mapping):
         for joint in arm.free_joints:
-            if joint not in move.to:
+            if joint not in (*move.to, *arm.base_joints):
                 raise InvalidParameterError(f"moves[0].to.{joint}", "be given at the start", Shown("nothing"))
     return _pose(arm, move, np.zeros(len(arm.joint_names)), "moves[0]")
 
@@ -203,7 +203,8 @@ def _pose(arm: Arm, move: Move, before: Array, path: str) -> Array:
 def _line(arm: Arm, pose: Array, move: Move, link: str, path: str) -> tuple[JointCurve, float]:
     """Return the spline along a straight line, and the least ratio of singular values on it."""
     word(f"{path}.link", link, arm.moved_links)
-    free = np.isin(arm.joint_names, arm.free_joints)
+    # A base that rolls stands while the arm draws a line.
+    free = np.isin(arm.joint_names, [each for each in arm.free_joints if each not in arm.base_joints])
     frame = _Frame(arm, link, free)
     start = frame.places(pose)
     shift = np.asarray(move.to) - start[0]

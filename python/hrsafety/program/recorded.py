@@ -78,7 +78,7 @@ def read_log(path: str | PathLike[str], arm: Arm) -> JointLog:
     columns = []
     for joint in arm.joint_names:
         if joint not in record.columns:
-            if joint in arm.locked:
+            if joint in (*arm.locked, *arm.base_joints):
                 columns.append(np.zeros(len(record.time)))
                 continue
             remedy = f"name a column {joint}, in rad or m"
@@ -261,7 +261,7 @@ def joint_values(name: str, given: object, arm: Arm) -> Array:
                 rule = f"name joints of the arm: {', '.join(arm.joint_names)}"
                 raise InvalidParameterError(name, rule, joint)
         for joint in arm.free_joints:
-            if joint not in given:
+            if joint not in given and joint not in arm.base_joints:
                 raise InvalidParameterError(f"{name}.{joint}", "be given", Shown("nothing"))
         given = [given.get(joint, 1.0) for joint in arm.joint_names]
     values = numbers(name, given)

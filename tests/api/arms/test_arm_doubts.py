@@ -385,7 +385,6 @@ def test_foreign_blocks_with_undeclared_prefixes_are_passed_over() -> None:
     ("text", "message"),
     [
         ('<sdf version="1.9"><model name="m"/></sdf>', "this is SDF of Gazebo.*URDF"),
-        ('<mujoco model="m"><worldbody/></mujoco>', "this is MJCF of MuJoCo.*URDF"),
         ('<robot name="m"><group name="arm"/></robot>', "this is SRDF.*URDF"),
         (
             '<robot xmlns:xacro="http://ros.org/xacro"><xacro:include filename="a"/></robot>',

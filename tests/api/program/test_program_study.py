@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from api.program.chains import chain, example, motion_of, sines, task
-from hrsafety import contact, program, standards
+from hrsafety import arms, contact, program, standards
 from hrsafety.errors import InvalidParameterError
 
 START = {"turn": -0.6, "shoulder": 0.35, "elbow": 1.45, "wrist_1": -0.23, "wrist_2": -1.5708, "wrist_3": 0.0}
@@ -320,3 +320,35 @@ def test_programs_that_are_refused(more: dict[str, Any], message: str) -> None:
     given = {"segments": [segment(motion, "chest")]} | more
     with pytest.raises(InvalidParameterError, match=message):
         task(motion, **given)
+
+
+@pytest.mark.parametrize("kind", ["differential", "omni"])
+def test_a_parked_base_that_rolls_away_is_lighter(kind: str) -> None:
+    motors = dict(zip(START, [1.2, 1.2, 1.0, 0.3, 0.3, 0.3], strict=True))
+    fixed = arms.Arm.example(armature=motors, base="fixed")
+    rolling = arms.Arm.example(armature=motors, base=arms.RollingBase(kind=kind, mass=60.0, inertia=4.0))
+    place = fixed.position(list((START | {"turn": -0.3}).values()), link="tool")
+    moves = [
+        program.Move(kind="joint", to=START),
+        program.Move(kind="joint", to={"turn": -0.3}),
+        program.Move(
+            kind="linear", to=fixed.position(list((START | {"turn": -0.3}).values()), link="tool") - [0, 0, 0.1]
+        ),
+    ]
+    limits = {"velocity": dict.fromkeys(START, 1.0), "acceleration": dict.fromkeys(START, 4.0)}
+    studies = []
+    for arm in (fixed, rolling):
+        motion = program.ArmMotion.from_moves(arm, moves, **limits)
+        gripper = [program.ContactPoint(name="gripper", link="tool", area=1e-4)]
+        part = program.Segment(start="move 1", end="move 3", regions=["chest"], **FREE)
+        task = program.Program(motion=motion, points=gripper, segments=[part], robot_mass="directional")
+        studies.append(task.report(intervals=300))
+    held, free = studies
+    assert free.free.time == pytest.approx(held.free.time, rel=1e-4)
+    masses = [np.nanmean(each.columns()["mass_along_motion_kg"]) for each in studies]
+    assert masses[1] < masses[0]
+    assert free.limited.time < held.limited.time
+    assert rolling.iso_mass == pytest.approx(fixed.iso_mass + 30.0 + 0.5 * (fixed.total_mass - fixed.moving_mass))
+    driving = [program.Move(kind="joint", to=START), program.Move(kind="joint", to={"base_x": 0.5})]
+    with pytest.raises(InvalidParameterError, match="joint base_x must stay at 0"):
+        program.ArmMotion.from_moves(rolling, driving, velocity=1.0, acceleration=4.0)
