@@ -21,7 +21,7 @@ from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.plausibility import ResultWarning
 from hrsafety.program.curves import JointCurve
 from hrsafety.program.moves import Legs, Move, legs_of
-from hrsafety.program.recorded import JointLog, checked_log, followed, joint_values, read_log
+from hrsafety.program.recorded import JointLog, checked_log, doubts_of_log, followed, joint_values, read_log
 from hrsafety.tables import Columns, Table
 
 __all__ = ["INTERVALS", "ArmMotion", "Retimed", "velocities_of"]
@@ -141,7 +141,8 @@ class ArmMotion:
         tolerance = positive("path_tolerance", path_tolerance)
         way = followed(recorded, limits[0], tolerance)
         found = cls._of(arm, way.curves, way.dwells, limits)
-        return replace(found, log=recorded, place=way.place, residual=way.residual)
+        doubts = tuple(doubts_of_log(recorded, *limits))
+        return replace(found, log=recorded, place=way.place, residual=way.residual, warnings=doubts)
 
     @classmethod
     def from_moves(

@@ -16,10 +16,11 @@ from hrsafety._arguments import Array, numbers, vector
 from hrsafety.arms import Arm
 from hrsafety.arms.inputs import poses_of
 from hrsafety.errors import FileError, InvalidParameterError, ShapeError, Shown
+from hrsafety.plausibility import ResultWarning
 from hrsafety.program.curves import JointCurve
 from hrsafety.records.units import dimension_of
 
-__all__ = ["MOST_WAYPOINTS", "FollowedLog", "JointLog", "followed", "read_log"]
+__all__ = ["MOST_WAYPOINTS", "FollowedLog", "JointLog", "doubts_of_log", "followed", "read_log"]
 
 MOST_WAYPOINTS = 10**6
 LARGEST_TURN = 7.0
@@ -31,6 +32,12 @@ SHORTEST_DWELL = 0.05
 THINNED = 0.25
 """Samples nearer to each other than this share of the tolerance are one place of the path."""
 FIRST_KNOTS = 4
+UNSEEN = 0.25
+"""Share of the fastest recorded rate that may stay unseen between two samples."""
+FULL_SPEED = 0.1
+"""Time in s to the full speed of a joint whose acceleration has no limit."""
+MOVING = 0.1
+"""Share of the fastest recorded rate at which a robot moves where its log begins or ends."""
 SAME = 1e-9
 """Poses that are no farther apart are the same."""
 
@@ -124,6 +131,37 @@ def checked_log(arm: Arm, time: object, joints: object, prefix: str = "joints.")
             worst = float(values[np.argmax(np.abs(values))])
             raise InvalidParameterError(f"{prefix}{joint}", rule, worst, "degrees? write radians, or the unit [deg]")
     return JointLog(clock, poses, np.gradient(poses, clock, axis=0, edge_order=2))
+
+
+def doubts_of_log(log: JointLog, velocity: Array, acceleration: Array) -> Iterator[ResultWarning]:
+    """Yield what a log may not show: swings between its samples, and motion before its begin or behind its end.
+
+    Parameters
+    ----------
+    log : JointLog
+        Recorded motion.
+    velocity, acceleration : ndarray (joints,)
+        Limits of the joints: between two samples a rate may leave what is seen by a quarter of the acceleration times
+        the step.
+    """
+    shares = np.abs(log.rates / velocity).max(axis=1)
+    fastest = float(shares.max())
+    if fastest == 0.0:
+        return
+    step = float(np.diff(log.time).max())
+    gains = np.where(np.isfinite(acceleration), acceleration, velocity / FULL_SPEED)
+    unseen = 0.25 * step * float((gains / velocity).max())
+    if unseen > UNSEEN * fastest:
+        message = (
+            f"the log has steps of up to {step:.3g} s: between two samples a joint may be faster than is seen by "
+            f"{100.0 * unseen / fastest:.3g} % of the fastest recorded rate: record every "
+            f"{step * UNSEEN * fastest / unseen:.2g} s or oftener"
+        )
+        yield ResultWarning("coarse_log", "motion.log", message)
+    for name, share in (("begins", shares[0]), ("ends", shares[-1])):
+        if share > MOVING * fastest:
+            message = f"the log {name} while the robot moves: what it does beyond is not seen: record from rest to rest"
+            yield ResultWarning("log_in_motion", "motion.log", message)
 
 
 def followed(log: JointLog, velocity: Array, tolerance: float) -> FollowedLog:

@@ -223,3 +223,34 @@ def test_velocities_of_the_urdf_hold_where_none_are_given() -> None:
     arm = type(chain(2)).from_urdf(chain(2).urdf.replace(' velocity="2"', ""))
     with pytest.raises(InvalidParameterError, match=r"velocity must be given: the URDF has no limit.*joint1"):
         motion_of(arm, [[0, 0], [1, 1]], acceleration=1.0)
+
+
+@pytest.mark.parametrize(
+    ("step", "gain", "codes"),
+    [
+        (1.0, 4.0, ["coarse_log"]),
+        (0.2, 4.0, ["coarse_log"]),
+        (0.2, 0.5, []),
+        (0.02, 4.0, []),
+        (0.008, np.inf, []),
+        (0.1, np.inf, ["coarse_log"]),
+    ],
+)
+def test_logs_too_coarse_to_show_every_swing_are_doubted(step: float, gain: float, codes: list[str]) -> None:
+    time = np.arange(0.0, 8.0 + 1e-9, step)
+    poses = np.column_stack([0.25 * (1.0 - np.cos(np.pi * time / 4.0)), np.zeros(len(time))])
+    motion = program.ArmMotion.from_log(chain(2), time=time, joints=poses, acceleration=gain, velocity=2.0)
+    assert [each.code for each in motion.warnings if each.code == "coarse_log"] == codes
+    assert not any(each.safe_side for each in motion.warnings)
+    # The same samples with a jump of time among them: what happened in it nobody saw.
+    jumped = np.where(time > 4.0, time + 2.0, time)
+    late = program.ArmMotion.from_log(chain(2), time=jumped, joints=poses, acceleration=4.0, velocity=2.0)
+    assert "coarse_log" in [each.code for each in late.warnings]
+
+
+def test_logs_that_begin_in_motion_are_doubted() -> None:
+    time = np.arange(0.0, 2.0, 0.004)
+    poses = np.column_stack([0.5 - 0.5 * np.cos(np.pi * time / 2.0), np.zeros(len(time))])
+    for cut, codes in ((slice(None), []), (slice(100, None), ["log_in_motion"]), (slice(None, 300), ["log_in_motion"])):
+        motion = program.ArmMotion.from_log(chain(2), time=time[cut], joints=poses[cut], acceleration=4.0, velocity=2.0)
+        assert [each.code for each in motion.warnings] == codes
