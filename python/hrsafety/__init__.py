@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from types import ModuleType
 
     from hrsafety import (
+        arena,
         arms,
         benchmarks,
         cli,
@@ -57,6 +58,7 @@ __all__ = [
     "ShapeError",
     "SimulationError",
     "__version__",
+    "arena",
     "arms",
     "benchmarks",
     "cli",

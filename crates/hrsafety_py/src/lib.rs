@@ -70,8 +70,8 @@ mod _hrsafety {
     use crate::crowd::run::WorldRun;
     #[pymodule_export]
     use crate::crowd::{
-        CrowdModel, CrowdPerson, CrowdRobot, CrowdSource, CrowdWall, CrowdWorld, crowd_circle,
-        crowd_decisions, crowd_simulate,
+        CrowdModel, CrowdPerson, CrowdRobot, CrowdSource, CrowdWall, CrowdWorld,
+        crowd_certificates, crowd_circle, crowd_decisions, crowd_simulate,
     };
     #[pymodule_export]
     use crate::gains::problem::GainProblem;

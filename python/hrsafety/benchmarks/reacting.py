@@ -23,10 +23,13 @@ from hrsafety.navigation.warnings.shields import Motion
 __all__ = ["REACTING", "SCENES"]
 
 LAWS = ("field", "field+shield", "orca", "orca+shield", "velocity_obstacle", "velocity_obstacle+shield")
+GUIDED = tuple(f"{law}+guide{parts}" for law in ("field", "orca") for parts in ("", "+shield+yielding"))
 STEP_ERROR = Motion(nav.HolonomicRobot(), 0.05, 0.05).execution_error
 """How far robots are off the motion that a shield plans, with motion steps of 0.05 s, in m: its margin here."""
 CIRCLE_ERROR = Motion(nav.HolonomicRobot(radius=0.3, max_speed=1.0), 0.25, 0.25).execution_error
 """Execution error with the steps of 0.25 s of the circle crossing: no margin would leave the robot room."""
+SCENE_ERROR = Motion(nav.HolonomicRobot(radius=0.25, max_speed=1.0, max_acceleration=3.0), 0.1, 0.05).execution_error
+"""Execution error of the robot of the standard scenes, in m."""
 CASES = 500
 """Cases of CrowdNav."""
 MOST = 1_000_000
@@ -80,6 +83,14 @@ def _bottleneck(case: Case, index: int) -> World:
     return _free(world, _driven(case, (1.0, 4.0), (10.0, 4.0)))
 
 
+def _standard(case: Case, index: int) -> World:
+    """Return the standard scenes, seed after seed."""
+    seed, number = divmod(index, len(scenarios.SOCIAL))
+    world = scenarios.social(scenarios.SOCIAL[number], case.seed + seed)
+    law = case.built(margin=SCENE_ERROR, map=nav.StaticMap.from_polylines(world.walls))
+    return _sensed(replace(world, robots=[replace(world.robots[0], law=law)]), case)
+
+
 def _worlds(scene: Callable[[Case, int], World]) -> Callable[[Case], Iterator[Row]]:
     """Run worlds side by side, a row each."""
 
@@ -120,15 +131,18 @@ SCENES: dict[str, Callable[[Case, int], World]] = {
     "corridor": _corridor,
     "crossing": _crossing,
     "bottleneck": _bottleneck,
+    "scenes": _standard,
 }
 """Worlds of the episodes by the name of the suite."""
 
 
-def _suite(name: str, summary: str, cases: int, fastest: float, error: float = 0.0) -> Suite:
+def _suite(
+    name: str, summary: str, cases: int, fastest: float, error: float = 0.0, laws: tuple[str, ...] = LAWS
+) -> Suite:
     return Suite(
         name=name,
         summary=summary,
-        laws=LAWS,
+        laws=laws,
         cases=cases,
         seed=0,
         most=MOST,
@@ -145,5 +159,6 @@ REACTING = (
     _suite("corridor", "12 people walk both ways in a corridor", 100, FASTEST_DRAWN),
     _suite("crossing", "two streams of people cross at right angles", 100, FASTEST_DRAWN),
     _suite("bottleneck", "100 people and the robot leave a room through a door of 1 m", 20, FASTEST_DRAWN),
+    _suite("scenes", "25 standard scenes, seed after seed", 200, 1.8, SCENE_ERROR, GUIDED),
 )
 """The suites of people that react."""

@@ -31,7 +31,7 @@ LAW_NAMES = (
 
 SUITE_NAMES = (
     *("s4", "s5", "crowd", "recordings", "adversary", "barn", "dynabarn", "dynabarn3"),
-    *("circle_crossing", "circle_crossing_unseen", "antipodal", "corridor", "crossing", "bottleneck"),
+    *("circle_crossing", "circle_crossing_unseen", "antipodal", "corridor", "crossing", "bottleneck", "scenes"),
 )
 """Suites of `hrsafety.benchmarks`, named here so that ``--help`` need not load them."""
 

@@ -19,7 +19,9 @@ use vff_core::crowd::walls::Wall;
 use vff_core::crowd::world::{
     PersonSetup, RobotSetup, Route, RouteEnd, SourceSetup, Traits, Waypoint,
 };
-use vff_core::crowd::{Diverged, Model, Simulation, Trajectories, simulate_worlds};
+use vff_core::crowd::{
+    Diverged, Model, Simulation, Task, Trajectories, certify_all, simulate_worlds,
+};
 use vff_core::lanes::Vector2;
 use vff_core::run::pursuit::Pursuer;
 use vff_core::world::motion::Motion;
@@ -186,6 +188,17 @@ impl CrowdSource {
     }
 }
 
+/// The task of a robot, if there is one.
+fn task_of(given: &Keywords<'_>) -> PyResult<Option<Task>> {
+    let tasks = [
+        ("", None),
+        ("behind", Some(Task::Behind)),
+        ("ahead", Some(Task::Ahead)),
+        ("beside", Some(Task::Beside)),
+    ];
+    given.word("task", "be \"behind\", \"ahead\" or \"beside\"", &tasks)
+}
+
 /// A robot at the start.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
 pub struct CrowdRobot {
@@ -208,7 +221,7 @@ impl CrowdRobot {
         let given = given.unwrap_or_default();
         let setup = taken!(given: RobotSetup {
             mover = mover_of(robot)?, start, goal, heading, control_period, arrival_tolerance,
-            sensing_range, measurement = measurement.map(Measurement::core),
+            sensing_range, occlusion, task = task_of(&given)?, measurement = measurement.map(Measurement::core),
             built = built.map(|built| built.run(0.01, false)),
             law = law.map(|law| law.any.clone()),
         });
@@ -393,6 +406,26 @@ pub fn crowd_simulate<'py>(
         fields_of(py, &each, found)
     });
     fields.collect()
+}
+
+/// When a robot that knows the future arrives in each of some worlds, in s, and its places every 0.2 s; `None` where it
+/// cannot.
+#[pyfunction]
+#[pyo3(signature = (worlds, *, threads))]
+pub fn crowd_certificates<'py>(
+    py: Python<'py>,
+    worlds: Vec<PyRef<'py, CrowdWorld>>,
+    threads: Option<usize>,
+) -> PyResult<Vec<Option<(f64, Vec<[f64; 2]>)>>> {
+    let cores: Vec<_> = worlds.iter().map(|world| Arc::clone(&world.core)).collect();
+    let report = Report::new(None, cores.len());
+    let found = watched(py, report, |control: &crate::watch::Control<'_>| {
+        certify_all(&cores, threads, &|| control.interrupted())
+    })?;
+    Ok(found
+        .into_iter()
+        .map(|one| one.map(|one| (one.arrival, one.path)))
+        .collect())
 }
 
 /// Starts of people who cross a circle.

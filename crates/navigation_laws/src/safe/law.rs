@@ -42,6 +42,8 @@ pub struct SafeLaw {
     preferred: f64,
     mass: f64,
     goal: Vector2<f64>,
+    /// Goal that moves, in place of that of the plan while it is seen.
+    moving: Option<Vector2<f64>>,
     around: Surroundings,
     /// State of the robot as measured in the last control period.
     measured: RobotState<f64>,
@@ -109,6 +111,7 @@ impl SafeLaw {
             preferred: inner.robot.max_speed,
             mass: robot.mass,
             goal: scenario.goal.into(),
+            moving: None,
             around: Surroundings::new(family, &inner),
             law: family.law.at_work(gains, &inner, record)?,
             measured: RobotState {
@@ -181,9 +184,11 @@ impl Law<f64> for SafeLaw {
         Command::plain(change * (self.mass / situation.interval))
     }
 
-    /// Heads for another goal from now on; with a guide of its own it keeps to its plan.
+    /// Heads for another goal from now on; with a guide in a map it keeps to its plan while it does not see that goal.
     fn aim(&mut self, goal: [f64; 2]) {
-        if self.guidance.is_none() {
+        if self.guidance.is_some() && self.detour.is_none() {
+            self.moving = Some(goal.into());
+        } else {
             self.goal = goal.into();
             self.law.aim(goal);
         }
@@ -252,6 +257,13 @@ impl SafeLaw {
         let Some(guidance) = self.guidance.as_ref().filter(|_| self.detour.is_none()) else {
             return self.head_without_map(time, position);
         };
+        let seen = |goal: &Vector2<f64>| guidance.plan().sees(position, *goal);
+        if let Some(goal) = self.moving.filter(seen) {
+            return Destination {
+                local: Some(LocalGoal::goal(goal)),
+                taken_over: false,
+            };
+        }
         let found = guidance.local_goal(position);
         let mut heading = Destination {
             local: found.map(|(_, local)| local),

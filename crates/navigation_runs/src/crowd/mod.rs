@@ -6,6 +6,7 @@
 pub mod agent;
 mod agent_lanes;
 mod batch;
+mod certificate;
 mod divergence;
 pub mod environments;
 pub mod metrics;
@@ -20,14 +21,17 @@ mod sight;
 pub mod simulation;
 pub mod snapshot;
 mod sources;
+mod tasks;
 mod velocity_programs;
 pub mod walls;
 pub mod world;
 mod world_lanes;
 
 pub use batch::simulate_worlds;
+pub use certificate::{Certificate, certify, certify_all};
 pub use divergence::{Diverged, Divergence};
 pub use models::Model;
 pub use record::Trajectories;
 pub use simulation::{DecisionRoom, Simulation};
+pub use tasks::Task;
 pub use world::CrowdWorld;

@@ -5,6 +5,7 @@ use crate::crowd::divergence::is_finite;
 use crate::crowd::neighbors::grid::Period;
 use crate::crowd::people::{PersonState, Purpose, stream_of};
 use crate::crowd::sight::{KnownBody, Sight};
+use crate::crowd::tasks::Escort;
 use crate::crowd::world::{CrowdWorld, count_of};
 use crate::run::as_built::sight::BuiltSensors;
 use crate::run::as_built::{AsBuilt, robot_under};
@@ -46,6 +47,8 @@ struct Pilot {
     /// What the law sees, or what there is to be sensed.
     sight: Sight,
     sensing: Option<RobotSensors>,
+    /// Task beside the first person.
+    escort: Option<Escort>,
     /// State of the robot as measured last, with step and time in s of the sample.
     sample: Option<(usize, f64, MeasuredState)>,
 }
@@ -74,6 +77,7 @@ impl Pilot {
             law: law.map(|law| law.with_own_gains(known)).transpose()?,
             sight,
             sensing,
+            escort: None,
             sample: None,
         })
     }
@@ -169,7 +173,8 @@ impl CrowdRobot {
         let pilot = match sight {
             Some(sight) => {
                 let (law, sensing) = (setup.law.as_ref(), setup.sensing(world.step));
-                let pilot = Pilot::new(law, sight, &scenario, sensing.as_ref())?;
+                let mut pilot = Pilot::new(law, sight, &scenario, sensing.as_ref())?;
+                pilot.escort = setup.task.map(Escort::new);
                 Some(Box::new(pilot))
             }
             None => None,
@@ -400,8 +405,12 @@ impl CrowdRobot {
                 situation.robot = known.robot;
                 let (sight, sensing) = (&pilot.sight, pilot.sensing.as_ref());
                 let seen = shown(situation, sight, sensing);
+                let person = pilot.sight.first_person();
                 match &mut pilot.law {
                     Some(law) => {
+                        if let Some((escort, person)) = pilot.escort.as_mut().zip(person) {
+                            law.aim(escort.goal(known.robot.position, person).into());
+                        }
                         sensing.map_or(Ok(()), |sensing| sensing.sensors.send(&mut **law))?;
                         law.command(&seen).force
                     }
@@ -436,7 +445,9 @@ impl CrowdRobot {
             let scenario = scenario_of(world, index, known)?;
             let reading = pilot.sensing.as_ref().map(|sensing| sensing.reading);
             let built = world.robots[index].sensing(world.step);
+            let escort = pilot.escort;
             *pilot = Pilot::new(kind, more, &scenario, built.as_ref())?;
+            pilot.escort = escort;
             if let Some((sensing, reading)) = pilot.sensing.as_mut().zip(reading) {
                 sensing.reading = reading;
             }

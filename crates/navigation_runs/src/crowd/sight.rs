@@ -62,6 +62,8 @@ pub(super) struct Sight {
     /// Places for people of each source.
     guests: usize,
     range: f64,
+    /// Whether walls hide others.
+    occlusion: bool,
     index: usize,
     blur: Option<Blur>,
     /// The obstacles as measured last.
@@ -174,6 +176,7 @@ impl Sight {
         let sight = Self {
             guests,
             range: robot.sensing_range,
+            occlusion: robot.occlusion,
             index,
             // A robot as built has sensors, of which its measurement is one.
             blur: robot
@@ -299,7 +302,14 @@ impl Sight {
             });
             if let Some((mut position, mut velocity)) = found {
                 let way = world.period.wrap(position - me.position);
-                state.present = way.norm() <= self.range;
+                let there = me.position + way;
+                let hidden = || {
+                    world
+                        .walls
+                        .iter()
+                        .any(|wall| wall.hides(me.position, there))
+                };
+                state.present = way.norm() <= self.range && !(self.occlusion && hidden());
                 if let Some((track, age)) = tracks {
                     (position, velocity) = track.measure((position, velocity), age, interval);
                 }
@@ -324,6 +334,13 @@ impl Sight {
                 self.own = RobotState { position, velocity };
             }
         }
+    }
+
+    /// Place and velocity of the first person as measured; `None` while not seen.
+    pub fn first_person(&self) -> Option<(Vector, Vector)> {
+        let state = self.bodies.first()?.state;
+        let seen = state.present && self.slots.first() == Some(&Slot::Person(0));
+        seen.then(|| (state.position.into(), state.velocity.into()))
     }
 
     /// Whether the robot is outside every active region, as far as it knows.

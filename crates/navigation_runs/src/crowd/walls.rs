@@ -55,6 +55,31 @@ impl Wall {
         Ok(Self::Solid(shape.checked()?))
     }
 
+    /// Whether a segment between two places cuts or touches the wall.
+    #[must_use]
+    pub fn hides(&self, from: Vector, to: Vector) -> bool {
+        self.clearance_of_way(from, to) <= 0.0
+    }
+
+    /// The points of a polyline, or corners of a box around a solid.
+    pub(super) fn corners(&self) -> Vec<Vector> {
+        match self {
+            Self::Polyline(points) => points.clone(),
+            Self::Solid(shape) => {
+                let reach = match shape.shape {
+                    Shape::Disc { radius } => radius,
+                    Shape::Rectangle {
+                        half_length,
+                        half_width,
+                        ..
+                    } => half_length.hypot(half_width),
+                };
+                let corner = Vector::repeat(reach);
+                vec![shape.center - corner, shape.center + corner]
+            }
+        }
+    }
+
     /// The nearest point; of segments at the same distance that of the first. `None` on the wall.
     #[inline]
     #[must_use]

@@ -3,6 +3,7 @@
 use crate::crowd::agent::SHORTEST;
 use crate::crowd::models::Model;
 use crate::crowd::neighbors::grid::Period;
+use crate::crowd::tasks::Task;
 use crate::crowd::walls::Wall;
 use crate::run::AnyLaw;
 use crate::run::as_built::AsBuilt;
@@ -263,6 +264,10 @@ pub struct RobotSetup {
     pub arrival_tolerance: f64,
     /// Distance in m up to which it sees people and robots.
     pub sensing_range: f64,
+    /// Whether walls hide people and robots from it.
+    pub occlusion: bool,
+    /// Where it is to be beside the first person, whose law's goal moves then.
+    pub task: Option<Task>,
     /// Errors of what it sees.
     pub measurement: Option<Measurement>,
     /// Wheels and sensors, if it is not ideal; their step is that of the world.
@@ -404,6 +409,7 @@ impl CrowdWorld {
         for (index, robot) in self.robots.iter().enumerate() {
             robot
                 .check()
+                .and_then(|()| self.check_task(robot))
                 .and_then(|()| robot.steps(self.step).map(|_| ()))
                 .and_then(|()| self.check_contact(index))
                 .map_err(|error| error.within(&format!("robots[{index}]")))?;
@@ -435,6 +441,23 @@ impl CrowdWorld {
         let rule = format!("be below {models}, the number of models");
         let given = Given::Count(traits.model as u64);
         Err(Failure::invalid("model", rule, given))
+    }
+
+    /// Refuses a task without a person, or with sensors that do not tell which of the bodies the person is.
+    fn check_task(&self, robot: &RobotSetup) -> Result<()> {
+        if robot.task.is_none() {
+            return Ok(());
+        }
+        let found = |what: &str| Given::Found(what.to_owned().into());
+        if self.people.is_empty() {
+            let rule = "be None in a world without people";
+            return Err(Failure::invalid("task", rule, found("a task")));
+        }
+        if robot.built.is_some() {
+            let rule = "be None for a robot as built or with sensors";
+            return Err(Failure::invalid("task", rule, found("a task")));
+        }
+        Ok(())
     }
 
     fn check_rate(&self, source: &SourceSetup) -> Result<()> {

@@ -193,6 +193,8 @@ mod tests {
             control_period: 0.25,
             arrival_tolerance: 0.3,
             sensing_range: 10.0,
+            occlusion: false,
+            task: None,
             measurement: None,
             built: None,
             law: None,

@@ -166,6 +166,8 @@ fn robot(start: [f64; 2], goal: [f64; 2], law: Option<AnyLaw>) -> RobotSetup {
         control_period: STEP,
         arrival_tolerance: 0.3,
         sensing_range: 10.0,
+        occlusion: false,
+        task: None,
         measurement: None,
         built: None,
         law,

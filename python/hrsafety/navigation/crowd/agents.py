@@ -5,12 +5,12 @@ from __future__ import annotations
 import functools
 from collections.abc import Sequence
 from dataclasses import field, replace
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Pair, Parameters, count, instance, number, pair, points, sequence, vector, word
+from hrsafety._arguments import Pair, Parameters, count, flag, instance, number, pair, points, sequence, vector, word
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.navigation.crowd.pedestrians import CollisionFreeSpeed, Pedestrian
@@ -23,9 +23,10 @@ from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.navigation.sensing.robot_sensor import RobotSensor
 
-__all__ = ["FASTEST_DRAWN", "AtEnd", "Person", "Robot", "Source", "Waypoint", "middle_of", "points_of"]
+__all__ = ["FASTEST_DRAWN", "AtEnd", "Person", "Robot", "Source", "Task", "Waypoint", "middle_of", "points_of"]
 
 AtEnd = Literal["stay", "leave", "repeat"]
+Task = Literal["behind", "ahead", "beside"]
 
 _MOST_GROUPS = 2**32 - 1
 FASTEST_DRAWN = 2.2
@@ -285,6 +286,15 @@ class Robot(Parameters):
         Heading at the start in rad.
     sensing_range : float
         Distance up to which it sees people and other robots, in m.
+    occlusion : bool
+        Whether walls hide people and other robots: who is in range is seen while no wall cuts the segment between the
+        centers, also of who is measured late.
+    task : {"behind", "ahead", "beside"} or None
+        What the law does with the first person of the world: its goal is moved every control period to 1.2 m behind
+        the person, 1.5 m ahead, or 1.2 m beside on the side of the robot, in the direction of the measured velocity,
+        the last one of 0.05 m/s or more (at first along x). Laws that plan the whole way themselves, trees and
+        Field D*, keep to the goal of the robot, and so does a guide in a map while it does not see the moving goal.
+        The robot has arrived at its own goal. ``None``: nothing.
     measurement : Measurement or None
         Errors and age of what it sees; ``None``: everything is known exactly.
     sensors : sequence of RobotSensor
@@ -323,6 +333,8 @@ class Robot(Parameters):
     arrival_tolerance: float = 0.3
     heading: float = 0.0
     sensing_range: float = 10.0
+    occlusion: bool = False
+    task: Task | None = None
     measurement: Measurement | None = None
     sensors: Sequence[RobotSensor] = ()
     built: AsBuilt | None = None
@@ -341,6 +353,9 @@ class Robot(Parameters):
         if self.control_period is not None:
             self._as_numbers("control_period")
         self._as_numbers("arrival_tolerance", "heading", "sensing_range")
+        self._set(occlusion=flag("occlusion", self.occlusion))
+        if self.task is not None:
+            word("task", self.task, get_args(Task))
         self._set(start=pair("start", self.start), goal=pair("goal", self.goal))
         self._at_step(1.0)
 
@@ -380,4 +395,6 @@ class Robot(Parameters):
             control_period=step if self.control_period is None else self.control_period,
             arrival_tolerance=self.arrival_tolerance,
             sensing_range=self.sensing_range,
+            occlusion=self.occlusion,
+            task=self.task or "",
         )

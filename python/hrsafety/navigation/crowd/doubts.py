@@ -343,6 +343,7 @@ def of_robots(
         )
         sizes = [size for who, size in _radii(people, sources, robots) if who != f"robots[{index}]"]
         found += _of_range(f"robots[{index}]", robot, motion, shield, max(sizes, default=0.0))
+        found += _of_occlusion(f"robots[{index}]", robot, shield, walls=walls)
     return tuple(found)
 
 
@@ -380,6 +381,17 @@ def _of_range(owner: str, robot: Robot, motion: Motion, shield: Shield, radius: 
             f"sensing_range of {owner} is {robot.sensing_range:.4g} m, but its shield reckons with people up to "
             f"{least:.4g} m away until the robot stands: who is farther than the range is not there for it; give at "
             f"least sensing_range={math.ceil(least * 1e3) / 1e3:g}",
+        )
+
+
+def _of_occlusion(owner: str, robot: Robot, shield: Shield, *, walls: bool) -> Iterator[ResultWarning]:
+    """Warn of walls that hide people from a robot whose shield reckons with nobody who is not seen."""
+    if robot.occlusion and walls and getattr(shield, "unseen", None) is None:
+        yield ResultWarning(
+            SEES_LESS,
+            f"{owner}.occlusion",
+            f"walls hide people from {owner}, and its shield keeps off those whom the robot sees: who steps out from "
+            "behind a wall is not there for it before",
         )
 
 

@@ -1,0 +1,9 @@
+"""The arena: standard scenes of social navigation, which of them can be solved, and what is asked in each."""
+
+from hrsafety._calls import suggest
+from hrsafety.arena.cards import CARDS, task_error
+from hrsafety.arena.certificates import Certificate, certify, certify_many
+
+__all__ = ["CARDS", "Certificate", "certify", "certify_many", "task_error"]
+
+suggest(__all__, globals())
