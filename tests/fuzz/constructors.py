@@ -188,6 +188,12 @@ REQUIRED: dict[Callable[..., Any], Right] = {
     sweep.ImpactStudy: {"manipulator": impact.MANIPULATOR_1, "foam": impact.FOAM_1, "head": impact.Head.minimum()},
     sweep.LatinHypercube: {"axes": [_AXIS], "size": 8},
     sweep.NavigationStudy: {"scenarios": [scenarios.configuration("c1")]},
+    sweep.Saltelli: {"axes": [_AXIS], "size": 8},
+    sweep.SearchProblem: {
+        "axes": [_AXIS],
+        "study": sweep.FunctionStudy(function=_doubled, results=["y"]),
+        "objectives": {"y": "min"},
+    },
     sweep.Sobol: {"axes": [_AXIS], "size": 8},
     zones.CollisionMonitor: {"polygons": [_ZONE]},
     zones.Conditions: {

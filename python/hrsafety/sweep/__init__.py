@@ -15,7 +15,9 @@ from hrsafety.sweep.impact_study import ImpactStudy
 from hrsafety.sweep.navigation_study import NavigationStudy
 from hrsafety.sweep.result import SweepResult, open
 from hrsafety.sweep.running import SweepInterrupted, SweepWarning, run
-from hrsafety.sweep.sampled_designs import LatinHypercube, Sobol
+from hrsafety.sweep.sampled_designs import LatinHypercube, Saltelli, Sobol
+from hrsafety.sweep.sobol_indices import SobolIndices, sobol_indices
+from hrsafety.sweep.search_problem import Generation, SearchProblem
 from hrsafety.sweep.storage import SweepError
 from hrsafety.sweep.studies import Cases, Study
 
@@ -25,11 +27,15 @@ __all__ = [
     "Column",
     "Design",
     "FunctionStudy",
+    "Generation",
     "Grid",
     "ImpactStudy",
     "LatinHypercube",
     "NavigationStudy",
+    "Saltelli",
+    "SearchProblem",
     "Sobol",
+    "SobolIndices",
     "Study",
     "SweepError",
     "SweepEstimate",
@@ -39,6 +45,7 @@ __all__ = [
     "estimate",
     "open",
     "run",
+    "sobol_indices",
 ]
 
 suggest(__all__, globals())

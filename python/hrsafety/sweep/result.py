@@ -19,7 +19,7 @@ from hrsafety.sweep import exports
 from hrsafety.sweep.axes import Axis, Column
 from hrsafety.sweep.designs import Design, Grid
 from hrsafety.sweep.lazy_columns import LazyColumn
-from hrsafety.sweep.sampled_designs import LatinHypercube, Sobol
+from hrsafety.sweep.sampled_designs import LatinHypercube, Saltelli, Sobol
 from hrsafety.sweep.storage import Folder, Memory, stored_columns
 
 if TYPE_CHECKING:
@@ -349,6 +349,8 @@ def _design(settings: Mapping[str, Any], axes: Sequence[Axis]) -> Design:
         return Grid(tuple(axes))
     if settings["kind"] == LatinHypercube.kind:
         return LatinHypercube(tuple(axes), settings["rows"], settings["seed"])
+    if settings["kind"] == Saltelli.kind:
+        return Saltelli(tuple(axes), settings["size"], settings["seed"])
     return Sobol(tuple(axes), settings["rows"], settings["seed"], settings["scramble"])
 
 

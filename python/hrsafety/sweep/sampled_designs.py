@@ -1,4 +1,4 @@
-"""Designs that fill the space of the axes: Latin hypercubes and Sobol sequences."""
+"""Designs that fill the space of the axes: Latin hypercubes, Sobol sequences, and those of Sobol indices."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.designs import MOST_ROWS, Design
 from hrsafety.sweep.strata import latin_shares
 
-__all__ = ["LatinHypercube", "Sobol"]
+__all__ = ["LatinHypercube", "Saltelli", "Sobol"]
 
 MOST_SOBOL_ROWS = 2**30
 MOST_SOBOL_AXES = 21201
@@ -184,6 +184,78 @@ class Sobol(_Sampled):
     def settings(self) -> dict[str, Any]:
         """Return the fields for the manifest."""
         return {**_Sampled.settings(self), "scramble": self.scramble}
+
+
+@dataclass(frozen=True, slots=True)
+class Saltelli(Design):
+    """Rows from which `sobol_indices` finds how much of the variance each axis causes.
+
+    Two independent tables A and B come from one scrambled Sobol sequence of twice the dimension. Row k of each is
+    followed by row k of A with the values of one axis after the other from B: ``axes + 2`` rows for each of ``size``.
+
+    Parameters
+    ----------
+    axes : sequence of Axis
+        Ranges or values, at most 10600; independent of each other, each evenly distributed on its scale.
+    size : int
+        Rows of A: a power of two, at most 2**30.
+    seed : int
+        Of the scrambling.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is out of range.
+    MissingExtraError
+        When rows are asked for, if SciPy is not installed.
+
+    Examples
+    --------
+    >>> from hrsafety import sweep
+    >>> speed, mass = sweep.Axis(name="speed", low=0.1, high=1.0), sweep.Axis(name="mass", low=5.0, high=20.0)
+    >>> design = sweep.Saltelli([speed, mass], 8)
+    >>> a, b, speed_of_b, mass_of_b = design.rows(0, 4)
+    >>> len(design), bool(speed_of_b[0] == b[0]), bool(speed_of_b[1] == a[1])
+    (32, True, True)
+    """
+
+    size: int
+    seed: int = 0
+    kind: ClassVar[str] = "saltelli"
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        Design.__post_init__(self)
+        size = count("size", self.size, least=2, most=MOST_SOBOL_ROWS)
+        if size & (size - 1):
+            below = 1 << (size.bit_length() - 1)
+            raise InvalidParameterError("size", "be a power of two", size, f"take {below} or {2 * below}")
+        if 2 * len(self.axes) > MOST_SOBOL_AXES:
+            raise InvalidParameterError("axes", f"be at most {MOST_SOBOL_AXES // 2}", len(self.axes))
+        object.__setattr__(self, "size", size)
+        object.__setattr__(self, "seed", checked_seed("seed", self.seed))
+
+    def __len__(self) -> int:
+        """Return the number of rows."""
+        return self.size * (len(self.axes) + 2)
+
+    def _block(self, start: int, stop: int) -> Array:
+        axes, group = len(self.axes), len(self.axes) + 2
+        first = start // group
+        shares = _SEQUENCES.block((2 * axes, self.seed, True), first, -(-stop // group))
+        both = [
+            np.stack([axis.at(half[:, index]) for index, axis in enumerate(self.axes)], axis=1)
+            for half in (shares[:, :axes], shares[:, axes:])
+        ]
+        rows = np.repeat(both[0][:, None], group, axis=1)
+        rows[:, 1] = both[1]
+        for index in range(axes):
+            rows[:, 2 + index, index] = both[1][:, index]
+        return rows.reshape(-1, axes)[start - first * group : stop - first * group]
+
+    def settings(self) -> dict[str, Any]:
+        """Return the fields for the manifest."""
+        return {**Design.settings(self), "size": self.size, "seed": self.seed}
 
 
 class _Sequences(threading.local):
