@@ -96,6 +96,10 @@ REQUIRED: dict[Callable[..., Any], Right] = {
     contact.Avalle: {"plateau": 4e4, "modulus": 1e5, "falloff": 0.1, "densification": 1e3, "exponent": 3.0},
     contact.Cell: {"robot": contact.ContactRobot.of_mass(8.0), "contacts": [_PLANNED]},
     contact.Contact: {"robot": 8.0, "body": 40.0, "region": 25e3},
+    nav.ScanController: {
+        **{"rollouts": nav.ArcRollouts(), "robot": nav.DifferentialDriveRobot(), "goal": (3.0, 0.0)},
+        "lidars": [nav.Lidar(beams=8)],
+    },
     nav.Controller: {"law": nav.VirtualForceField(), "robot": nav.HolonomicRobot(), "goal": (3.0, 0.0)},
     contact.Covering: {"material": _FOAM, "thickness": 0.02, "area": 1e-3},
     contact.DifferentialBase: {"mass": 20.0, "inertia": 0.5},

@@ -22,6 +22,7 @@ mod run;
 mod safe;
 mod scenes;
 mod signals;
+mod unknown;
 mod watch;
 
 use pyo3::prelude::*;
@@ -185,4 +186,6 @@ mod _hrsafety {
     use crate::safe::{Shield, Yielding, blind_corner_speeds, guarded_law, shield_speed_bound};
     #[pymodule_export]
     use crate::scenes::Scenarios;
+    #[pymodule_export]
+    use crate::unknown::{ArcRollouts, ScanController, UnknownMap, unknown_trial};
 }

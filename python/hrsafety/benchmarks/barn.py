@@ -26,6 +26,7 @@ __all__ = [
     "barn_score",
     "dynamic_files",
     "dynamic_scene",
+    "own_times",
     "run_dynamic",
     "run_worlds",
     "world_files",
@@ -92,17 +93,17 @@ def _stamped(files: list[Path]) -> tuple[Stamped, ...]:
 
 
 @functools.lru_cache(maxsize=4)
-def _worlds(files: tuple[Stamped, ...]) -> dict[int, tuple[Mapping[str, Any], float]]:
-    """Return the file of each world, by its number, and its optimal time."""
+def _worlds(files: tuple[Stamped, ...], key: str = "optimal_time_2022_s") -> dict[int, tuple[Mapping[str, Any], float]]:
+    """Return the file of each world, by its number, and its optimal time, which has a name."""
     found: dict[int, tuple[Mapping[str, Any], float]] = {}
     for file, *_ in files:
         loaded = _json(file)
         for each in loaded.get("worlds", ()) if isinstance(loaded, Mapping) else ():
             if not isinstance(each, Mapping) or not isinstance(each.get("id"), int) or each["id"] in found:
                 raise InvalidParameterError("data", "name every world once by a number, id", Shown(f"{file.name}"))
-            optimum = number(f"optimal_time_2022_s of world {each['id']}", each.get("optimal_time_2022_s"))
+            optimum = number(f"{key} of world {each['id']}", each.get(key))
             if not 0.0 < optimum < math.inf:
-                name = f"optimal_time_2022_s of world {each['id']}"
+                name = f"{key} of world {each['id']}"
                 raise InvalidParameterError(name, "be positive and finite", optimum)
             found[each["id"]] = loaded, optimum
     if not found:
@@ -116,6 +117,11 @@ def _json(file: Path) -> Any:
         return json.loads(readable("data", file).read_text(encoding="utf-8"))
     except (ValueError, RecursionError) as error:
         raise InvalidParameterError("data", "hold JSON", Shown(f"{file.name} ({error})")) from None
+
+
+def own_times(folder: Path | None) -> dict[int, tuple[Mapping[str, Any], float]]:
+    """Return the worlds of files by their numbers, with the optimal times of their own starts in s."""
+    return _worlds(_stamped(world_files(folder)), "optimal_time_s")
 
 
 def worlds_in(folder: Path | None) -> int:

@@ -10,7 +10,7 @@ from typing import Any
 
 from hrsafety import navigation as nav
 from hrsafety._records import dataclass
-from hrsafety.benchmarks.entries import Entry
+from hrsafety.benchmarks.entries import Entry, entry
 from hrsafety.benchmarks.results import Row
 from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.plausibility import ResultWarning
@@ -111,6 +111,8 @@ class Suite:
         Doubts about the data of so many episodes, from what the user names; ``None`` without any.
     scene : callable
         Scenario of an episode, to show it again.
+    entry : callable
+        What a word among the laws names.
     run : callable
         Rows of some episodes.
     """
@@ -130,6 +132,7 @@ class Suite:
     fastest: float | None
     doubts: Callable[[Path | None, int], Iterable[ResultWarning]] | None = None
     scene: Callable[[Case, int], tuple[nav.Scenario, nav.Law]] | None = None
+    entry: Callable[[str], Entry] = entry
     run: Callable[[Case], Iterator[Row]]
 
 

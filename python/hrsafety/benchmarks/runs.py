@@ -13,7 +13,7 @@ from typing import Any
 from hrsafety import __version__
 from hrsafety._arguments import callback, checked_seed, count, number, positive, readable, sequence, thread_count, word
 from hrsafety._atomic import only_writer, write_file
-from hrsafety.benchmarks.entries import MARGIN, Entry, entry
+from hrsafety.benchmarks.entries import MARGIN, Entry
 from hrsafety.benchmarks.protocol import Case, Suite
 from hrsafety.benchmarks.results import Result, Row, read_rows, row_text
 from hrsafety.benchmarks.suites import CHUNK, SUITES
@@ -95,7 +95,7 @@ def benchmark(
     """
     kind = SUITES[word("suite", suite, tuple(SUITES))]
     entries = [
-        entry(each)
+        kind.entry(each)
         for each in (kind.laws if laws is None else sequence("laws", "be a list of words such as field+shield", laws))
     ]
     if not entries:

@@ -17,6 +17,7 @@ from hrsafety.benchmarks.drawn import DRAWN, among, crowd, drifting, first_of
 from hrsafety.benchmarks.protocol import Case, Suite
 from hrsafety.benchmarks.reacting import REACTING
 from hrsafety.benchmarks.results import Row
+from hrsafety.benchmarks.unknown import UNKNOWN
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning, gathered
 
@@ -256,6 +257,7 @@ SUITES: dict[str, Suite] = {
             for name, most, asked in (("dynabarn", 10.0, 97), ("dynabarn3", 3.0, 94))
         ),
         *REACTING,
+        *UNKNOWN,
     )
 }
 """The suites by name."""

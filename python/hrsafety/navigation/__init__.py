@@ -23,6 +23,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.navigation.gains.changes import gain_sensitivity as gain_sensitivity
     from hrsafety.navigation.gains.results import GainSearch as GainSearch
     from hrsafety.navigation.gains.search import optimize_gains as optimize_gains
+    from hrsafety.navigation.laws.arc_rollouts import ArcRollouts as ArcRollouts
     from hrsafety.navigation.laws.force_laws import (
         BorensteinKoren as BorensteinKoren,
         GeCui as GeCui,
@@ -49,6 +50,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.navigation.many import simulate_many as simulate_many
     from hrsafety.navigation.maps.guide import Guide as Guide
     from hrsafety.navigation.maps.static_map import StaticMap as StaticMap
+    from hrsafety.navigation.maps.unknown_map import UnknownMap as UnknownMap
     from hrsafety.navigation.obstacles.base import Obstacle as Obstacle
     from hrsafety.navigation.obstacles.moving import Human as Human, MovingDisc as MovingDisc
     from hrsafety.navigation.obstacles.moving_rectangle import MovingRectangle as MovingRectangle
@@ -62,6 +64,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
         HolonomicRobot as HolonomicRobot,
     )
     from hrsafety.navigation.run import Run as Run
+    from hrsafety.navigation.scan_controller import ScanController as ScanController
     from hrsafety.navigation.scenario import Scenario as Scenario
     from hrsafety.navigation.scenario_arrays import Scenarios as Scenarios
     from hrsafety.navigation.sensing.lidar import Lidar as Lidar
@@ -83,6 +86,7 @@ else:
             "hrsafety.navigation.tracking",
             "hrsafety.navigation.knowledge",
             "hrsafety.navigation.controller",
+            "hrsafety.navigation.scan_controller",
             "hrsafety.navigation.tables.runs",
             "hrsafety.errors",
         ],

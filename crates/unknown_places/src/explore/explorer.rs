@@ -59,6 +59,24 @@ impl Default for ExplorerOptions {
     }
 }
 
+impl ExplorerOptions {
+    /// Returns the options if they are allowed.
+    ///
+    /// # Errors
+    /// Names the number that is not.
+    pub fn checked(self) -> Result<Self> {
+        self.map.checked()?;
+        self.guide.checked()?;
+        not_negative("margin", self.margin)?;
+        for (name, count) in [("replan", self.replan), ("nodes", self.nodes)] {
+            if count == 0 {
+                return Err(Failure::invalid(name, "be at least 1", Given::Count(0)));
+            }
+        }
+        Ok(self)
+    }
+}
+
 /// What became of the commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
@@ -97,6 +115,8 @@ pub struct Explorer {
     rollouts: Rollouts,
     recovery: Recovery,
     goal: Vector2<f64>,
+    /// Twist at the last decision, and the one at the end of its control period.
+    from: Twist,
     twist: Twist,
     /// Periods until rest of the plan that is executed.
     left: u32,
@@ -113,16 +133,7 @@ impl Explorer {
     pub fn new(robot: &Robot, options: ExplorerOptions, goal: [f64; 2]) -> Result<Self> {
         let limits = robot.limits.checked()?;
         positive("control_period", robot.period)?;
-        not_negative("margin", options.margin)?;
-        options.guide.checked()?;
-        if options.replan == 0 || options.nodes == 0 {
-            let name = if options.nodes == 0 {
-                "nodes"
-            } else {
-                "replan"
-            };
-            return Err(Failure::invalid(name, "be at least 1", Given::Count(0)));
-        }
+        let options = options.checked()?;
         let chassis = Chassis {
             footprint: robot.footprint.clone(),
             acceleration: limits.max_acceleration.min(limits.max_deceleration),
@@ -166,6 +177,7 @@ impl Explorer {
             rollouts: Rollouts::new(reach),
             recovery: Recovery::new(robot.period, reach.periods as f64, options.seed),
             goal: finite_pair("goal", goal)?.into(),
+            from: Twist::default(),
             twist: Twist::default(),
             left: 0,
             order: Vec::new(),
@@ -258,18 +270,78 @@ impl Explorer {
             chosen = self.verified(twist).then_some((twist, status));
         }
         let (twist, status) = chosen.unwrap_or_else(|| (self.braked(), Status::Braking));
-        if status == Status::Braking {
-            self.left = self.left.saturating_sub(1);
-        } else {
-            self.left = self.chassis.periods_to_rest(twist);
-        }
-        self.twist = twist;
+        self.left = match status {
+            Status::Braking => self.left.saturating_sub(1),
+            _ => self.chassis.periods_to_rest(twist),
+        };
+        (self.from, self.twist) = (self.twist, twist);
         Decision {
             twist,
             status,
             time_to_go,
             recovering: escape.is_some(),
         }
+    }
+
+    /// Lets the plan run on until rest, whatever is known.
+    pub fn brake(&mut self) -> Decision {
+        let twist = self.braked();
+        self.left = self.left.saturating_sub(1);
+        (self.from, self.twist) = (self.twist, twist);
+        Decision {
+            twist,
+            status: Status::Braking,
+            time_to_go: None,
+            recovering: false,
+        }
+    }
+
+    /// The plan that is executed: times from the last decision in s, and twists between which it changes evenly.
+    #[must_use]
+    pub fn pieces(&self) -> Vec<(f64, Twist)> {
+        let period = self.chassis.period;
+        let mut pieces = vec![(0.0, self.from), (period, self.twist)];
+        if self.left > 0 {
+            pieces.push((period * f64::from(1 + self.left), Twist::default()));
+        }
+        pieces
+    }
+
+    /// Notes that a time in s has passed since the last decision, which need not be a control period.
+    pub fn advance(&mut self, elapsed: f64) {
+        let period = self.chassis.period;
+        if (elapsed - period).abs() <= 1e-6 * period {
+            return;
+        }
+        let pieces = self.pieces();
+        let end = pieces.last().map_or(0.0, |(end, _)| *end);
+        self.left = ((end - elapsed) / period - 1e-6).ceil().max(0.0) as u32;
+        let piece = pieces.windows(2).find(|pair| elapsed < pair[1].0);
+        self.twist = piece.map_or(
+            if self.left > 0 {
+                self.twist
+            } else {
+                Twist::default()
+            },
+            |pair| {
+                let ((start, first), (end, last)) = (pair[0], pair[1]);
+                let share = (elapsed - start) / (end - start);
+                Twist {
+                    speed: first.speed + share * (last.speed - first.speed),
+                    turn_rate: first.turn_rate + share * (last.turn_rate - first.turn_rate),
+                }
+            },
+        );
+    }
+
+    /// Forgets what was seen, as the pose from which it was seen is not true any more; the plan runs on.
+    pub fn forget(&mut self) {
+        self.map.clear();
+        self.cells.read(&self.map);
+        self.planned = false;
+        self.started = false;
+        self.search.stop();
+        self.recovery.restart();
     }
 
     /// The plan as it runs on.

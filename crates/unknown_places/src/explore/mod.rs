@@ -5,11 +5,13 @@
 //! whatever guide, goal and rollouts say: every piece that it executes belongs to a verified plan, and braking goes on
 //! with it. Things thinner than the beams are apart, glass, and what is not in the plane of the scan are not covered.
 
+mod controller;
 mod explorer;
 mod recovery;
 mod rollouts;
 mod verify;
 
+pub use controller::{Controller, Doubts, Order, Scanner, TimedScan, Trust};
 pub use explorer::{Decision, Explorer, ExplorerOptions, Robot, Status};
 pub use rollouts::{COMMANDS, Rated, Reach, Rollouts};
 pub use verify::{Chassis, Obstacle};

@@ -60,6 +60,12 @@ impl Recovery {
         self.begun
     }
 
+    /// Forgets the last times.
+    pub fn restart(&mut self) {
+        self.times.clear();
+        self.left = 0;
+    }
+
     /// The twist to drive instead of one that makes no progress; `time`: to the goal in s, if there is a way.
     pub fn observe(&mut self, time: Option<f64>) -> Option<Twist> {
         if self.left > 0 {

@@ -123,6 +123,11 @@ impl Search {
         self.running
     }
 
+    /// Ends the search that is under way.
+    pub fn stop(&mut self) {
+        self.running = false;
+    }
+
     /// Least distances of nodes from occupied cells in m, one tried after the other.
     fn least_distances(&self) -> [f64; 4] {
         let inner = self.size.inner;

@@ -201,6 +201,12 @@ impl RollingMap {
         &self.evidence
     }
 
+    /// Forgets everything.
+    pub fn clear(&mut self) {
+        self.evidence.fill(Evidence::default());
+        self.placed = false;
+    }
+
     /// Whether a place lies in the window.
     #[must_use]
     pub fn holds(&self, place: Vector2<f64>) -> bool {
