@@ -1,5 +1,6 @@
 //! Record of the parts around a law.
 
+use crate::foresight::Foreseen;
 use crate::shield::{Course, Deviation, Shield, Status};
 use numeric::lanes::Vector2;
 
@@ -34,4 +35,6 @@ pub struct Examined {
     pub position: Vec<[f64; 2]>,
     /// How far each obstacle can have come from where it was measured when the robot rests, in m; 0 for what stands.
     pub reach: Vec<f64>,
+    /// Way and people that foresight expects, if it decided.
+    pub foreseen: Option<Foreseen>,
 }

@@ -58,6 +58,35 @@ impl Nodes {
         within(cell.x, self.columns) && within(cell.y, self.rows)
     }
 
+    /// The four nodes around a place, `None` outside of the grid, with their shares in a value between them.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // within the grid
+    pub fn corners(&self, place: Vector2<f64>) -> ([Option<usize>; 4], [f64; 4]) {
+        let cell = (place - self.lower) / self.spacing;
+        let lower = cell.map(f64::floor);
+        let share = cell - lower;
+        let node = |x: f64, y: f64| {
+            let within = x >= 0.0 && y >= 0.0 && x < self.columns as f64 && y < self.rows as f64;
+            within.then(|| y as usize * self.columns + x as usize)
+        };
+        let (right, above) = (lower.x + 1.0, lower.y + 1.0);
+        let corners = [
+            node(lower.x, lower.y),
+            node(right, lower.y),
+            node(lower.x, above),
+            node(right, above),
+        ];
+        let (left, below) = (1.0 - share.x, 1.0 - share.y);
+        (
+            corners,
+            [
+                left * below,
+                share.x * below,
+                left * share.y,
+                share.x * share.y,
+            ],
+        )
+    }
+
     /// The place in the box of the nodes that is nearest to another one.
     pub fn nearest(&self, place: Vector2<f64>) -> Vector2<f64> {
         let last = Vector2::new((self.columns - 1) as f64, (self.rows - 1) as f64);

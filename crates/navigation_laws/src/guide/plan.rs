@@ -249,6 +249,22 @@ impl Plan {
         self.view(position).map(|view| view.cost)
     }
 
+    /// Cost-to-go of any place in m: between the four nodes around it, of those that have a plan; infinite where none
+    /// has.
+    #[must_use]
+    pub fn cost_around(&self, place: Vector2<f64>) -> f64 {
+        let (corners, weights) = self.nodes.corners(place);
+        let (mut all, mut sum) = (0.0, 0.0);
+        for (node, weight) in corners.into_iter().zip(weights) {
+            let cost = node.map_or(f64::INFINITY, |node| self.found.cost[node]);
+            if cost.is_finite() {
+                all += cost * weight;
+                sum += weight;
+            }
+        }
+        if sum > 0.0 { all / sum } else { f64::INFINITY }
+    }
+
     /// The carrot at a position; `None` without a plan there.
     #[must_use]
     pub fn carrot(&self, position: Vector2<f64>) -> Option<Vector2<f64>> {

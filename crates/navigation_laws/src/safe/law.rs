@@ -1,5 +1,6 @@
 //! Safe navigation at work on one robot.
 
+use crate::foresight::Foreseer;
 use crate::guide::{Detour, Guidance, LocalGoal, Takeover};
 use crate::safe::settings::SafeNavigation;
 use crate::safe::surroundings::Surroundings;
@@ -26,25 +27,26 @@ const PARTS_OF_PLAN: u32 = 24;
 /// A law with its parts.
 pub struct SafeLaw {
     law: Box<dyn Law<f64>>,
-    guard: Option<Guard>,
+    pub(super) guard: Option<Guard>,
     /// The shield of a robot with two wheels.
     twist_guard: Option<TwistGuard>,
     /// The plan that the robot executes: it was verified, or nothing was and it brakes.
     course: Option<Course>,
     yielder: Option<Yielder>,
-    guidance: Option<Guidance>,
+    foreseer: Option<Foreseer>,
+    pub(super) guidance: Option<Guidance>,
     /// When a guide without a map leads around who stands.
-    detour: Option<Detour>,
+    pub(super) detour: Option<Detour>,
     /// When the robot heads for its (local) goal by itself.
     takeover: Option<Takeover>,
-    limits: ShieldLimits,
+    pub(super) limits: ShieldLimits,
     /// Largest speed of the law in m/s.
     preferred: f64,
     mass: f64,
-    goal: Vector2<f64>,
+    pub(super) goal: Vector2<f64>,
     /// Goal that moves, in place of that of the plan while it is seen.
-    moving: Option<Vector2<f64>>,
-    around: Surroundings,
+    pub(super) moving: Option<Vector2<f64>>,
+    pub(super) around: Surroundings,
     /// State of the robot as measured in the last control period.
     measured: RobotState<f64>,
     trace: Trace,
@@ -104,6 +106,10 @@ impl SafeLaw {
                 .yielding
                 .map(|yielding| Yielder::new(yielding, limits))
                 .transpose()?,
+            foreseer: family
+                .foresight
+                .map(|foresight| Foreseer::new(foresight, limits, inner.robot.max_speed))
+                .transpose()?,
             takeover: family.takeover.then(|| Takeover::new(rule)),
             detour: (guidance.is_some() && !mapped).then(Detour::default),
             guidance,
@@ -146,10 +152,15 @@ impl Law<f64> for SafeLaw {
         if let (Some(local), true) = (heading.local, self.guidance.is_some()) {
             self.law.aim(local.for_law(robot.position).into());
         }
-        let command = self.law.command(&Situation {
-            bodies: &self.around.bodies,
-            ..*situation
-        });
+        // Foresight has no use for what the law wants.
+        let command = if self.foreseer.is_some() {
+            Command::plain(Vector2::zeros())
+        } else {
+            self.law.command(&Situation {
+                bodies: &self.around.bodies,
+                ..*situation
+            })
+        };
         let asked = robot.velocity + command.force * (situation.interval / self.mass);
         let mut wanted = slowed(asked, self.preferred);
         match heading.local {
@@ -162,10 +173,25 @@ impl Law<f64> for SafeLaw {
             Some(_) => {}
         }
         let to_goal = heading.local.map_or(self.goal, |local| local.point) - robot.position;
+        let mut foreseer = self.foreseer.take();
         let decision = match self.twist_guard {
-            Some(guard) => self.turn(&guard, situation, &now, wanted, to_goal),
-            None => self.decide(situation.time, &now, wanted, to_goal),
+            Some(guard) => self.turn(
+                &guard,
+                situation,
+                &now,
+                &mut wanted,
+                to_goal,
+                foreseer.as_mut(),
+            ),
+            None => self.decide(
+                situation.time,
+                &now,
+                &mut wanted,
+                to_goal,
+                foreseer.as_mut(),
+            ),
         };
+        self.foreseer = foreseer;
         self.trace = Trace {
             wanted,
             command: decision.velocity,
@@ -176,7 +202,8 @@ impl Law<f64> for SafeLaw {
             ..self.trace
         };
         let turned = self.twist_guard.is_some();
-        let kept = decision.status == Status::Kept && wanted == asked && !turned;
+        let own = turned || self.foreseer.is_some();
+        let kept = decision.status == Status::Kept && wanted == asked && !own;
         if kept || self.lets_through(&heading) {
             return command;
         }
@@ -218,6 +245,7 @@ impl Law<f64> for SafeLaw {
             margin: guard.gap(&view, command),
             position: time.iter().map(|at| plan.position(*at).into()).collect(),
             reach: self.around.reaches(plan.end()),
+            foreseen: self.foreseer.as_ref().map(Foreseer::foreseen),
             time,
         })
     }
@@ -227,7 +255,7 @@ impl SafeLaw {
     /// Whether no part has a say in what the law commands: the robot itself keeps to its limits, and does what it does
     /// under the law alone.
     fn lets_through(&self, heading: &Destination) -> bool {
-        let parts = self.guard.is_some() || self.yielder.is_some();
+        let parts = self.guard.is_some() || self.yielder.is_some() || self.foreseer.is_some();
         let law_heads = heading.local.is_some() && !heading.taken_over;
         !parts && law_heads && self.preferred >= self.limits.max_speed
     }
@@ -243,6 +271,9 @@ impl SafeLaw {
         }
         if let Some(yielder) = &mut self.yielder {
             yielder.limits.period = period;
+        }
+        if let Some(foreseer) = &mut self.foreseer {
+            foreseer.limits.period = period;
         }
     }
 
@@ -359,8 +390,9 @@ impl SafeLaw {
         guard: &TwistGuard,
         situation: &Situation<'_, f64>,
         now: &Present,
-        wanted: Vector2<f64>,
+        wanted: &mut Vector2<f64>,
         to_goal: Vector2<f64>,
+        foreseer: Option<&mut Foreseer>,
     ) -> Decision {
         let guard = if now.off.is_some() {
             guard.doubled()
@@ -386,19 +418,9 @@ impl SafeLaw {
             people: &self.around.people,
             walls: self.around.walls(),
         };
-        let kept = self
-            .limits
-            .clipped(robot.velocity, self.limits.slowed(wanted));
-        // It drives backwards only to give way.
-        let twist = |velocity: Vector2<f64>| guard.toward(&state, velocity, velocity != kept);
-        let verified = |velocity| guard.verified(&view, twist(velocity));
-        let (mut twist, status) = match self.give_way(&robot, wanted, to_goal, verified) {
-            Some(velocity) if velocity == kept => (twist(velocity), Status::Kept),
-            Some(velocity) => (twist(velocity), Status::Changed),
-            None => guard.decide(
-                &view,
-                guard.toward(&state, self.limits.slowed(wanted), false),
-            ),
+        let (mut twist, status) = match foreseer {
+            Some(foreseer) => self.foreseen_twist(foreseer, &guard, &view, wanted, to_goal),
+            None => self.turned(&guard, &view, &robot, *wanted, to_goal),
         };
         match planned {
             Some((since, course)) if status == Status::Braking => {
@@ -421,8 +443,9 @@ impl SafeLaw {
         &mut self,
         time: f64,
         now: &Present,
-        wanted: Vector2<f64>,
+        wanted: &mut Vector2<f64>,
         to_goal: Vector2<f64>,
+        foreseer: Option<&mut Foreseer>,
     ) -> Decision {
         let robot = &now.robot;
         let guard = self.guard.map(|guard| {
@@ -432,7 +455,10 @@ impl SafeLaw {
                 guard
             }
         });
-        let mut decision = self.judged(guard.as_ref(), robot, wanted, to_goal);
+        let mut decision = match foreseer {
+            Some(foreseer) => self.foreseen(foreseer, guard.as_ref(), robot, wanted, to_goal),
+            None => self.judged(guard.as_ref(), robot, *wanted, to_goal),
+        };
         if guard.is_none() {
             return decision;
         }
@@ -452,6 +478,29 @@ impl SafeLaw {
             }
         }
         decision
+    }
+
+    /// Yielding and shield for a wanted velocity of a robot with two wheels.
+    fn turned(
+        &self,
+        guard: &TwistGuard,
+        view: &TwistView<'_>,
+        robot: &RobotState<f64>,
+        wanted: Vector2<f64>,
+        to_goal: Vector2<f64>,
+    ) -> (Twist, Status) {
+        let state = &view.robot;
+        let kept = self
+            .limits
+            .clipped(robot.velocity, self.limits.slowed(wanted));
+        // It drives backwards only to give way.
+        let twist = |velocity: Vector2<f64>| guard.toward(state, velocity, velocity != kept);
+        let verified = |velocity| guard.verified(view, twist(velocity));
+        match self.give_way(robot, wanted, to_goal, verified) {
+            Some(velocity) if velocity == kept => (twist(velocity), Status::Kept),
+            Some(velocity) => (twist(velocity), Status::Changed),
+            None => guard.decide(view, guard.toward(state, self.limits.slowed(wanted), false)),
+        }
     }
 
     /// Command of yielding and shield for a wanted velocity.

@@ -5,6 +5,7 @@
 //! every part keeps is the law's own command, bit for bit.
 
 mod boundary;
+mod foresight;
 mod law;
 mod plans;
 mod settings;
@@ -37,7 +38,7 @@ impl LawFamily for SafeNavigation {
     }
 
     fn chooses_velocities(&self) -> bool {
-        self.law.chooses_velocities()
+        self.foresight.is_some() || self.law.chooses_velocities()
     }
 
     fn map(&self) -> Option<&StaticMap> {
@@ -46,7 +47,7 @@ impl LawFamily for SafeNavigation {
 
     fn takes_any_goal(&self) -> bool {
         // Whoever is pushed away makes no progress, and heads for the goal by himself.
-        self.takeover || self.law.takes_any_goal()
+        self.takeover || self.foresight.is_some() || self.law.takes_any_goal()
     }
 
     fn steers_by_velocity(&self) -> bool {

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::LawFamily;
+use crate::foresight::Foresight;
 use crate::guide::{Guidance, Guide, TakeoverOptions};
 use crate::safe::boundary::boundary_obstacle;
 use crate::safe::plans::Plans;
@@ -27,6 +28,8 @@ pub struct SafeNavigation {
     pub shield: Option<Shield>,
     /// How the robot gives way, if it does.
     pub yielding: Option<Yielding>,
+    /// How it looks ahead, in place of the law and of yielding.
+    pub foresight: Option<Foresight>,
     /// Whether a robot that makes no progress heads for its (local) goal by itself.
     pub takeover: bool,
     /// When that is, where it was told.
@@ -49,6 +52,7 @@ impl SafeNavigation {
             plans: Plans::default(),
             shield: None,
             yielding: None,
+            foresight: None,
             takeover: false,
             rule: TakeoverOptions::default(),
             preferred_speed: None,
@@ -66,6 +70,9 @@ impl SafeNavigation {
         }
         if let Some(yielding) = self.yielding {
             yielding.checked()?;
+        }
+        if let Some(foresight) = self.foresight {
+            foresight.checked()?;
         }
         if let Some(guide) = self.guide {
             guide.checked()?;

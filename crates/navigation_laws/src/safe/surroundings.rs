@@ -1,6 +1,7 @@
 //! Surroundings of the robot in the terms of the law, of the shield and of yielding.
 
 use crate::Situation;
+use crate::foresight::Sighting;
 use crate::safe::boundary::boundary_obstacle;
 use crate::safe::settings::SafeNavigation;
 use crate::shield::{Guard, KnownVelocity, Person, StaticObstacles};
@@ -56,6 +57,8 @@ pub(super) struct Surroundings {
     pub people: Vec<Person>,
     /// For yielding.
     pub passersby: Vec<Passerby>,
+    /// For foresight.
+    pub sightings: Vec<Sighting>,
     shapes: Vec<PlacedShape>,
 }
 
@@ -81,6 +84,7 @@ impl Surroundings {
             bodies: Vec::new(),
             people: Vec::new(),
             passersby: Vec::new(),
+            sightings: Vec::new(),
             shapes: Vec::new(),
         }
     }
@@ -133,9 +137,11 @@ impl Surroundings {
         self.bodies.clear();
         self.people.clear();
         self.passersby.clear();
+        self.sightings.clear();
         self.shapes.clear();
         let ages = situation.ages.iter().copied().chain(std::iter::repeat(0.0));
-        for ((body, known), age) in situation.bodies.iter().zip(&self.known).zip(ages) {
+        let told = situation.bodies.iter().zip(&self.known).zip(ages);
+        for (who, ((body, known), age)) in told.enumerate() {
             let present = body.state.present && known.kind != ObstacleKind::Mapped;
             self.bodies.push(Body {
                 regions: known.regions,
@@ -160,6 +166,14 @@ impl Surroundings {
                 self.people.push(known.person(placed, body, guard, age));
             }
             let velocity = Vector2::from(body.state.velocity);
+            self.sightings.push(Sighting {
+                who,
+                position: placed.center,
+                velocity,
+                instant: situation.time - age,
+                age: latency.max(age),
+                touch: known.touch,
+            });
             let offset = placed.center - robot + velocity * latency.max(age);
             if reach.is_some_and(|reach| offset.norm() - known.touch < reach) {
                 self.passersby.push(Passerby {

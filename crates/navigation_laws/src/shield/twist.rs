@@ -4,6 +4,7 @@ mod plan;
 
 pub use plan::{TwistLimits, TwistState};
 
+use crate::foresight::{Driven, Target};
 use crate::shield::person::Person;
 use crate::shield::walls::{ROUNDING, StaticObstacles};
 use crate::shield::{Shield, ShieldLimits, Status};
@@ -19,6 +20,12 @@ const STEPS: i32 = 6;
 /// Weight of turning otherwise than wanted against driving at another speed, each as a share of its
 /// limit.
 const TURN_WEIGHT: f64 = 0.25;
+
+/// Most steps in which a quarter of a foreseen way is summed up.
+const MOST_STEPS: f64 = 4.0;
+
+/// Price of the time that a turn takes: a robot that turns at once is sooner there than one that drives backwards.
+const HEADING_WEIGHT: f64 = 1.5;
 
 /// Most that the robot turns within a period, in rad: below a right angle a velocity tells the twist.
 const MOST_TURN: f64 = 1.5;
@@ -101,6 +108,43 @@ impl TwistGuard {
         };
         let drive = &self.limits.drive;
         drive.toward(robot.twist, wish, self.limits.period)
+    }
+
+    /// Way of a robot that turns toward a velocity and keeps it for a time in s, with the price of the turn that is
+    /// left at its end to the direction ahead.
+    #[must_use]
+    pub fn driven(
+        &self,
+        robot: &TwistState,
+        target: &Target,
+        time: f64,
+        ahead: Vector2<f64>,
+    ) -> Driven {
+        let mut guard = *self;
+        let part = 0.25 * time;
+        let steps = (part / self.limits.period).round().clamp(1.0, MOST_STEPS);
+        guard.limits.period = part / steps;
+        let mut state = *robot;
+        let places = std::array::from_fn(|_| {
+            let mut left = steps;
+            while left > 0.0 {
+                let twist = guard.toward(&state, target.velocity, target.backwards);
+                let mean = |from: f64, to: f64| 0.5 * (from + to) * guard.limits.period;
+                let turn = mean(state.twist.turn_rate, twist.turn_rate);
+                let way = mean(state.twist.speed, twist.speed);
+                state.position += unit(state.heading + 0.5 * turn) * way;
+                state.heading += turn;
+                state.twist = twist;
+                left -= 1.0;
+            }
+            state.position
+        });
+        let facing = unit(state.heading);
+        let off = facing.perp(&ahead).atan2(facing.dot(&ahead)).abs();
+        Driven {
+            places,
+            turning: HEADING_WEIGHT * off / self.limits.drive.max_turn_rate,
+        }
     }
 
     /// Whether a twist that can be reached within a period is verified.

@@ -1,0 +1,99 @@
+//! Foresight within safe navigation: it chooses among the velocities that the shield verifies.
+
+use crate::foresight::{Choice, Driven, Foreseer, Scene, Target, taken_up};
+use crate::guide::Guidance;
+use crate::safe::law::SafeLaw;
+use crate::shield::{Decision, Guard, Status, TwistGuard, TwistView, Verifier, View, braking};
+use navigation_world::robots::differential::Twist;
+use navigation_world::world::geometry::RobotState;
+use numeric::lanes::Vector2;
+
+impl SafeLaw {
+    /// What foresight knows.
+    fn scene(&self, robot: &RobotState<f64>, to_goal: Vector2<f64>) -> Scene<'_> {
+        let leads = |guidance: &&Guidance| self.detour.is_none() || guidance.leads_around();
+        let plan = self.guidance.as_ref().filter(leads).map(Guidance::plan);
+        // The plan leads to the goal of the scene, not to one that moves.
+        let seen = |goal: &Vector2<f64>| plan.is_none_or(|plan| plan.sees(robot.position, *goal));
+        let moving = self.moving.filter(seen);
+        Scene {
+            robot: *robot,
+            goal: moving.unwrap_or(self.goal),
+            ahead: to_goal,
+            people: &self.around.sightings,
+            position_error: self.guard.map_or(0.0, |guard| guard.shield.position_error),
+            walls: self.around.walls(),
+            plan: plan.filter(|_| moving.is_none()),
+        }
+    }
+
+    /// Command of foresight, among those that the shield verifies.
+    pub(super) fn foreseen(
+        &self,
+        foreseer: &mut Foreseer,
+        guard: Option<&Guard>,
+        robot: &RobotState<f64>,
+        wanted: &mut Vector2<f64>,
+        to_goal: Vector2<f64>,
+    ) -> Decision {
+        let view = View {
+            robot: *robot,
+            people: &self.around.people,
+            walls: self.around.walls(),
+        };
+        let mut verifier = guard.map(|guard| Verifier::new(guard, view));
+        let step = foreseer.settings().step;
+        let driven = |target: &Target| Driven {
+            places: taken_up(robot, target.velocity, self.limits.max_acceleration, step),
+            turning: 0.0,
+        };
+        let take = |target: &Target| {
+            let target = self.limits.slowed(target.velocity);
+            let command = self.limits.clipped(robot.velocity, target);
+            let verifier = verifier.as_mut();
+            let admits = verifier.is_none_or(|verifier| verifier.admits(command));
+            admits.then_some(command)
+        };
+        let found = foreseer.decide(&self.scene(robot, to_goal), false, driven, take);
+        let (velocity, status) = chosen(found, wanted, braking(robot.velocity, &self.limits));
+        Decision { velocity, status }
+    }
+
+    /// Command of foresight for a robot with two wheels, which drives toward velocities on arcs.
+    pub(super) fn foreseen_twist(
+        &self,
+        foreseer: &mut Foreseer,
+        guard: &TwistGuard,
+        view: &TwistView<'_>,
+        wanted: &mut Vector2<f64>,
+        to_goal: Vector2<f64>,
+    ) -> (Twist, Status) {
+        let (state, step) = (&view.robot, foreseer.settings().step);
+        let (sin, cos) = state.heading.sin_cos();
+        let robot = RobotState {
+            position: state.position,
+            velocity: Vector2::new(cos, sin) * state.twist.speed,
+        };
+        let take = |target: &Target| {
+            let twist = guard.toward(state, target.velocity, target.backwards);
+            guard.verified(view, twist).then_some(twist)
+        };
+        let driven = |target: &Target| guard.driven(state, target, step, to_goal);
+        let found = foreseer.decide(&self.scene(&robot, to_goal), true, driven, take);
+        chosen(found, wanted, guard.limits.braking(state.twist))
+    }
+}
+
+/// Command and status of a choice, whose target is what is wanted; braking without one.
+fn chosen<C>(found: Option<Choice<C>>, wanted: &mut Vector2<f64>, braking: C) -> (C, Status) {
+    let Some(found) = found else {
+        return (braking, Status::Braking);
+    };
+    *wanted = found.target;
+    let status = if found.cheapest {
+        Status::Kept
+    } else {
+        Status::Changed
+    };
+    (found.command, status)
+}
