@@ -124,13 +124,14 @@ def episode(
     period: float | None = None,
     set_back: tuple[float, float] | None = None,
     takes_all: bool = False,
+    foresees: bool = False,
     length: float = 3.0,
 ) -> Outcome:
     """Return how one adversarial episode went.
 
     In some the clock is set back by seconds between two bounds, by 1 ms as often as by 1 s. A robot that
     ``takes_all`` carries out the plan of each answer from the update on, also of those that did not count, instead of
-    continuing with the last one that did.
+    continuing with the last one that did. One that ``foresees`` chooses its own way, whatever the law wants.
     """
     draw = random.Random(seed)
     period = draw.choice(PERIODS) if period is None else period
@@ -143,7 +144,9 @@ def episode(
         person_speed=speed, latency=latency, position_error=math.hypot(SEEN, SEEN), margin=POSE, position_tracking=0.001
     )
     asks = Told()
-    law = nav.SafeNavigation(asks, shield=shield, yielding=nav.Yielding() if draw.random() < 0.3 else None)
+    yielding = nav.Yielding() if draw.random() < 0.3 and not foresees else None
+    foresight = nav.Foresight() if foresees else None
+    law = nav.SafeNavigation(asks, shield=shield, yielding=yielding, foresight=foresight)
     controller = nav.Controller(
         law,
         robot,

@@ -21,6 +21,14 @@ def test_no_strict_fault_under_tracking_errors(wheels: bool, period: float) -> N
 
 
 @pytest.mark.parametrize("wheels", [False, True], ids=["holonomic", "two wheels"])
+@pytest.mark.parametrize("period", PERIODS)
+def test_no_strict_fault_of_a_robot_that_foresees(wheels: bool, period: float) -> None:
+    found = [episode(seed, wheels=wheels, period=period, foresees=True) for seed in range(20)]
+    assert [seed for seed, each in enumerate(found) if each.fault] == []
+    assert sum(each.touched for each in found) > 0
+
+
+@pytest.mark.parametrize("wheels", [False, True], ids=["holonomic", "two wheels"])
 @pytest.mark.parametrize("period", PERIODS[1:])
 def test_no_strict_fault_after_a_clock_was_set_back_beyond_the_last_update(wheels: bool, period: float) -> None:
     found = [episode(seed, wheels=wheels, period=period, set_back=(5.0, 9.0)) for seed in range(EPISODES)]

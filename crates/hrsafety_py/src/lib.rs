@@ -183,7 +183,9 @@ mod _hrsafety {
         evaluate, force_field, force_terms, law_command, lyapunov, run_outcomes, simulate,
     };
     #[pymodule_export]
-    use crate::safe::{Shield, Yielding, blind_corner_speeds, guarded_law, shield_speed_bound};
+    use crate::safe::{
+        Foresight, Shield, Yielding, blind_corner_speeds, guarded_law, shield_speed_bound,
+    };
     #[pymodule_export]
     use crate::scenes::Scenarios;
     #[pymodule_export]

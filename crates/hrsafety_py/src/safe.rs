@@ -1,8 +1,9 @@
-//! Shield and yielding, and the law that holds them.
+//! Shield, yielding and foresight, and the law that holds them.
 
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 use vff_core::lanes::Vector2;
+use vff_core::laws::foresight;
 use vff_core::laws::guide::TakeoverOptions;
 use vff_core::laws::safe::SafeNavigation;
 use vff_core::laws::shield::{
@@ -21,6 +22,14 @@ parameter_class! {
     /// How a robot gives way.
     Yielding(yielding::Yielding) {
         clearance, horizon, time_weight, distance_weight, comfort, goal_weight, reach,
+    }
+}
+
+parameter_class! {
+    /// How a robot looks ahead.
+    Foresight(foresight::Foresight) {
+        stages, step, clearance, risk_weight, comfort, comfort_weight, change_weight, speed_weight, spread,
+        acceleration,
     }
 }
 
@@ -161,13 +170,14 @@ pub fn guarded_law(law: &Law, given: Option<Keywords<'_>>) -> PyResult<Law> {
     let given = given.unwrap_or_default();
     let shield: Option<PyRef<'_, Shield>> = given.take("shield")?;
     let yielding: Option<PyRef<'_, Yielding>> = given.take("yielding")?;
+    let foresight: Option<PyRef<'_, Foresight>> = given.take("foresight")?;
     let map: Option<PyRef<'_, StaticMap>> = given.take("map")?;
     let guide: Option<PyRef<'_, Guide>> = given.take("guide")?;
     let (progress, window) = given.take("takeover_rule")?;
     let family = taken!(given: SafeNavigation {
         map = map.map(|map| map.0.clone()), guide = guide.map(|guide| guide.0),
         rule = TakeoverOptions { progress, window }, shield = shield.map(|shield| shield.0),
-        yielding = yielding.map(|yielding| yielding.0), takeover, preferred_speed,
+        yielding = yielding.map(|yielding| yielding.0), foresight = foresight.map(|foresight| foresight.0), takeover, preferred_speed,
         critical_distance, ..SafeNavigation::bare(law.any.clone()),
     });
     given.done()?;

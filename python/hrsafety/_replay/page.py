@@ -259,9 +259,10 @@ class _Content:
         worst, margin, at = verdicts_of(made, self.time)
         self.blocks.append(block(f"verdict{index}", worst, kind="u8"))
         self.blocks.append(block(f"margin{index}", counted(margin, CLEARANCES)))
-        for name, lines in (("plan", made.plan), ("path", made.path)):
+        for name, lines in (("plan", made.plan), ("path", made.path), ("way", made.way), ("expected", made.expected)):
             if len(lines):
-                shown = [_thinned(np.asarray(lines[row])) if row >= 0 else np.empty((0, 2)) for row in at]
+                drawn = np.asarray if name == "expected" else _thinned  # places, not a line
+                shown = [drawn(np.asarray(lines[row])) if row >= 0 else np.empty((0, 2)) for row in at]
                 self.blocks.append(block(f"{name}Length{index}", np.array([len(each) for each in shown]), kind="u8"))
                 self.blocks.append(block(f"{name}{index}", self.own_scale.whole(np.concatenate(shown))))
         if made.reach is not None and made.reach.shape[1]:

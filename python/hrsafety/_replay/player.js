@@ -6,7 +6,7 @@
   const KINDS = ["#D55E00", "#E69F00", "#CC79A7", "#6B3E00", "#882255", "#6A8030"];
   const VERDICT = ["#8c959f", "#1a7f37", "#d9a800", "#0757a8", "#b42318"];
   const SHAPES = ["M3 9h14v2H3z", "M10 2a8 8 0 100 16 8 8 0 000-16z", "M10 2l9 16H1z", "M10 1l9 9-9 9-9-9z", "M6 1h8l5 5v8l-5 5H6l-5-5V6z"];
-  const WALL = "#3a3f46", GOAL = "#00795C", CONTACT = "#c00000", INK = "#1b1f24";
+  const WALL = "#3a3f46", GOAL = "#00795C", EXPECTED = "#6a3d9a", CONTACT = "#c00000", INK = "#1b1f24";
   const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
   const head = JSON.parse($("head").textContent);
   const data = {}, body = document.body;
@@ -215,7 +215,16 @@
 
   function decided(k) {
     const robot = head.robots[k], row = frame, color = VERDICT[at("verdict" + k, row, 0)];
-    const path = ragged("path", k, row), plan = ragged("plan", k, row);
+    const path = ragged("path", k, row), plan = ragged("plan", k, row), way = ragged("way", k, row);
+    ragged("expected", k, row).forEach(([x, y]) => { disc(x, y, 2.5 / view.scale); pen.fillStyle = EXPECTED; pen.fill(); });
+    if (way.length > 1) {
+      polyline(way);
+      pen.setLineDash([2, 4]);
+      pen.lineWidth = 2.5;
+      pen.strokeStyle = EXPECTED;
+      pen.stroke();
+      pen.setLineDash([]);
+    }
     if (path.length > 1) {
       polyline(path);
       pen.setLineDash([7, 5]);
@@ -730,6 +739,8 @@
     if (head.robots.some((robot) => robot.goal)) entry("goal", (ink) => { ink.translate(13, 9); ink.fillStyle = GOAL; ink.beginPath(); for (let k = 0; k < 10; k++) { const far = k % 2 ? 3.5 : 8, a = -Math.PI / 2 + (k * Math.PI) / 5; ink.lineTo(far * Math.cos(a), far * Math.sin(a)); } ink.fill(); });
     if (some("plan")) entry("verified area", (ink) => { ink.globalAlpha = 0.35; line(VERDICT[1], [], 12)(ink); ink.globalAlpha = 1; line(VERDICT[1], [], 1.5)(ink); });
     if (some("reach")) entry("where people can be", (ink) => { ink.setLineDash([3, 3]); ink.beginPath(); ink.arc(13, 9, 7.5, 0, 7); ink.fillStyle = "rgba(213,94,0,.12)"; ink.fill(); ink.strokeStyle = "#aa4600"; ink.stroke(); });
+    if (some("way")) entry("way that is expected", line(EXPECTED, [2, 4]));
+    if (some("expected")) entry("where people are expected", (ink) => { ink.fillStyle = EXPECTED; for (const x of [5, 13, 21]) { ink.beginPath(); ink.arc(x, 9, 2.5, 0, 7); ink.fill(); } });
     if (some("path")) entry("guide's path", line(GOAL, [6, 4]));
     if (head.events.some((each) => isContact(each[1]))) entry("contact", (ink) => cross(ink, 13, 9, 5, CONTACT));
     $("legend").replaceChildren(...items.map(([text, paint]) => {

@@ -75,6 +75,10 @@ class Decisions:
         Path of the guide, in m.
     reach : ndarray, shape (d, m)
         How far each person can have come at the end of the plan, in m.
+    way : sequence of ndarray, shape (w, 2)
+        Where foresight expects the robot, in m.
+    expected : sequence of ndarray, shape (p, 2)
+        Where it expects people, one after the other, in m.
     """
 
     time: Array
@@ -83,6 +87,8 @@ class Decisions:
     plan: Sequence[Array] = ()
     path: Sequence[Array] = ()
     reach: Array | None = None
+    way: Sequence[Array] = ()
+    expected: Sequence[Array] = ()
 
 
 class PlayedLidar(NamedTuple):

@@ -59,7 +59,7 @@ def drifting(count: int) -> Draw:
     """
 
     def draw(case: Case, cases: Sequence[int]) -> tuple[Sequence[nav.Scenario], nav.Law]:
-        gives_way = not {"shield", "yielding"}.isdisjoint(case.entry.parts)
+        gives_way = not {"shield", "yielding", "foresight"}.isdisjoint(case.entry.parts)
         place, velocity = (each[list(cases)] for each in _discs(case.seed, count))
         scenes = nav.Scenarios.from_arrays(
             start=np.zeros((len(cases), 2)),

@@ -16,7 +16,7 @@ __all__ = ["MARGIN", "PARTS", "Entry", "entry"]
 
 MARGIN = 0.005
 """Error of the robot's motion that shields assume unless a protocol says otherwise, in m."""
-PARTS = ("guide", "shield", "yielding")
+PARTS = ("guide", "shield", "yielding", "foresight")
 """Parts that a word may add to a law."""
 _OWN: Mapping[str, nav.Law] = MappingProxyType({"field": nav.VirtualForceField()})
 
@@ -50,6 +50,7 @@ class Entry:
         map: nav.maps.StaticMap | None = None,
         guide: nav.maps.Guide | None = None,
         yielding: nav.laws.Yielding | None = None,
+        foresight: nav.laws.Foresight | None = None,
         takeover: bool | None = None,
     ) -> nav.Law:
         """Return the law with its parts.
@@ -66,7 +67,7 @@ class Entry:
             What it assumes of the robot's motion, in m, and keeps from walls.
         map : StaticMap or None
             What the law knows to stand.
-        guide, yielding : Guide, Yielding or None
+        guide, yielding, foresight : Guide, Yielding, Foresight or None
             Those of the protocol, for entries that have these parts.
         takeover : bool or None
             As of `SafeNavigation`.
@@ -91,6 +92,7 @@ class Entry:
             guide=(guide or nav.maps.Guide()) if "guide" in self.parts else None,
             shield=shield if "shield" in self.parts else None,
             yielding=(yielding or nav.laws.Yielding()) if "yielding" in self.parts else None,
+            foresight=(foresight or nav.laws.Foresight()) if "foresight" in self.parts else None,
             preferred_speed=preferred_speed,
             takeover=takeover if self.parts else None,
         )
@@ -103,7 +105,7 @@ def entry(word: str) -> Entry:
     ----------
     word : str
         A law by its long or short name (``field`` is the virtual force field), its gains in brackets where they
-        are others than usual, then ``+guide``, ``+shield`` and ``+yielding`` as wanted.
+        are others than usual, then ``+guide``, ``+shield`` and ``+yielding``, or ``+foresight`` in its place.
 
     Returns
     -------
@@ -128,6 +130,8 @@ def entry(word: str) -> Entry:
     for part in parts:
         if part not in PARTS:
             raise InvalidParameterError("laws", f"add {' or '.join(PARTS)} to a law", word, meant(part, PARTS))
+    if {"yielding", "foresight"} <= set(parts):
+        raise InvalidParameterError("laws", "add yielding or foresight to a law, not both", word)
     return Entry(name=word, law=_with_gains(name, word), parts=tuple(each for each in PARTS if each in parts))
 
 

@@ -38,6 +38,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
         force_terms as force_terms,
         lyapunov as lyapunov,
     )
+    from hrsafety.navigation.laws.foresight import Foresight as Foresight
     from hrsafety.navigation.laws.planners import (
         FieldDStar as FieldDStar,
         OptimalReciprocalCollisionAvoidance as OptimalReciprocalCollisionAvoidance,

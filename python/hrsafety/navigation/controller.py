@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NoReturn
@@ -251,7 +252,8 @@ class Controller:
             left = [*self._names.left(names), *self._names.outlived(now, told, present)]
             renamed = self._names.place(now, told, present)
             places = self._names.indices
-            seen = [(places[name], who.position, who.velocity or (0.0, 0.0), who.time) for name, who in told.items()]
+            unknown = (math.nan, math.nan)
+            seen = [(places[name], who.position, who.velocity or unknown, who.time) for name, who in told.items()]
             fields = self._native.update(now, robot, angle, seen=seen, gone=left, scan=ranges)
         except BaseException:
             self._names = before

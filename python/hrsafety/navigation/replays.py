@@ -34,6 +34,9 @@ Bodies = Sequence[tuple[int, str, str, float, Any]]
 
 STANDING = 0.05
 
+MOST_EXPECTED = 250
+"""Most places of people that a player shows at once."""
+
 
 def replay_of_run(run: Run, decisions: Decisions | None = None) -> Replay:
     """Return what a player shows of a run.
@@ -79,6 +82,7 @@ def replay_of_record(record: Record) -> Replay:
     """Return what a player shows of a run with the decisions of its parts."""
     run, made = record.trajectory, record.decisions
     shielded, guided = record.law.shield is not None, record.law.guide is not None
+    foresees = record.law.foresight is not None
     columns = [column for column, *_ in (_people(run) if hasattr(run.scenario, "people") else _moving(run))]
     decisions = Decisions(
         time=np.array([each.time for each in made]),
@@ -87,8 +91,17 @@ def replay_of_record(record: Record) -> Replay:
         plan=[each.plan_position for each in made] if shielded else (),
         path=[each.path for each in made] if guided else (),
         reach=np.array([each.obstacle_reach for each in made])[:, columns] if shielded and made else None,
+        way=[each.foreseen_way for each in made] if foresees else (),
+        expected=[_expected(each.foreseen_people) for each in made] if foresees else (),
     )
     return replay_of_run(run, decisions)
+
+
+def _expected(people: Array) -> Array:
+    """Return places where people are expected, at so many instants that a page can show all."""
+    known = people[np.isfinite(people).all(axis=(1, 2))]
+    every = max(1, -(-known.shape[0] * known.shape[1] // MOST_EXPECTED))
+    return known[:, ::every].reshape(-1, 2)[:MOST_EXPECTED]
 
 
 def _verdict(status: str, *, taken_over: bool, shielded: bool) -> str:

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 
 __all__ = ["SafetyDecision", "SafetyRecord", "record_safety"]
 
+Expected = tuple[float, list[list[float]], list[tuple[int, list[list[float]]]], int]
+"""Length of a stage in s, places of the robot, numbers of obstacles with their places, and the number of stages."""
+
 
 @displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -63,6 +66,12 @@ class SafetyDecision:
     path : ndarray, shape (p, 2)
         Path of the guide through the map alone from here, in m; empty without a guide. Around people who
         stand the guide makes another plan in the run, which is not recorded.
+    foreseen_time : ndarray, shape (s,)
+        Instants that foresight expects something of, in s from the decision on; empty without foresight.
+    foreseen_way : ndarray, shape (w, 2)
+        Where it expects the robot at the first w of them, in m, up to the goal.
+    foreseen_people : ndarray, shape (n, s, 2)
+        Where it expects the obstacles at them, in m, NaN for who is none that it predicts.
     local_goal : (float, float) or None
         Local goal on that path, in m: where the guide sends the law while no person stands.
     """
@@ -80,6 +89,9 @@ class SafetyDecision:
     obstacle_position: Annotated[Array, "m"]
     obstacle_reach: Annotated[Array, "m"]
     path: Annotated[Array, "m"]
+    foreseen_time: Annotated[Array, "s"]
+    foreseen_way: Annotated[Array, "m"]
+    foreseen_people: Annotated[Array, "m"]
     local_goal: Annotated[Pair | None, "m"]
 
 
@@ -220,7 +232,7 @@ def record_safety(
 def _decision(
     seen: Situation,
     trace: SafetyTrace,
-    verified: tuple[float, list[float], list[list[float]], list[float]] | None,
+    verified: tuple[float, list[float], list[list[float]], list[float], Expected | None] | None,
     whom: Sequence[int | None],
     plan: Plan | None,
     others: int,
@@ -228,11 +240,12 @@ def _decision(
     """Return a decision; `whom`: column of the run for each obstacle that was seen."""
     margin, instants, places, reaches = math.nan, np.zeros(1), seen.position[None, :], np.zeros(len(whom))
     if verified is not None:
-        margin, (instants, places, reaches) = verified[0], map(np.array, verified[1:])
+        margin, (instants, places, reaches) = verified[0], map(np.array, verified[1:4])
     position, reach = np.full((others, 2), np.nan), np.zeros(others)
     for index, column in enumerate(whom):
         if column is not None:
             position[column], reach[column] = seen.obstacle_position[index], reaches[index]
+    foreseen_time, way, people = _foreseen(None if verified is None else verified[4], whom, others)
     local: LocalGoal | None = None if plan is None else plan.local_goal(seen.position)
     return SafetyDecision(
         time=seen.time,
@@ -248,5 +261,21 @@ def _decision(
         obstacle_position=position,
         obstacle_reach=reach,
         path=np.empty((0, 2)) if plan is None else plan.path(seen.position),
+        foreseen_time=foreseen_time,
+        foreseen_way=way,
+        foreseen_people=people,
         local_goal=None if local is None else local.point,
     )
+
+
+def _foreseen(expected: Expected | None, whom: Sequence[int | None], others: int) -> tuple[Array, Array, Array]:
+    """Return instants, way of the robot and ways of the obstacles that foresight expects."""
+    if expected is None:
+        return np.empty(0), np.empty((0, 2)), np.empty((others, 0, 2))
+    step, way, ways, stages = expected
+    people = np.full((others, stages + 1, 2), np.nan)
+    for index, places in ways:
+        column = whom[index] if index < len(whom) else None
+        if column is not None:
+            people[column] = places
+    return step * np.arange(stages + 1.0), np.array(way).reshape(-1, 2), people

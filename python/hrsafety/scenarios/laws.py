@@ -67,8 +67,8 @@ def law_of(table: dict[str, Any]) -> nav.Law:
         return law(**given)
 
 
-_PARTS: Mapping[str, type[nav.laws.Shield] | type[nav.laws.Yielding]] = MappingProxyType(
-    {"shield": nav.laws.Shield, "yielding": nav.laws.Yielding}
+_PARTS: Mapping[str, type[nav.laws.Shield] | type[nav.laws.Yielding] | type[nav.laws.Foresight]] = MappingProxyType(
+    {"shield": nav.laws.Shield, "yielding": nav.laws.Yielding, "foresight": nav.laws.Foresight}
 )
 _SAFE: Keys = MappingProxyType(
     {
@@ -85,8 +85,8 @@ def safe_of(law: nav.Law, table: dict[str, Any]) -> nav.laws.SafeNavigation:
     given = checked("safe", table, _SAFE)
     for name, part in _PARTS.items():
         if name in given:
-            pairs = [each.name for each in fields(part) if isinstance(each.default, tuple)]
-            keys = {each.name: kind.pair if each.name in pairs else kind.number for each in fields(part) if each.init}
+            kinds = {tuple: kind.pair, int: kind.integer}
+            keys = {each.name: kinds.get(type(each.default), kind.number) for each in fields(part) if each.init}
             values = checked(f"safe.{name}", given[name], keys)
             with located(f"safe.{name}"):
                 given[name] = part(**values)

@@ -19,8 +19,15 @@ use crate::run::trajectory_fields;
 /// Wanted and commanded velocity, whether the law was taken over from, and the status.
 pub type Told = ([f64; 2], [f64; 2], bool, &'static str);
 
-/// Margin in m, instants in s and places in m of a plan, and how far others can have come at its end, in m.
-pub type Verified = (f64, Vec<f64>, Vec<[f64; 2]>, Vec<f64>);
+/// Number of a person, and places in m.
+type PersonWay = (usize, Vec<[f64; 2]>);
+
+/// Length of a stage in s, places of the robot at their ends, those of people, and the number of stages.
+type Expected = (f64, Vec<[f64; 2]>, Vec<PersonWay>, usize);
+
+/// Margin in m, instants in s and places in m of a plan, how far others can have come at its end, in m, and what
+/// foresight expects.
+pub type Verified = (f64, Vec<f64>, Vec<[f64; 2]>, Vec<f64>, Option<Expected>);
 
 /// Number of a robot, and a force in N or a velocity in m/s that it is told.
 pub type Order = (usize, Option<[f64; 2]>, Option<[f64; 2]>);
@@ -38,7 +45,17 @@ pub fn told(trace: &Trace) -> Told {
 
 /// The plan that a shield verified.
 pub fn verified(found: Examined) -> Verified {
-    (found.margin, found.time, found.position, found.reach)
+    let foreseen = found.foreseen.map(|foreseen| {
+        let (step, stages) = (foreseen.step, foreseen.stages);
+        (step, foreseen.way, foreseen.people, stages)
+    });
+    (
+        found.margin,
+        found.time,
+        found.position,
+        found.reach,
+        foreseen,
+    )
 }
 
 /// A force in N or a velocity in m/s as a request; the law where there is neither.

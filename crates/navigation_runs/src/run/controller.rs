@@ -154,7 +154,9 @@ impl Controller {
         }
         for (place, seen) in told.seen.iter().enumerate() {
             finite_pair(&format!("people[{place}].position"), seen.position)?;
-            finite_pair(&format!("people[{place}].velocity"), seen.velocity)?;
+            if !unknown(seen.velocity) {
+                finite_pair(&format!("people[{place}].velocity"), seen.velocity)?;
+            }
             let name = format!("people[{place}].time");
             let time = finite(&name, seen.time.unwrap_or(told.time))?;
             if time > told.time {
@@ -187,12 +189,24 @@ impl Controller {
             if there && time < self.measured[seen.index] {
                 continue;
             }
+            let state = &self.bodies[seen.index].state;
+            let elapsed = time - self.measured[seen.index];
+            let velocity = match seen.velocity {
+                known if !unknown(known) => known,
+                // By the way since the last measurement.
+                _ if there && elapsed > 0.0 => {
+                    let way = Vector2::from(seen.position) - Vector2::from(state.position);
+                    (way / elapsed).into()
+                }
+                _ if there => state.velocity,
+                _ => [0.0; 2],
+            };
             self.measured[seen.index] = time;
             self.dated[seen.index] = seen.time.is_some();
             self.hidden[seen.index] = if time < before { more } else { 0.0 };
             self.bodies[seen.index].state = BodyState {
                 position: seen.position,
-                velocity: seen.velocity,
+                velocity,
                 acceleration: [0.0; 2],
                 present: true,
             };
@@ -423,4 +437,9 @@ impl Controller {
     fn unknown_beams(&self) -> usize {
         self.scans.as_ref().map_or(0, Scans::unknown)
     }
+}
+
+/// Whether nobody measured a velocity.
+fn unknown(velocity: [f64; 2]) -> bool {
+    velocity.iter().all(|part| part.is_nan())
 }

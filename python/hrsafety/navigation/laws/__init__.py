@@ -24,6 +24,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
         lyapunov as lyapunov,
     )
     from hrsafety.navigation.laws.impedance import VirtualImpedanceLaw as VirtualImpedanceLaw
+    from hrsafety.navigation.laws.foresight import Foresight as Foresight
     from hrsafety.navigation.laws.planners import (
         FieldDStar as FieldDStar,
         OptimalReciprocalCollisionAvoidance as OptimalReciprocalCollisionAvoidance,

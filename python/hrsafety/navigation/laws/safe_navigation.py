@@ -12,6 +12,7 @@ from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.laws.force_laws import Law
+from hrsafety.navigation.laws.foresight import Foresight
 from hrsafety.navigation.laws.python_law import as_law
 from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.laws.yielding import Yielding
@@ -49,9 +50,9 @@ class SafetyTrace(NamedTuple):
 class SafeNavigation(Law):
     """A law with parts around it, each of which may be left out; it is a law like any other.
 
-    ``wanted = law -> takeover -> yielding -> shield``: the law wants a velocity, ``V + F T/m`` for a
-    force. If it has not brought the robot nearer to the goal for some time, the robot heads straight
-    for the goal until it has come nearer. A velocity is chosen that gives way to people, and the shield
+    ``wanted = law -> takeover -> yielding -> shield``, or ``foresight -> shield``: the law wants a velocity,
+    ``V + F T/m`` for a force. If it has not brought the robot nearer to the goal for some time, the robot heads
+    straight for the goal until it has come nearer. A velocity is chosen that gives way to people, and the shield
     lets through what is safe. What all parts keep is the law's own command, bit for bit. The gains are
     those of the law.
 
@@ -69,12 +70,15 @@ class SafeNavigation(Law):
         The shield.
     yielding : Yielding or None
         How the robot gives way.
+    foresight : Foresight or None
+        How the robot looks ahead, in the place of yielding and of the law itself.
     preferred_speed : float or None
         Limit of the wanted velocity in m/s, for which regions are sized; the robot may be faster to give
         way. ``None``: the largest speed of the robot.
     takeover : bool or None
         Whether the law is taken over from where it makes no progress. ``None``: with yielding, or with a
-        guide in a map; without a map it drives straight to the goal, and only yielding and shield keep it off people.
+        guide in a map, but never with foresight; without a map it drives straight to the goal, and only yielding and
+        shield keep it off people.
     critical_distance : float or None or "regions"
         Distance between the surfaces in m at which force laws brake, in place of the critical regions of
         the scene; active regions stay. ``None``: 0.02 m with a shield and yielding, else the regions of
@@ -100,6 +104,7 @@ class SafeNavigation(Law):
     guide: Guide | None = field(default=None, kw_only=True)
     shield: Shield | None = field(default=None, kw_only=True)
     yielding: Yielding | None = field(default=None, kw_only=True)
+    foresight: Foresight | None = field(default=None, kw_only=True)
     preferred_speed: float | None = field(default=None, kw_only=True)
     takeover: bool | None = field(default=None, kw_only=True)
     critical_distance: float | str | None = field(default=None, kw_only=True)
@@ -116,16 +121,24 @@ class SafeNavigation(Law):
             instance("shield", self.shield, Shield)
         if self.yielding is not None:
             instance("yielding", self.yielding, Yielding)
+        if self.foresight is not None:
+            instance("foresight", self.foresight, Foresight)
+            if self.yielding is not None:
+                raise InvalidParameterError(
+                    "yielding", "be None beside foresight, which takes its place", self.yielding
+                )
         if self.preferred_speed is not None:
             self._set(preferred_speed=number("preferred_speed", self.preferred_speed))
         if not (self.takeover is None or isinstance(self.takeover, bool)):
             raise InvalidParameterError("takeover", "be True, False or None", self.takeover)
-        helped = self.yielding is not None or (self.guide is not None and self.map is not None)
+        guided = self.guide is not None and self.map is not None
+        helped = self.foresight is None and (guided or self.yielding is not None)
         guide = Guide() if self.guide is None else self.guide
         native = _hrsafety.guarded_law(
             self.law._native,
             shield=None if self.shield is None else self.shield._native,
             yielding=None if self.yielding is None else self.yielding._native,
+            foresight=None if self.foresight is None else self.foresight._native,
             map=None if self.map is None else self.map._native,
             guide=None if self.guide is None else self.guide._native,
             takeover=helped if self.takeover is None else self.takeover,
@@ -155,7 +168,7 @@ class SafeNavigation(Law):
     @property
     def PLANS(self) -> bool:  # type: ignore[override]  # noqa: N802
         """Whether the law chooses a velocity or a path instead of a force."""
-        return getattr(self.law, "PLANS", False)
+        return self.foresight is not None or getattr(self.law, "PLANS", False)
 
     @property
     def parts_words(self) -> str:
@@ -167,6 +180,7 @@ class SafeNavigation(Law):
                 ("guide", self.guide),
                 ("shield", self.shield),
                 ("yielding", self.yielding),
+                ("foresight", self.foresight),
             )
             if part is not None
         ]

@@ -27,6 +27,7 @@ MARGIN = 0.8  # free space around the path of the robot, in m
 DPI = 85  # of animations
 PATH_COLOR = style.RUN_COLORS[0]
 PLAN_COLOR = style.RUN_COLORS[2]
+EXPECTED_COLOR = "#6a3d9a"
 VERDICTS = {"kept": style.RUN_COLORS[1], "changed": style.PERSON_COLORS[1], "braking": style.CONTACT_COLOR}
 
 
@@ -222,6 +223,7 @@ def _add_decision(axes: Axes, record: SafetyRecord, decision: SafetyDecision) ->
         floor.line(axes, decision.path, zorder=3.3, color=PLAN_COLOR, linewidth=1.6, linestyle="--")
     if decision.local_goal is not None:
         axes.plot(*decision.local_goal, "D", color=PLAN_COLOR, markeredgecolor="white", markersize=8, zorder=4.6)
+    _add_foreseen(axes, decision)
     _add_others(axes, record, decision)
     _add_way_to_rest(axes, decision, run.scenario.robot.radius, color)
     shapes.add_robot(axes, run.scenario, decision.position, PATH_COLOR)
@@ -247,6 +249,15 @@ def _add_others(axes: Axes, record: SafetyRecord, decision: SafetyDecision) -> N
             size = 0.0 if isinstance(obstacle, Box) else shapes.least_half_width(obstacle)
             edge: style.Properties = {"edgecolor": color, "linestyle": ":", "linewidth": 1.2, "zorder": 3.1}
             shapes.add(axes, [shapes.region(obstacle, place, size + reach, fill=False, **edge)])
+
+
+def _add_foreseen(axes: Axes, decision: SafetyDecision) -> None:
+    """Draw the way that foresight plans, and where it expects people."""
+    if len(decision.foreseen_way):
+        floor.line(axes, decision.foreseen_way, zorder=3.35, color=EXPECTED_COLOR, linewidth=1.8, linestyle=":")
+    for places in decision.foreseen_people:
+        look: style.Properties = {"color": EXPECTED_COLOR, "markersize": 2.5, "linestyle": "none", "zorder": 3.25}
+        axes.plot(places[1:, 0], places[1:, 1], "o", **look)
 
 
 def _add_way_to_rest(axes: Axes, decision: SafetyDecision, radius: float, color: str) -> None:
@@ -284,6 +295,9 @@ def _handles(record: SafetyRecord) -> list[Artist]:
     if law.guide is not None:
         handles.append(floor.handle("path of the guide", color=PLAN_COLOR, linestyle="--", linewidth=1.6))
         handles.append(floor.handle("local goal", color=PLAN_COLOR, marker="D", markersize=8))
+    if law.foresight is not None:
+        handles.append(floor.handle("way that is expected", color=EXPECTED_COLOR, linestyle=":", linewidth=1.8))
+        handles.append(floor.handle("people as expected", color=EXPECTED_COLOR, marker="o", markersize=3))
     handles += [
         Line2D([0, 1], [0, 0], color=color, marker=">", markersize=6, markevery=[1], label=f"{name}, way of 1 s")
         for name, color in (("wanted", style.NEUTRAL), ("commanded", "black"))
