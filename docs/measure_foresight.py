@@ -1,0 +1,105 @@
+"""Print what foresight brings beside yielding, or write it into its guide.
+
+``python docs/measure_foresight.py`` prints, ``--write`` replaces what stands between the marks of
+docs/guides/foresight.md; ``--only shares`` are the suites, ``--only adversary`` the search for a fault. The recordings
+are those of ``HRSAFETY_RECORDINGS``, a folder with zara01.csv and zara03.csv.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
+
+from hrsafety import navigation as nav
+from hrsafety import scenarios
+from hrsafety.benchmarks import benchmark, entry
+from page_tables import DOCS, ERROR, LATE, LATENCY, SENSING, head, line, percent, print_or_write
+from properties.pursued_robot import episode
+
+FORESEES = "field+shield+foresight"
+LAWS = ("field+shield+yielding", "orca+shield+yielding", FORESEES)
+CROWDS, FIRST = 200, 40_000
+"""Crowds of two wheels, and the seed of the first one."""
+RANDOM, SEARCHES, EVALUATIONS, PLANT = 10_000, 5, 1000, 10_000
+PURSUED = 12.0
+
+
+def say(*words: object) -> None:
+    """Tell what is under way."""
+    print(time.strftime("%H:%M:%S"), *words, file=sys.stderr, flush=True)
+
+
+def shares() -> str:
+    """Return the table of the suites."""
+    rows = head("suite", "law", "people measured", "episodes", "success %", "at fault %", "arrival, s")
+    folder = os.environ.get("HRSAFETY_RECORDINGS")
+    suites = [
+        ("S5, seed 7701", "s5", {"cases": 500, "seed": 7701}),
+        ("crowd of 12", "crowd", {"cases": 200, "seed": 30_000}),
+        *((name, "recordings", {"data": Path(folder, f"{name}.csv")}) for name in ("zara01", "zara03") if folder),
+    ]
+    for where, suite, options in suites:
+        for sensing, measured in SENSING.items():
+            say(where, sensing)
+            result = benchmark(suite, LAWS, **options, **measured)
+            for law, found in result.rows.items():
+                good = sum(row.outcome == "arrived" and not row.contacts for row in found)
+                counts = (percent(each, len(found)) for each in (good, sum(row.at_fault > 0 for row in found)))
+                rows.append(line(where, law, sensing, len(found), *counts, f"{result.mean_arrival(law):.1f}"))
+    return "\n".join([*rows, *two_wheels()]) + "\n"
+
+
+def two_wheels() -> list[str]:
+    """Return the rows of a robot with two wheels in crowds of 12."""
+    rows = []
+    drawn = scenarios.random_traffic_batch(range(FIRST, FIRST + CROWDS), obstacles=12)
+    for sensing, measured in SENSING.items():
+        late = nav.Measurement(scale=ERROR, latency=LATENCY, of="obstacles") if measured else None
+        scenes = [replace(each, robot=nav.DifferentialDriveRobot(), measurement=late) for each in drawn]
+        error = float(np.hypot(ERROR, ERROR)) if measured else 0.0
+        for law in LAWS:
+            say("two wheels", sensing, law)
+            built = entry(law).built(person_speed=1.6, latency=LATENCY if measured else 0.0, position_error=error)
+            table = nav.simulate_many(scenes, [built], stop_on_contact=True)
+            counts = (int((table.outcome == "arrived").sum()), int((table.contacts_at_fault > 0).sum()))
+            cells = (percent(each, CROWDS) for each in counts)
+            mean = f"{np.nanmean(table.arrival_time):.1f}"
+            rows.append(line("crowd of 12, two wheels", law, sensing, CROWDS, *cells, mean))
+    return rows
+
+
+def adversary() -> str:
+    """Return the table of the search for a fault."""
+    rows = head("robot", "search", "episodes", "at fault")
+    sensed = nav.Measurement(scale=ERROR, of="obstacles", latency=LATENCY)
+    law = entry(FORESEES).built(person_speed=1.6, latency=LATENCY, position_error=float(np.hypot(ERROR, ERROR)))
+    for name, robot in (("holonomic", nav.HolonomicRobot()), ("two wheels", nav.DifferentialDriveRobot())):
+        say(name)
+        scene = nav.Scenario(
+            start=(0.0, 0.0), goal=(8.0, 0.0), robot=robot, time_limit=PURSUED, rest_time=PURSUED, measurement=sensed
+        )
+        random = nav.metrics.falsify(scene, law, episodes=RANDOM, seed=1)
+        rows.append(line(name, f"random persons, {LATE}", RANDOM, int((random.margin < 0.0).sum())))
+        runs = range(SEARCHES)
+        worst = [nav.metrics.falsify(scene, law, method="cma_es", episodes=EVALUATIONS, seed=seed) for seed in runs]
+        rows.append(line(name, "runs of CMA-ES", SEARCHES * EVALUATIONS, sum(each.broken for each in worst)))
+        strict = sum(episode(seed, wheels=name == "two wheels", foresees=True).fault for seed in range(PLANT))
+        rows.append(line(name, "the plant of the tests, own motion told wrong, updates late or dropped", PLANT, strict))
+    return "\n".join(rows) + "\n"
+
+
+if __name__ == "__main__":
+    print_or_write(
+        DOCS / "guides" / "foresight.md",
+        {
+            "shares": ("shares of measure_foresight.py", shares),
+            "adversary": ("adversary of measure_foresight.py", adversary),
+        },
+    )
