@@ -16,6 +16,7 @@ from api.fuzzing import right_files
 from api.recorded_files import people_files, walk
 from fuzz.logs import add_logs
 from fuzz.places import places
+from fuzz.programs import programs
 from hrsafety import arms, contact, io, sweep
 from hrsafety import navigation as nav
 from hrsafety.benchmarks.results import Row, read_rows, row_text
@@ -49,7 +50,7 @@ def readers(folder: Path) -> dict[str, tuple[Path, Callable[[Path], Any]]]:
         if form == "juelich-hdf5":  # read by a process of its own, which takes a second
             continue
         found[f"load_people, {form}"] = (path, functools.partial(_people, call=call))
-    return found | places(folder)
+    return found | places(folder) | programs(folder)
 
 
 def _people(path: Path, call: dict[str, Any]) -> Any:

@@ -17,6 +17,7 @@ from hrsafety.plausibility import ResultWarning
 __all__ = ["MjcfArm", "is_mjcf", "mjcf_arm"]
 
 _ROOT = re.compile(r"\s*(?:<\?.*?\?>\s*|<!--.*?-->\s*|<!DOCTYPE[^>]*>\s*)*<mujoco[\s/>]", re.DOTALL)
+_NAN = re.compile(r"""["'\s]nan["'\s]""", re.IGNORECASE)
 WATER = 1000.0
 """Density in kg/m^3 that MuJoCo takes where a file gives none."""
 SLIDE, HINGE = 2, 3
@@ -71,12 +72,19 @@ def mjcf_arm(text: str, path: Path | None = None) -> MjcfArm:
         import mujoco
     except ModuleNotFoundError:
         raise MissingExtraError(f"{name} is MJCF and needs mujoco: pip install hrsafety[mjcf]") from None
+    if _NAN.search(text) is not None:
+        raise InvalidParameterError(name, "hold numbers", Shown("nan"))
+    # Warnings of MuJoCo go to a file in the working folder unless somebody takes them.
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(lambda _message: None)
     try:
         described = mujoco.MjSpec.from_string(text) if path is None else mujoco.MjSpec.from_file(str(path))
         model = described.compile()
     except Exception as error:  # of the compiler: any may fail
         found = Shown(" ".join(str(error).split())[:200] or type(error).__name__)
         raise InvalidParameterError(name, "be MJCF that MuJoCo compiles", found) from None
+    finally:
+        mujoco.set_mju_user_warning(before)
     guessed = [
         each.name or "without a name"
         for each in described.bodies

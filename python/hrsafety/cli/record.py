@@ -212,6 +212,7 @@ def _report(
         warnings=warnings,
         values={"verdict": word, "limits": limits, "records": [_values(each) for each in judged], **more},
         source=options.files[0],
+        made="",
     )
 
 

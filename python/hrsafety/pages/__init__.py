@@ -82,8 +82,8 @@ def written(template: str, **content: object) -> str:
     str
         A complete HTML document.
     """
-    made = datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d %H:%M UTC")
-    return _environment().get_template(template).render(version=__version__, made=made, **content)
+    now = datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d %H:%M UTC")
+    return _environment().get_template(template).render(**{"version": __version__, "made": now} | content)
 
 
 def shown(value: object, spec: str = ".2f") -> str:

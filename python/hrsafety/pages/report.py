@@ -120,6 +120,8 @@ class Report:
         Names of the files beside the page.
     source : str
         The file that was read, as given.
+    made : str or None
+        When it was made, as the page prints it; ``None``: now, empty: the page does not say, and is the same each time.
     """
 
     title: str
@@ -133,6 +135,7 @@ class Report:
     values: Mapping[str, Any] = field(default_factory=dict)
     files: Sequence[str] = ()
     source: str = ""
+    made: str | None = None
 
     @property
     def printed(self) -> list[ReportTable]:
@@ -161,7 +164,8 @@ class Report:
             A complete HTML document.
         """
         good = "unsure" if self.good and unsafe_doubts(self.warnings) else self.good
-        return written(template, title=self.title, report=self, good=good, **content)
+        when = {} if self.made is None else {"made": self.made}
+        return written(template, title=self.title, report=self, good=good, **when, **content)
 
     def json(self, *, sort: bool = False) -> str:
         """Return title, every value and the warnings as JSON, in their order or in that of their names.

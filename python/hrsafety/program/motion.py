@@ -34,6 +34,8 @@ MOST_INTERVALS = 10**6
 LOG_STEP = 0.004
 """Step of a joint log in s."""
 MOST_LOGGED = 10**6
+FASTEST_JOINT = 1e6
+"""Largest rate in rad/s or m/s that is taken for one."""
 STANDS = 1e-9
 """A base moves less than this, in m or rad, where it stands."""
 PATH_TOLERANCE = 1e-3
@@ -514,8 +516,9 @@ def velocities_of(arm: Arm, velocity: object) -> Array:
         raise InvalidParameterError("arm", "have a joint that moves", arm.name)
     rates = _of_file(arm) if velocity is None else joint_values("velocity", velocity, arm)
     for joint, value in zip(arm.joint_names, rates.tolist(), strict=True):
-        if not value > 0.0 or not np.isfinite(value):
-            raise InvalidParameterError(f"velocity.{joint}", "be finite and above 0", value)
+        if not 0.0 < value <= FASTEST_JOINT:
+            rule = f"be finite and above 0, at most {FASTEST_JOINT:g}"
+            raise InvalidParameterError(f"velocity.{joint}", rule, value)
     return rates
 
 

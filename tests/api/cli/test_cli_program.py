@@ -140,6 +140,7 @@ def test_a_robot_without_a_program_is_judged_by_a_quantile(reported: Any) -> Non
     first = [path.read_bytes() for path in sorted(Path("report").iterdir())]
     reported(head + motion + points)
     assert [path.read_bytes() for path in sorted(Path("report").iterdir())] == first
+    assert "made 20" not in page
     report, page = reported(head + motion + "accept_quantile = 0.99\n" + points)
     assert report["verdict"] == "within_limits"
     assert all(sentence in page for sentence in report["answer"])

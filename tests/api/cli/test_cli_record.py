@@ -89,3 +89,17 @@ def test_a_prediction_stands_beside_the_records(tmp_path: Path, monkeypatch: pyt
         or "nothing was tuned" in Path("out/summary.html").read_text()
     )
     assert main([*command, "--plan-row", "1"]) != 0
+
+
+def test_the_same_records_give_the_same_bytes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    time = np.arange(0.0, 0.8, 1e-3)
+    pulse = np.where((time >= 0.1) & (time <= 0.15), 90.0 * np.sin(np.pi * (time - 0.1) / 0.05), 0.0)
+    rows = [f"{each:.4f};{value:.6f}" for each, value in zip(time, pulse, strict=True)]
+    Path("a.csv").write_text("\n".join(["t [s];force [N]", *rows]))
+    found = []
+    for _ in range(2):
+        assert main(["record", "a.csv", *LIMITS, "--out", "out"]) in (0, 5)
+        found.append({path.name: path.read_bytes() for path in Path("out").iterdir()})
+    assert found[0] == found[1]
+    assert b"made 20" not in found[0]["summary.html"]

@@ -87,3 +87,33 @@ def test_repetitions(case: dict[str, Any]) -> None:
     expected = [case["mean"], case["largest"], case["expanded_uncertainty"]]
     assert [found.mean, found.largest, found.expanded_uncertainty] == pytest.approx(expected, rel=1e-9)
     assert ":".join(filter(None, (found.verdict, found.reason))) == case["verdict"]
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_pulse_among_offset_noise_and_weaker_hits_keeps_its_criterion_or_has_a_code(seed: int) -> None:
+    draw = np.random.default_rng(seed)
+    step, peak = 1e-4, float(draw.uniform(30.0, 120.0))
+    time = np.arange(0.0, 0.25, step)
+    width = float(draw.uniform(0.006, 0.015))
+
+    def pulse(start: float, height: float, length: float) -> np.ndarray:
+        inside = (time >= start) & (time <= start + length)
+        return np.where(inside, height * np.sin(np.pi * (time - start) / length), 0.0)
+
+    clean = pulse(0.1, peak, width)
+    weaker = sum(
+        pulse(float(start), float(draw.uniform(0.05, 0.25)) * peak, 0.006)
+        for start in draw.choice([0.06, 0.16, 0.2], 2)
+    )
+    noise = np.where(time < 0.09, draw.normal(0.0, 0.5, len(time)), 0.0)
+    offset = float(draw.uniform(-0.5, 0.5)) * peak
+    measured = float(draw.choice([-1.0, 1.0])) * (clean + weaker + noise + offset)
+    exact = records.acceleration(time, clean, unit="g")
+    found = records.acceleration(time, measured, unit="g")
+    if abs(found.hic15 / exact.hic15 - 1.0) > 0.03:
+        assert any(not each.safe_side for each in found.warnings)
+    else:
+        assert found.peak_g == pytest.approx(peak, rel=0.03)
+    # The offset is told where it is large.
+    if abs(offset) > 0.1 * peak:
+        assert "offset_removed" in {each.code for each in found.warnings}

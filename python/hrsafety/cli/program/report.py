@@ -72,6 +72,7 @@ def report_of_draws(path: str, study: DrawnStudy, *, command: str, date: str | N
         warnings=study.warnings,
         values=values,
         files=["report.json"],
+        made=date or "",
         source=path,
     )
 
@@ -249,8 +250,19 @@ def _slowest(study: ProgramStudy) -> str:
         return "No segment is slowed down by limits of contacts."
     return sentence(
         f"{first.name} costs most, {first.cost:.2f} s more than at robot limits: for "
-        f"{100.0 * first.share:.0f} % of its time {first.governs} holds it back."
+        f"{100.0 * first.share:.0f} % of its time {_plainly(first.governs)} holds it back."
     )
+
+
+def _plainly(governs: str) -> str:
+    """Return what governs in words: point, region, class and limit."""
+    point, colon, limit = governs.partition(": ")
+    region, _, rest = limit.partition("/")
+    contact, _, of = rest.partition("/")
+    if not colon or contact not in CLASSES:
+        return governs
+    held = "with the drive" if of == "drive" else f"by its {of.replace('_', ' ')}"
+    return f"{point} against a {region.replace('_', ' ')}, {CLASSES[contact]}, {held},"
 
 
 def _times(study: ProgramStudy) -> ReportTable:
