@@ -25,8 +25,8 @@ def test_damaged_programs_arms_and_records_are_judged_or_refused(tmp_path: Path)
                 judge(path)
                 answers.setdefault("result", set()).add(name)
             except HrsafetyError as error:
-                assert str(error), name
-                answers.setdefault("error", set()).add(name)
+                answers.setdefault("error" if str(error) else "silent", set()).add(name)
         path.write_bytes(right)
+    assert "silent" not in answers
     assert len(answers["error"]) > 5
     assert len(answers["result"]) > 3

@@ -331,9 +331,7 @@ def test_a_parked_base_that_rolls_away_is_lighter(kind: str) -> None:
     moves = [
         program.Move(kind="joint", to=START),
         program.Move(kind="joint", to={"turn": -0.3}),
-        program.Move(
-            kind="linear", to=fixed.position(list((START | {"turn": -0.3}).values()), link="tool") - [0, 0, 0.1]
-        ),
+        program.Move(kind="linear", to=place - [0.0, 0.0, 0.1]),
     ]
     limits = {"velocity": dict.fromkeys(START, 1.0), "acceleration": dict.fromkeys(START, 4.0)}
     studies = []
