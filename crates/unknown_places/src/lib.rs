@@ -12,3 +12,4 @@ pub mod explore;
 pub mod guide;
 pub mod map;
 pub mod trial;
+pub mod unseen;

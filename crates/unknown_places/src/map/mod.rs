@@ -6,4 +6,4 @@ mod walk;
 
 pub use cells::{Cells, Kind, Known};
 pub use rolling::{MapOptions, RollingMap, Scan};
-pub use walk::walk;
+pub use walk::{walk, walk_while};

@@ -5,6 +5,16 @@
 /// As many cells are handed over as there are lines of the grid between the ends, and one: rounding may choose the
 /// other of two cells at a corner, but neither loses the last cell nor goes beyond it.
 pub fn walk(from: [f64; 2], to: [f64; 2], mut visit: impl FnMut([i64; 2])) {
+    walk_while(from, to, |cell| {
+        visit(cell);
+        true
+    });
+}
+
+/// Hands the cells of a segment over as [`walk`] does, until one is answered by `false`.
+#[inline]
+#[allow(clippy::cast_possible_truncation)] // ends are checked to be cells of a grid
+pub fn walk_while(from: [f64; 2], to: [f64; 2], mut visit: impl FnMut([i64; 2]) -> bool) {
     let mut cell = from.map(|axis| axis.floor() as i64);
     let last = to.map(|axis| axis.floor() as i64);
     let step = [(last[0] - cell[0]).signum(), (last[1] - cell[1]).signum()];
@@ -18,13 +28,17 @@ pub fn walk(from: [f64; 2], to: [f64; 2], mut visit: impl FnMut([i64; 2])) {
         };
         (line - from[axis]).abs() * gap[axis]
     });
-    visit(cell);
+    if !visit(cell) {
+        return;
+    }
     for _ in 0..left[0] + left[1] {
         let axis = usize::from(left[0] == 0 || (left[1] > 0 && next[1] < next[0]));
         cell[axis] += step[axis];
         left[axis] -= 1;
         next[axis] += gap[axis];
-        visit(cell);
+        if !visit(cell) {
+            return;
+        }
     }
 }
 

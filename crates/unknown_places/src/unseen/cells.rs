@@ -1,0 +1,131 @@
+//! Sets of cells of a grid, a bit for each.
+
+/// A set of cells, row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CellSet {
+    columns: usize,
+    rows: usize,
+    /// Words of a row.
+    width: usize,
+    words: Vec<u64>,
+}
+
+/// Bits of a word.
+const BITS: usize = 64;
+
+impl CellSet {
+    /// No cell of a grid.
+    #[must_use]
+    pub fn empty([columns, rows]: [usize; 2]) -> Self {
+        let width = columns.div_ceil(BITS);
+        Self {
+            columns,
+            rows,
+            width,
+            words: vec![0; width * rows],
+        }
+    }
+
+    /// The cells of a grid for which something holds, by column and row.
+    #[must_use]
+    pub fn of(size: [usize; 2], mut holds: impl FnMut([usize; 2]) -> bool) -> Self {
+        let mut found = Self::empty(size);
+        for row in 0..size[1] {
+            for column in 0..size[0] {
+                if holds([column, row]) {
+                    found.insert([column, row]);
+                }
+            }
+        }
+        found
+    }
+
+    /// Columns and rows of the grid.
+    #[must_use]
+    pub fn size(&self) -> [usize; 2] {
+        [self.columns, self.rows]
+    }
+
+    #[inline]
+    fn place(&self, [column, row]: [usize; 2]) -> (usize, u64) {
+        (row * self.width + column / BITS, 1 << (column % BITS))
+    }
+
+    /// Whether a cell of the grid is among them.
+    #[inline]
+    #[must_use]
+    pub fn contains(&self, cell: [usize; 2]) -> bool {
+        let (word, bit) = self.place(cell);
+        self.words[word] & bit != 0
+    }
+
+    /// Adds a cell.
+    #[inline]
+    pub fn insert(&mut self, cell: [usize; 2]) {
+        let (word, bit) = self.place(cell);
+        self.words[word] |= bit;
+    }
+
+    /// Takes a cell out.
+    #[inline]
+    pub fn remove(&mut self, cell: [usize; 2]) {
+        let (word, bit) = self.place(cell);
+        self.words[word] &= !bit;
+    }
+
+    /// How many they are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.words
+            .iter()
+            .map(|word| word.count_ones() as usize)
+            .sum()
+    }
+
+    /// The cells by column and row, row by row.
+    pub fn iter(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
+        (0..self.rows).flat_map(move |row| {
+            let words = self.words[row * self.width..][..self.width].iter();
+            words.enumerate().flat_map(move |(index, word)| {
+                let mut left = *word;
+                std::iter::from_fn(move || {
+                    let bit = left.trailing_zeros() as usize;
+                    left &= left.wrapping_sub(1);
+                    (bit < BITS).then_some([index * BITS + bit, row])
+                })
+            })
+        })
+    }
+
+    /// Adds all cells of another set of the same grid.
+    pub fn unite(&mut self, other: &Self) {
+        for (word, more) in self.words.iter_mut().zip(&other.words) {
+            *word |= more;
+        }
+    }
+
+    /// Adds the 8 neighbors of all cells that lie in another set of the same grid.
+    pub fn spread(&mut self, within: &Self, beside: &mut Vec<u64>) {
+        let width = self.width;
+        beside.clear();
+        for row in self.words.chunks_exact(width) {
+            for index in 0..width {
+                let before = if index == 0 {
+                    0
+                } else {
+                    row[index - 1] >> (BITS - 1)
+                };
+                let after = row.get(index + 1).map_or(0, |word| word << (BITS - 1));
+                beside.push(row[index] | (row[index] << 1) | before | (row[index] >> 1) | after);
+            }
+        }
+        for row in 0..self.rows {
+            let (first, last) = (row.saturating_sub(1), (row + 1).min(self.rows - 1));
+            for index in 0..width {
+                let near = (first..=last).fold(0, |word, row| word | beside[row * width + index]);
+                let place = row * width + index;
+                self.words[place] |= near & within.words[place];
+            }
+        }
+    }
+}
