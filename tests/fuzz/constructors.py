@@ -74,6 +74,10 @@ def _idle(_situation: Any) -> Any:
     return np.zeros(2)
 
 
+def _ahead(observation: Any) -> Any:
+    return observation[:2]
+
+
 def _doubled(x: Any) -> dict[str, Any]:
     return {"y": 2.0 * x}
 
@@ -185,6 +189,7 @@ REQUIRED: dict[Callable[..., Any], Right] = {
     standards.LimitRow: {"region": "chest", "area": None, "contact": "transient"},
     standards.LimitSet: {"id": "own", "title": "Own", "edition": "1", "note": "", "rows": (), "sources": {}},
     standards.StoppingData: {"speed": [0.0, 1.0], "time": [0.0, 0.1], "distance": [0.0, 0.1]},
+    environments.PolicyLaw: {"policy": _ahead, "time_limit": 10.0},
     sweep.Axis: {"name": "x", "low": 0.0, "high": 1.0, "points": 4},
     sweep.Column: {"name": "x"},
     sweep.FunctionStudy: {"function": _doubled, "results": ["y"]},

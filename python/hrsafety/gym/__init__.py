@@ -16,15 +16,18 @@ if importlib.util.find_spec("gymnasium") is None:
     raise MissingExtraError("environments for learners need gymnasium: pip install gymnasium")
 
 from hrsafety.gym.parallel import parallel_env
+from hrsafety.gym.policy_law import PolicyLaw
 from hrsafety.gym.registration import IDS, register
 from hrsafety.gym.single import CrowdEnv
 from hrsafety.gym.vector import CrowdVectorEnv
+from hrsafety.gym.videos import video
 from hrsafety.gym.worlds import Task, bottleneck, circle_crossing, corridor, crossing
 
 __all__ = [
     "IDS",
     "CrowdEnv",
     "CrowdVectorEnv",
+    "PolicyLaw",
     "Task",
     "bottleneck",
     "circle_crossing",
@@ -32,6 +35,7 @@ __all__ = [
     "crossing",
     "parallel_env",
     "register",
+    "video",
 ]
 
 suggest(__all__, globals())

@@ -72,6 +72,7 @@ class Environments:
         self.is_dict = word("observation", observation, ("flat", "dict")) == "dict"
         self.people = count("people", people, least=0, most=_MOST_SEEN)
         self.lidar = count("lidar", lidar, least=0, most=_MOST_SEEN)
+        self.frame = frame
         self.metrics, self.copy = flag("metrics", metrics), flag("copy", copy)
         self.size = _OWN + _PERSON * self.people + self.lidar
         world = self.task.world

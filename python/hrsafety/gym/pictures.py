@@ -14,12 +14,12 @@ __all__ = ["picture"]
 DPI = 85  # as animations have it
 
 
-def picture(environments: Environments, index: int) -> Frame:
-    """Return a picture of one environment, shape (height, width, 3)."""
+def picture(environments: Environments, index: int, **more: Any) -> Frame:
+    """Return a picture of one environment, shape (height, width, 3); `more` as `crowd_instant` takes it."""
     robot, people, robots = environments.places(index)
     world = environments.task.world
     elapsed = float(environments.observations[index, ELAPSED]) * world.time_limit
-    figure = crowd_instant(world, time=elapsed, robot=robot, people=people, robots=robots)
+    figure = crowd_instant(world, time=elapsed, robot=robot, people=people, robots=robots, **more)
     # Imported when a picture is asked for, as all of matplotlib is.
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import gymnasium
@@ -23,15 +23,19 @@ __all__ = ["CrowdEnv"]
 
 RENDER_MODES = ("rgb_array",)
 
+Draw = Callable[[np.random.Generator], Place | Task]
+"""Returns the world of an episode."""
+
 
 class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
     """A robot that a learner drives among people.
 
     Parameters
     ----------
-    world : World, Scenario or Task
+    world : World, Scenario, Task or callable
         Any world with a robot, or the task of a registered environment. The first robot is driven; the others
-        follow their laws.
+        follow their laws. A function ``draw(generator)`` returns one of them for each episode, from a
+        `numpy.random.Generator` of its own: random starts, goals, people, walls.
     render_mode : {"rgb_array"} or None
         Whether pictures are asked for.
     action : {"velocity", "acceleration", "unicycle"}
@@ -40,7 +44,8 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
     observation : {"flat", "dict"}
         One array, or ``robot``, ``people``, ``mask`` and ``lidar``.
     frame : {"world", "goal"}
-        Axes of all vectors; ``"goal"``: the x axis points from the robot to its goal.
+        Axes of all vectors that are shown; ``"goal"``: the x axis points from the robot to its goal. Actions are along
+        the axes of the world.
     people : int
         How many of the nearest people are seen.
     lidar : int
@@ -66,6 +71,9 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
 
     Notes
     -----
+    An environment can be copied and pickled at any step: the copy makes the world anew and repeats the actions of its
+    episode, with the same bits from then on.
+
     An observation holds, of the robot: position of the goal from it, velocity, greatest speed, share of the time
     limit; of each person: position and velocity relative to the robot, distance of the surfaces; zeros where
     there is no person. Vectors are clipped to 100.
@@ -85,11 +93,16 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
     metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES), "render_fps": 4}  # noqa: RUF012  # as Gymnasium has it
 
     @telling(doubts_of)
-    def __init__(self, world: Place | Task, *, render_mode: str | None = None, **options: Any) -> None:
+    def __init__(self, world: Place | Task | Draw, *, render_mode: str | None = None, **options: Any) -> None:
         """Make the environment."""
         if render_mode is not None:
             word("render_mode", render_mode, RENDER_MODES)
-        self._all = Environments(world, num_envs=1, autoreset_mode="Disabled", threads=1, **options)
+        self._made = world, options
+        # What an episode is repeated from: first seed, episodes since, and actions.
+        self._seed: int | None = None
+        self._episodes = 0
+        self._actions: list[npt.NDArray[np.float64]] = []
+        self._all = self._environments(np.random.default_rng(0))
         self.render_mode = render_mode
         self.action_space: spaces.Space[Any] = self._all.action_space()
         self.observation_space = self._all.observation_space()
@@ -118,8 +131,49 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
         if seed is None and not self._seeded:
             seed = int(self.np_random.integers(2**63))
         self._seeded = True
-        self._all.reset([None if seed is None else checked_seed("seed", seed)], None)
+        if seed is not None:
+            self._seed, self._episodes = checked_seed("seed", seed), 0
+        self._start(seed)
         return self._observation(), self._info()
+
+    def _environments(self, generator: np.random.Generator) -> Environments:
+        """Return the native environment, of a world that is drawn if worlds are."""
+        world, options = self._made
+        drawn = world if isinstance(world, (Place, Task)) or not callable(world) else world(generator)
+        return Environments(drawn, num_envs=1, autoreset_mode="Disabled", threads=1, **options)
+
+    def _start(self, seed: int | None) -> None:
+        """Start the next episode."""
+        world, _ = self._made
+        self._actions = []
+        self._episodes += 1
+        if not isinstance(world, (Place, Task)):
+            episode = np.random.SeedSequence([self._seed or 0, self._episodes])
+            first, other = episode.spawn(2)
+            self._all = self._environments(np.random.default_rng(first))
+            if self._all.observation_space() != self.observation_space:
+                raise InvalidParameterError("world", "have one observation space in all episodes", self._episodes)
+            seed = int(other.generate_state(1, np.uint64)[0])
+        self._all.reset([seed], None)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copy and pickle by what the episode is repeated from."""
+        world, options = self._made
+        state = self._seed, self._episodes, self._seeded, self._actions, self._np_random, self._np_random_seed
+        return _repeated, (type(self), world, self.render_mode, options, self.spec, state)
+
+    def _repeat(self, state: tuple[Any, ...]) -> None:
+        self._seed, episodes, self._seeded, actions, self._np_random, self._np_random_seed = state
+        world, _ = self._made
+        if episodes and isinstance(world, (Place, Task)):
+            for episode in range(episodes):
+                self._start(self._seed if episode == 0 else None)
+        elif episodes:
+            self._episodes = episodes - 1
+            self._start(None)
+        for action in actions:
+            self._all.step(action[None])
+        self._actions = list(actions)
 
     def step(self, action: npt.ArrayLike) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """Drive the robot for one control period.
@@ -145,6 +199,7 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
         if given.shape != (2,):
             raise ShapeError("action", "(2,)", given.shape)
         self._all.step(given[None])
+        self._actions.append(given.copy())
         state = int(self._all.states[0])
         ended = state != RUNNING
         info = self._info()
@@ -176,6 +231,21 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
             gymnasium.logger.warn('render() needs render_mode="rgb_array" when the environment is made')
             return None
         return picture(self._all, 0)
+
+
+def _repeated(
+    kind: type[CrowdEnv],
+    world: Place | Task | Draw,
+    render_mode: str | None,
+    options: dict[str, Any],
+    spec: Any,
+    state: tuple[Any, ...],
+) -> CrowdEnv:
+    """Return a copy of an environment in the midst of its episode."""
+    made = kind(world, render_mode=render_mode, **options)
+    made.spec = spec
+    made._repeat(state)
+    return made
 
 
 def scores(row: npt.NDArray[np.float64]) -> dict[str, float | int | bool]:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
 from hrsafety.plotting import floor, notes, style
 from hrsafety.plotting.crowds import world_scenes
@@ -25,7 +26,16 @@ PERSON_COLOR, OTHER_COLOR, ROBOT_COLOR = world_scenes.PEOPLE_COLORS[0], style.RU
 
 
 @notes.picture
-def crowd_instant(world: World, *, time: float, robot: Body, people: Sequence[Body], robots: Sequence[Body]) -> Figure:
+def crowd_instant(
+    world: World,
+    *,
+    time: float,
+    robot: Body,
+    people: Sequence[Body],
+    robots: Sequence[Body],
+    paths: Sequence[npt.NDArray[np.float64]] = (),
+    rays: npt.NDArray[np.float64] | None = None,
+) -> Figure:
     """Return a picture of a robot, people, other robots and walls; all of one world have the same view.
 
     Parameters
@@ -38,12 +48,18 @@ def crowd_instant(world: World, *, time: float, robot: Body, people: Sequence[Bo
         Position and radius in m of the robot that is driven.
     people, robots : sequence of ((float, float), float)
         Positions and radii of the people and of other robots, in m.
+    paths : sequence of ndarray, shape (n, 2)
+        Ways so far in m, that of the robot first, then those of the people.
+    rays : ndarray of shape (m, 2), or None
+        Ends of the rays of the robot in m.
 
     Returns
     -------
     matplotlib.figure.Figure
         The picture.
     """
+    from matplotlib.collections import LineCollection
+
     driven = world.robots[0]
     ends = np.array([driven.start, driven.goal], dtype=np.float64)
     # Where nothing bounds the floor, as wide as long, with room for detours.
@@ -55,6 +71,11 @@ def crowd_instant(world: World, *, time: float, robot: Body, people: Sequence[Bo
     figure, (axes,) = floor.panels(place.limits, entries=len(handles), legend_columns=3, title=title)
     world_scenes.add_walls(axes, world, place)
     world_scenes.add_goals(axes, world)
+    if rays is not None:
+        ends = np.stack([np.broadcast_to(robot[0], rays.shape), rays], axis=1)
+        axes.add_collection(LineCollection(list(ends), colors=style.NEUTRAL, linewidths=0.5, alpha=0.5, zorder=2.0))
+    for number, way in enumerate(paths):
+        axes.plot(*way.T, color=PERSON_COLOR if number else ROBOT_COLOR, linewidth=1.2, alpha=0.6, zorder=2.5)
     drawn = ((people, PERSON_COLOR, 3.2), (robots, OTHER_COLOR, 4.4), ([robot], ROBOT_COLOR, 4.5))
     for bodies, color, zorder in drawn:
         look: style.Properties = {"facecolor": color, "edgecolor": "white", "linewidth": 0.8, "zorder": zorder}

@@ -1,0 +1,154 @@
+"""A policy that was trained in an environment, as a law: it is shown what the environment showed it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from hrsafety._arguments import Array, count, numbers, positive, word
+from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.gym.environments import _BOUND, _MOST_SEEN, _OWN, _PERSON, _RANGE
+from hrsafety.navigation.laws.situation import Situation
+from hrsafety.navigation.maps.static_map import StaticMap
+from hrsafety.navigation.sensing.lidar import Lidar
+
+__all__ = ["PolicyLaw"]
+
+Observation = npt.NDArray[np.float32]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PolicyLaw:
+    """A policy of velocities as a law, so that it stands beside laws, under a shield, and on robots as built.
+
+    Parameters
+    ----------
+    policy : callable
+        ``policy(observation)`` returns an action in [-1, 1] x [-1, 1]; observations are flat, as of `CrowdEnv`.
+    time_limit : float
+        That of the worlds, in s: observations hold the share that has passed.
+    people : int
+        How many of the nearest people it was shown.
+    lidar : int
+        How many rays.
+    frame : {"world", "goal"}
+        Axes of all vectors that it was shown; actions are along those of the world.
+    walls : StaticMap or None
+        What the rays see beside people; those of the world.
+    name : str
+        In results.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a value is out of range, and in a run if there is a wall or rectangle that no ray shows to the policy.
+
+    Notes
+    -----
+    A law is told of people within the sight of its robot, an environment shows the nearest ones at any distance.
+
+    Examples
+    --------
+    >>> from hrsafety import gym, navigation as nav, scenarios
+    >>> def to_goal(observation):
+    ...     return observation[:2]
+    >>> law = gym.PolicyLaw(policy=to_goal, time_limit=25.0)
+    >>> nav.simulate(scenarios.circle_crossing(0, law=law)).outcome
+    'arrived'
+    """
+
+    policy: Callable[[Observation], npt.ArrayLike]
+    time_limit: float
+    people: int = 5
+    lidar: int = 0
+    frame: str = "world"
+    walls: StaticMap | None = None
+    name: str = "policy"
+    _lidar: Lidar | None = field(init=False, repr=False, compare=False, default=None)
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        if not callable(self.policy):
+            raise InvalidParameterError("policy", "be callable", self.policy)
+        object.__setattr__(self, "time_limit", positive("time_limit", self.time_limit))
+        object.__setattr__(self, "people", count("people", self.people, least=0, most=_MOST_SEEN))
+        object.__setattr__(self, "lidar", count("lidar", self.lidar, least=0, most=_MOST_SEEN))
+        word("frame", self.frame, ("world", "goal"))
+        if self.walls is not None and not isinstance(self.walls, StaticMap):
+            raise InvalidParameterError("walls", "be a StaticMap or None", self.walls)
+        if self.lidar:
+            object.__setattr__(self, "_lidar", Lidar(map=self.walls, beams=self.lidar, range_max=_RANGE))
+
+    def velocity(self, situation: Situation) -> Array:
+        """Return the velocity that the policy wants, in m/s.
+
+        Parameters
+        ----------
+        situation : Situation
+            Of the robot.
+
+        Returns
+        -------
+        ndarray, shape (2,)
+            At most the greatest speed of the robot.
+        """
+        action = numbers("action of the policy", self.policy(self.observation(situation)))
+        if action.shape != (2,):
+            raise ShapeError("action of the policy", "(2,)", action.shape)
+        if not np.isfinite(action).all():
+            raise InvalidParameterError("action of the policy", "be finite", action)
+        share = np.clip(action, -1.0, 1.0)
+        share = share / max(1.0, float(np.hypot(*share)))
+        return situation.robot.max_speed * share
+
+    def observation(self, situation: Situation) -> Observation:
+        """Return what an environment would show in a situation.
+
+        Parameters
+        ----------
+        situation : Situation
+            Of the robot.
+
+        Returns
+        -------
+        ndarray of float32, shape (6 + 5 * people + lidar,)
+            As of `CrowdEnv`.
+        """
+        seen, axes = situation, self._axes(situation)
+        radius = np.asarray(seen.obstacle_radius)
+        here = np.asarray(seen.obstacle_present, dtype=bool)
+        if (here & np.isnan(radius)).any() and (self.walls is None or not self.lidar):
+            remedy = "train with lidar=, and give lidar= and walls= here"
+            raise InvalidParameterError(
+                "obstacles of the scene", "be discs for a policy without rays", "a wall", remedy
+            )
+        # Points of walls have no radius; an environment shows walls by rays alone.
+        discs = np.flatnonzero(here & (radius > 0.0))
+        way = seen.obstacle_position[discs] - seen.position
+        distance = np.hypot(*way.T)
+        nearest = np.argsort(distance, kind="stable")[: self.people]
+        moving = seen.obstacle_velocity[discs][nearest] - seen.velocity
+        gap = distance[nearest] - radius[discs][nearest] - seen.robot.radius
+        shown = np.zeros(_OWN + _PERSON * self.people + self.lidar)
+        shown[:2], shown[2:4] = axes @ (seen.goal - seen.position), axes @ seen.velocity
+        shown[4], shown[5] = seen.robot.max_speed, min(seen.time / self.time_limit, 1.0)
+        rows = np.column_stack([way[nearest] @ axes.T, moving @ axes.T, gap])
+        shown[_OWN : _OWN + rows.size] = rows.ravel()
+        shown = np.clip(shown, -_BOUND, _BOUND)
+        if self._lidar is not None:
+            bodies = np.column_stack([seen.obstacle_position[discs], radius[discs]])
+            heading = float(np.arctan2(axes[0, 1], axes[0, 0]) - self._lidar.bearings[0])
+            shown[-self.lidar :] = self._lidar.scan(seen.position, heading, people=bodies)
+        return shown.astype(np.float32)
+
+    def _axes(self, situation: Situation) -> Array:
+        """Return the axes of all vectors as rows."""
+        to_goal = situation.goal - situation.position
+        distance = float(np.hypot(*to_goal))
+        if self.frame == "world" or distance == 0.0:
+            return np.eye(2)
+        x, y = to_goal / distance
+        return np.array([[x, y], [-y, x]])

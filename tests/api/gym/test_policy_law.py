@@ -1,0 +1,69 @@
+"""A policy as a law is shown what the environment showed it, and drives as it did there."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hrsafety import InvalidParameterError, gym, scenarios
+from hrsafety import navigation as nav
+
+ROOM = [[(-6.0, -6.0), (6.0, -6.0), (6.0, 6.0), (-6.0, 6.0), (-6.0, -6.0)]]
+
+
+def cautious(observation: np.ndarray) -> np.ndarray:
+    """Return an action that depends on all that is seen."""
+    people = observation[6:21].reshape(3, 5)
+    away = -(people[:, :2] * np.exp(-people[:, 4:5])).sum(0)
+    rays = observation[21:]
+    angles = 2.0 * np.pi * np.arange(len(rays)) / max(len(rays), 1)
+    walls = -(np.exp(-rays)[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])).sum(0)
+    goal = observation[:2] / max(1.0, float(np.linalg.norm(observation[:2])))
+    return goal + 0.3 * away + 0.3 * walls + 0.05 * observation[2:4]
+
+
+@pytest.mark.parametrize("frame", ["world", "goal"])
+@pytest.mark.parametrize("lidar", [0, 5, 8])
+def test_law_sees_and_does_what_the_policy_did_in_the_environment(frame: str, lidar: int) -> None:
+    world: Any = scenarios.circle_crossing(4, visible=False)
+    walls = nav.maps.StaticMap.from_polylines(ROOM) if lidar else None
+    seen: list[np.ndarray] = []
+
+    def kept(observation: np.ndarray) -> np.ndarray:
+        seen.append(observation)
+        return cautious(observation)
+
+    law = gym.PolicyLaw(policy=kept, time_limit=world.time_limit, people=3, lidar=lidar, frame=frame, walls=walls)
+    plan = [
+        nav.Robot(each.body, start=each.start, goal=each.goal, control_period=each.control_period, law=law)
+        for each in world.robots
+    ]
+    shapes = ROOM if lidar else ()
+    free = nav.World(
+        people=world.people, robots=plan, walls=shapes, time_limit=world.time_limit, seed=world.seed, step=world.step
+    )
+    nav.simulate(free)
+    env = gym.CrowdEnv(free, people=3, lidar=lidar, frame=frame)
+    observation, _ = env.reset(seed=free.seed)
+    for step in range(min(len(seen), 60)):
+        if np.hypot(observation[6::5][:3], observation[7::5][:3]).max() > 9.0:
+            break  # a law is not told of people this far away
+        np.testing.assert_allclose(seen[step], observation, atol=2e-4, err_msg=f"step {step}")
+        observation, _, *ends, _ = env.step(cautious(observation))
+        if any(ends):
+            break
+    assert step > 10
+
+
+def test_what_no_environment_shows_is_refused() -> None:
+    law = gym.PolicyLaw(policy=lambda seen: seen[:2], time_limit=10.0)
+    box = nav.Rectangle(center=(2.0, 0.0), length=1.0, width=0.5)
+    with pytest.raises(InvalidParameterError, match="be discs for a policy"):
+        nav.simulate(nav.Scenario(start=(0.0, 0.0), goal=(4.0, 0.0), obstacles=[box]), law)
+    bad = gym.PolicyLaw(policy=lambda _: [np.nan, 0.0], time_limit=10.0)
+    with pytest.raises(InvalidParameterError, match="action of the policy"):
+        nav.simulate(scenarios.circle_crossing(0, law=bad))
+    with pytest.raises(InvalidParameterError, match="policy must be callable"):
+        gym.PolicyLaw(policy="best", time_limit=10.0)  # type: ignore[arg-type]  # on purpose
