@@ -3,7 +3,7 @@
 from hrsafety._calls import suggest
 from hrsafety.arena.cards import CARDS, task_error
 from hrsafety.arena.certificates import Certificate, certify, certify_many
-from hrsafety.arena.ranks import Ranks, ranks
+from hrsafety.arena.ranking import Ranks, ranks
 
 __all__ = ["CARDS", "Certificate", "Ranks", "certify", "certify_many", "ranks", "task_error"]
 
