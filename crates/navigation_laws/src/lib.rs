@@ -40,6 +40,7 @@ mod borenstein_koren;
 pub mod escape;
 pub mod field;
 pub mod field_d_star;
+pub mod filters;
 pub mod foresight;
 mod ge_cui;
 pub mod guide;
