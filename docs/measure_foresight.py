@@ -1,7 +1,8 @@
 """Print what foresight brings beside yielding, or write it into its guide.
 
 ``python docs/measure_foresight.py`` prints, ``--write`` replaces what stands between the marks of
-docs/guides/foresight.md; ``--only shares`` are the suites, ``--only adversary`` the search for a fault. The recordings
+docs/guides/foresight.md; ``--only shares`` are the suites, ``--only scenes`` the standard scenes of social navigation,
+``--only adversary`` the search for a fault. The recordings
 are those of ``HRSAFETY_RECORDINGS``, a folder with zara01.csv and zara03.csv.
 """
 
@@ -20,6 +21,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.benchmarks import benchmark, entry
+from hrsafety.navigation.crowd.simulation import simulated
 from page_tables import DOCS, ERROR, LATE, LATENCY, SENSING, head, line, percent, print_or_write
 from properties.pursued_robot import episode
 
@@ -27,6 +29,10 @@ FORESEES = "field+shield+foresight"
 LAWS = ("field+shield+yielding", "orca+shield+yielding", FORESEES)
 CROWDS, FIRST = 200, 40_000
 """Crowds of two wheels, and the seed of the first one."""
+SEEDS, MARGIN = range(4, 8), 0.01
+"""Seeds of each standard scene, and the margin of shields there, whose robots move in steps of 0.05 s, in m."""
+LEFT_OUT = ("blind_corner", "following_human", "leading_human", "accompanying_peer")
+"""Standard scenes with people whom nobody sees, and those in which the robot has another task than to arrive."""
 RANDOM, SEARCHES, EVALUATIONS, PLANT = 10_000, 5, 1000, 10_000
 PURSUED = 12.0
 
@@ -75,6 +81,35 @@ def two_wheels() -> list[str]:
     return rows
 
 
+def standard_scenes() -> str:
+    """Return the table of the standard scenes of social navigation."""
+    rows = head("people", "law", "people measured", "episodes", "success %", "at fault %")
+    for reacting in (False, True):
+        for sensing, measured in SENSING.items():
+            late = nav.Measurement(scale=ERROR, latency=LATENCY, of="obstacles") if measured else None
+            error = float(np.hypot(ERROR, ERROR)) if measured else 0.0
+            for law in LAWS:
+                say("standard scenes", reacting, sensing, law)
+                worlds = []
+                for name in (each for each in scenarios.SOCIAL if each not in LEFT_OUT):
+                    for seed in SEEDS:
+                        world = scenarios.social(name, seed, reacting=reacting)
+                        map = nav.StaticMap.from_polylines(world.walls) if world.walls else None
+                        guided = law if map is None else law.replace("+", "+guide+", 1)
+                        sees = {"latency": LATENCY if measured else 0.0, "position_error": error}
+                        built = entry(guided).built(person_speed=1.6, margin=MARGIN, map=map, **sees)
+                        robot = replace(world.robots[0], law=built, measurement=late)
+                        worlds.append(replace(world, robots=[robot]))
+                runs = [each.robots[0] for each in simulated(worlds)]
+                counts = (
+                    sum(each.outcome == "arrived" for each in runs),
+                    sum(each.contacts_at_fault > 0 for each in runs),
+                )
+                cells = (percent(each, len(runs)) for each in counts)
+                rows.append(line("react" if reacting else "do not react", law, sensing, len(runs), *cells))
+    return "\n".join(rows) + "\n"
+
+
 def adversary() -> str:
     """Return the table of the search for a fault."""
     rows = head("robot", "search", "episodes", "at fault")
@@ -100,6 +135,7 @@ if __name__ == "__main__":
         DOCS / "guides" / "foresight.md",
         {
             "shares": ("shares of measure_foresight.py", shares),
+            "scenes": ("scenes of measure_foresight.py", standard_scenes),
             "adversary": ("adversary of measure_foresight.py", adversary),
         },
     )
