@@ -32,6 +32,8 @@ SHORTEST_DWELL = 0.05
 THINNED = 0.25
 """Samples nearer to each other than this share of the tolerance are one place of the path."""
 FIRST_KNOTS = 4
+FOLLOWS = 1e-2
+"""Largest distance in rad or m of a joint of a log from where the arm has it."""
 UNSEEN = 0.25
 """Share of the fastest recorded rate that may stay unseen between two samples."""
 FULL_SPEED = 0.1
@@ -94,11 +96,37 @@ def read_log(path: str | PathLike[str], arm: Arm) -> JointLog:
         if unit is not None and dimension_of(unit) not in ("angle", "length"):
             raise FileError(f"{name}, column {joint}", "be values of a joint in rad, deg, m or mm", unit)
         columns.append(record.columns[joint])
+    _checked_others(arm, record.columns, dict(zip(arm.joint_names, columns, strict=True)), name)
     try:
         log = checked_log(arm, record.time, np.column_stack(columns), f"{name}, column ")
     except InvalidParameterError as error:
         raise error.renamed(f"{name}, column of times") if error.argument == "time" else error from None
     return log._replace(sha256=record.source.sha256)
+
+
+def _checked_others(arm: Arm, columns: Mapping[str, Array], own: Mapping[str, Array], name: str) -> None:
+    """Refuse columns of joints that move otherwise than the arm lets them: fixed, locked, or following another one."""
+    from xml.etree import ElementTree
+
+    for joint in ElementTree.fromstring(arm.urdf).iter("joint"):
+        column = columns.get(joint.get("name", ""))
+        if column is None:
+            continue
+        label, mimic = joint.get("name", ""), joint.find("mimic")
+        leader = None if mimic is None else own.get(mimic.get("joint", ""))
+        if label in own and label not in arm.locked:
+            continue
+        if mimic is not None and leader is not None:
+            expected = float(mimic.get("multiplier", 1.0)) * leader + float(mimic.get("offset", 0.0))
+            rule = f"follow {mimic.get('joint')} as the URDF says"
+        elif mimic is None:
+            expected = np.full(len(column), column[0])
+            rule = "not move: the joint is locked or fixed"
+        else:
+            continue
+        off = float(np.abs(column - expected).max())
+        if not off <= FOLLOWS:
+            raise FileError(f"{name}, column {label}", rule, Shown(f"{off:.3g} rad or m off"))
 
 
 def checked_log(arm: Arm, time: object, joints: object, prefix: str = "joints.") -> JointLog:

@@ -254,3 +254,43 @@ def test_logs_that_begin_in_motion_are_doubted() -> None:
     for cut, codes in ((slice(None), []), (slice(100, None), ["log_in_motion"]), (slice(None, 300), ["log_in_motion"])):
         motion = program.ArmMotion.from_log(chain(2), time=time[cut], joints=poses[cut], acceleration=4.0, velocity=2.0)
         assert [each.code for each in motion.warnings] == codes
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "locked", "message"),
+    [
+        (
+            'name="wrist_3" type="revolute">',
+            'name="wrist_3" type="revolute"><mimic joint="turn"/>',
+            None,
+            "follow turn",
+        ),
+        (
+            'name="wrist_3" type="revolute"',
+            'name="wrist_3" type="fixed"',
+            None,
+            "not move: the joint is locked or fixed",
+        ),
+        ("", "", "wrist_3", "not move: the joint is locked or fixed"),
+    ],
+)
+def test_joints_of_a_log_that_the_arm_holds_are_refused(
+    tmp_path: Path, before: str, after: str, locked: str | None, message: str
+) -> None:
+    text = example().urdf.replace(before, after) if before else example().urdf
+    arm = type(example()).from_urdf(text, locked=locked)
+    names = example().joint_names
+    time = np.arange(0.0, 1.0, 0.01)
+    poses = np.tile([0.0, 0.35, 1.45, -0.23, -1.57, 0.0], (len(time), 1))
+    for column, moved in ((0, True), (5, False)):
+        joints = poses.copy()
+        joints[:, column] = 0.1 - 0.1 * np.cos(np.pi * time)
+        if moved and "mimic" in after:
+            joints[:, 5] = joints[:, 0]
+        rows = [",".join(f"{value:.6f}" for value in (one, *row)) for one, row in zip(time, joints, strict=True)]
+        (tmp_path / "log.csv").write_text("\n".join([",".join(["time", *names]), *rows]), encoding="utf-8")
+        if moved:
+            assert program.ArmMotion.from_log(arm, tmp_path / "log.csv", acceleration=4.0, velocity=2.0).log is not None
+        else:
+            with pytest.raises(InvalidParameterError, match=f"log.csv, column wrist_3 must {message}"):
+                program.ArmMotion.from_log(arm, tmp_path / "log.csv", acceleration=4.0, velocity=2.0)
