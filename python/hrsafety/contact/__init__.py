@@ -28,12 +28,12 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
         push_limit_of_torques as push_limit_of_torques,
     )
     from hrsafety.contact.driven import (
-        DrivenLoads as DrivenLoads,
         DrivenSpeed as DrivenSpeed,
         driven_loads as driven_loads,
         driven_speed as driven_speed,
         driven_speeds as driven_speeds,
     )
+    from hrsafety.contact.driving import DrivenLoads as DrivenLoads
     from hrsafety.contact.least_thickness import LeastThickness as LeastThickness
     from hrsafety.contact.margins import (
         ContactMargins as ContactMargins,

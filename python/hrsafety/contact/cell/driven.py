@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 from hrsafety.contact.cell.cell import Cell, PlannedContact, contact_of
 from hrsafety.contact.cell.judgement import FASTEST, Judged
 from hrsafety.contact.drive import Drive
-from hrsafety.contact.driven import DrivenLoads, DrivenSpeed, driven_loads, driven_speed
+from hrsafety.contact.driven import DrivenSpeed, driven_loads, driven_speed
+from hrsafety.contact.driving import DrivenLoads
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
 
