@@ -12,7 +12,7 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.crowd.agents import Task
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.trajectory import Trajectory
-from hrsafety.scenarios.social import SOCIAL
+from hrsafety.scenarios.social_scenes import SOCIAL
 
 __all__ = ["CARDS", "task_error"]
 

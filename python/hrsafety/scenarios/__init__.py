@@ -7,7 +7,7 @@ from hrsafety.scenarios.crowds import random_crowd, random_crowd_batch
 from hrsafety.scenarios.files import ScenarioFile, load
 from hrsafety.scenarios.recorded_people import Crossing, crossings
 from hrsafety.scenarios.recorded_worlds import with_recording
-from hrsafety.scenarios.social import SOCIAL, social
+from hrsafety.scenarios.social_scenes import SOCIAL, social
 from hrsafety.scenarios.streams import bottleneck, corridor, cross_torus, crossing
 from hrsafety.scenarios.traffic import random_traffic, random_traffic_batch
 from hrsafety.scenarios.world_files import load_world
