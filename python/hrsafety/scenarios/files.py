@@ -123,8 +123,8 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
       file, with ``fps`` if its times are numbers of frames;
     - ``[measurement]`` with the fields of `Measurement`;
     - ``[safe]``, which puts parts around the law: ``preferred_speed``, ``takeover`` and
-      ``critical_distance`` of `SafeNavigation`, and the tables ``[safe.shield]`` and ``[safe.yielding]`` with
-      the fields of `Shield` and `Yielding`;
+      ``critical_distance`` of `SafeNavigation`, and the tables ``[safe.shield]`` and ``[safe.yielding]`` or
+      ``[safe.foresight]`` with the fields of `Shield`, `Yielding` and `Foresight`;
     - ``[law]`` with ``type``, the name of a law such as ``"virtual_force_field"`` or a short name such as
       ``"vff"``, and the fields of its class. An unknown name is an error that lists all.
 
