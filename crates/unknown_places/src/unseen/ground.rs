@@ -47,10 +47,11 @@ impl Ground {
             for offset in &near {
                 let beside =
                     [0, 1].map(|axis| taken[axis].checked_add_signed(offset[axis] as isize));
-                if let [Some(column), Some(row)] = beside {
-                    if column < size[0] && row < size[1] {
-                        walkable.remove([column, row]);
-                    }
+                if let [Some(column), Some(row)] = beside
+                    && column < size[0]
+                    && row < size[1]
+                {
+                    walkable.remove([column, row]);
                 }
             }
         }
