@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use crate::guide::plan::Planning;
-use crate::guide::{Guide, LocalGoal, Plan, PlanView, Standing};
+use crate::guide::{Guide, LocalGoal, Plan, PlanView, RobotRoom, Standing};
 use navigation_world::world::shape::PlacedShape;
 
 /// Most nodes that a plan made again settles in one look: an update of a robot takes no longer, and a
@@ -14,7 +14,7 @@ const NODES_OF_A_LOOK: usize = 2000;
 #[derive(Clone, Debug)]
 pub struct Guidance {
     guide: Guide,
-    robot_radius: f64,
+    robot: RobotRoom,
     /// The plan without people.
     alone: Plan,
     /// The plan around those who stand, if somebody does and there is one.
@@ -27,12 +27,12 @@ pub struct Guidance {
 }
 
 impl Guidance {
-    /// Under a plan that was made by a guide for a robot of a radius in m.
+    /// Under a plan that was made by a guide for a robot.
     #[must_use]
-    pub fn new(guide: Guide, robot_radius: f64, plan: Plan) -> Self {
+    pub fn new(guide: Guide, robot: impl Into<RobotRoom>, plan: Plan) -> Self {
         Self {
             guide,
-            robot_radius,
+            robot: robot.into(),
             alone: plan,
             around: None,
             planning: None,
@@ -100,9 +100,7 @@ impl Guidance {
         });
         let shapes: Vec<PlacedShape> = standing.collect();
         let map = self.alone.map().with_shapes(&shapes);
-        self.alone
-            .begin_again(self.guide, &map, self.robot_radius)
-            .ok()
+        self.alone.begin_again(self.guide, &map, self.robot).ok()
     }
 
     /// Cost at a position and the local goal there, outside of the box of the nodes on the way back into it;

@@ -56,6 +56,25 @@ impl Default for Guide {
     }
 }
 
+/// Room that a robot needs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RobotRoom {
+    /// Least distance of its middle from the map in m: its radius, or half of the width of one that is no disc.
+    pub least: f64,
+    /// Radius in m of the circle around it, in which it can turn.
+    pub turning: f64,
+}
+
+impl From<f64> for RobotRoom {
+    /// Of a disc with a radius in m.
+    fn from(radius: f64) -> Self {
+        Self {
+            least: radius,
+            turning: radius,
+        }
+    }
+}
+
 impl Guide {
     /// Returns the guide if its numbers are allowed.
     ///
@@ -80,7 +99,7 @@ impl Guide {
         Ok(self)
     }
 
-    /// The plan of a robot of a radius in m from everywhere to a goal; there is one from the start.
+    /// The plan of a robot from everywhere to a goal; there is one from the start.
     ///
     /// # Errors
     /// Start or goal are outside of the box or in contact with the map, there is no way between
@@ -88,11 +107,12 @@ impl Guide {
     pub fn plan(
         &self,
         map: &StaticMap,
-        robot_radius: f64,
+        robot: impl Into<RobotRoom>,
         [start, goal]: [[f64; 2]; 2],
         stop: Stop<'_>,
     ) -> Result<Plan> {
-        positive("radius", robot_radius)?;
+        let robot = robot.into();
+        let robot_radius = positive("radius", robot.least)?;
         finite_pair("start", start)?;
         finite_pair("goal", goal)?;
         let nodes = self.checked()?.nodes(map, robot_radius, [start, goal])?;
@@ -105,7 +125,7 @@ impl Guide {
             }
             check_place(name, place, &nodes, map, robot_radius)?;
         }
-        let plan = Plan::new(*self, nodes, map, robot_radius, goal.into(), stop)?;
+        let plan = Plan::new(*self, nodes, map, robot, goal.into(), stop)?;
         if plan.view(start.into()).is_none() {
             let rule = "be reachable from the start";
             let advice = "a gap must be wider than the robot by twice the margin; a smaller spacing finds narrower ones";

@@ -6,9 +6,9 @@ use nalgebra::Vector2;
 use numeric::order::sort_pairs;
 
 use crate::Stop;
-use crate::guide::Guide;
 use crate::guide::nodes::Nodes;
 use crate::guide::search::{CostToGo, GuideSearch, MapClearance};
+use crate::guide::{Guide, RobotRoom};
 use navigation_world::world::map::StaticMap;
 use numeric::error::{Failure, Given, Result};
 
@@ -101,13 +101,14 @@ impl Planning {
         guide: Guide,
         nodes: Nodes,
         map: &StaticMap,
-        robot_radius: f64,
+        robot: RobotRoom,
         goal: Vector2<f64>,
     ) -> Result<Self> {
-        let least = robot_radius + guide.margin;
+        let least = robot.least + guide.margin;
         let room = MapClearance {
             map: map.clone(),
-            robot_radius,
+            robot_radius: robot.least,
+            turning_radius: robot.turning,
             least,
             within_known: guide.bounds.is_none(),
         };
@@ -146,11 +147,11 @@ impl Plan {
         guide: Guide,
         nodes: Nodes,
         map: &StaticMap,
-        robot_radius: f64,
+        robot: RobotRoom,
         goal: Vector2<f64>,
         stop: Stop<'_>,
     ) -> Result<Self> {
-        let mut planning = Planning::new(guide, nodes, map, robot_radius, goal)?;
+        let mut planning = Planning::new(guide, nodes, map, robot, goal)?;
         while !planning.advance(BETWEEN_LOOKS) {
             if stop.asked() {
                 return Err(Failure::Interrupted);
@@ -164,9 +165,9 @@ impl Plan {
         &self,
         guide: Guide,
         map: &StaticMap,
-        robot_radius: f64,
+        robot: RobotRoom,
     ) -> Result<Planning> {
-        Planning::new(guide, self.nodes, map, robot_radius, self.goal)
+        Planning::new(guide, self.nodes, map, robot, self.goal)
     }
 
     /// The goal in m.

@@ -5,8 +5,8 @@ use crate::guide::{Detour, Guidance, LocalGoal, Takeover};
 use crate::safe::settings::SafeNavigation;
 use crate::safe::surroundings::Surroundings;
 use crate::shield::{
-    Course, Decision, Deviation, Guard, ShieldLimits, Status, TwistGuard, TwistState, TwistView,
-    Verifier, View,
+    BodyCommand, Course, Decision, Deviation, Guard, OutlineGuard, ShieldLimits, Status,
+    TwistGuard, TwistState, TwistView, Verifier, View, braking_periods,
 };
 use crate::trace::{Examined, Trace};
 use crate::yielding::{Outlook, Yielder};
@@ -15,7 +15,7 @@ use navigation_world::robots::differential::{DifferentialLimits, Twist};
 use navigation_world::robots::drives::velocity_of;
 use navigation_world::world::geometry::RobotState;
 use navigation_world::world::scenario::Scenario;
-use numeric::error::Result;
+use numeric::error::{Failure, Given, Result};
 use numeric::lanes::Vector2;
 
 /// A velocity beyond a limit by less than this share of it is within: the robot shortens it itself.
@@ -30,6 +30,8 @@ pub struct SafeLaw {
     pub(super) guard: Option<Guard>,
     /// The shield of a robot with two wheels.
     twist_guard: Option<TwistGuard>,
+    /// Verifies for a robot that is no disc.
+    outline: Option<OutlineGuard>,
     /// The plan that the robot executes: it was verified, or nothing was and it brakes.
     course: Option<Course>,
     yielder: Option<Yielder>,
@@ -95,7 +97,19 @@ impl SafeLaw {
         let twist_guard = family.shield.zip(wheels).map(|(shield, wheels)| {
             TwistGuard::new(shield, DifferentialLimits::from(wheels), &limits)
         });
+        if scenario.footprint.is_some() && family.foresight.is_some() {
+            let rule = "be left out for a robot with a footprint, which its plans do not know";
+            let given = Given::Found("foresight".into());
+            return Err(Failure::invalid("foresight", rule, given));
+        }
+        let outlined = family.shield.zip(scenario.footprint.clone());
+        let outline = outlined.map(|(shield, outline)| OutlineGuard {
+            shield,
+            outline,
+            wheels: wheels.is_some(),
+        });
         Ok(Self {
+            outline,
             twist_guard: twist_guard.transpose()?,
             course: None,
             guard: family
@@ -183,13 +197,7 @@ impl Law<f64> for SafeLaw {
                 to_goal,
                 foreseer.as_mut(),
             ),
-            None => self.decide(
-                situation.time,
-                &now,
-                &mut wanted,
-                to_goal,
-                foreseer.as_mut(),
-            ),
+            None => self.decide(situation, &now, &mut wanted, to_goal, foreseer.as_mut()),
         };
         self.foreseer = foreseer;
         self.trace = Trace {
@@ -230,7 +238,8 @@ impl Law<f64> for SafeLaw {
     }
 
     fn examined(&self) -> Option<Examined> {
-        let guard = self.guard.filter(|_| self.twist_guard.is_none())?;
+        let plain = self.twist_guard.is_none() && self.outline.is_none();
+        let guard = self.guard.filter(|_| plain)?;
         let (robot, command) = (self.measured, self.trace.command);
         let plan = guard.plan(&robot, command);
         let share = |part: u32| f64::from(part) / f64::from(PARTS_OF_PLAN);
@@ -384,6 +393,16 @@ impl SafeLaw {
         }
     }
 
+    /// What verifies for a robot that is no disc; one that is off its plan may be as far off again.
+    fn outline_now(&self, now: &Present) -> Option<OutlineGuard> {
+        let outline = self.outline.as_ref()?;
+        Some(if now.off.is_some() {
+            outline.doubled()
+        } else {
+            outline.clone()
+        })
+    }
+
     /// Yielding, then the shield, for a robot with two wheels.
     fn turn(
         &mut self,
@@ -418,9 +437,10 @@ impl SafeLaw {
             people: &self.around.people,
             walls: self.around.walls(),
         };
+        let outline = self.outline_now(now);
         let (mut twist, status) = match foreseer {
             Some(foreseer) => self.foreseen_twist(foreseer, &guard, &view, wanted, to_goal),
-            None => self.turned(&guard, &view, &robot, *wanted, to_goal),
+            None => self.turned((&guard, outline.as_ref()), &view, &robot, *wanted, to_goal),
         };
         match planned {
             Some((since, course)) if status == Status::Braking => {
@@ -441,7 +461,7 @@ impl SafeLaw {
     /// Yielding, then the shield.
     fn decide(
         &mut self,
-        time: f64,
+        situation: &Situation<'_, f64>,
         now: &Present,
         wanted: &mut Vector2<f64>,
         to_goal: Vector2<f64>,
@@ -455,9 +475,11 @@ impl SafeLaw {
                 guard
             }
         });
+        let outline = self.outline_now(now);
+        let outline = outline.as_ref().map(|outline| (outline, situation.heading));
         let mut decision = match foreseer {
             Some(foreseer) => self.foreseen(foreseer, guard.as_ref(), robot, wanted, to_goal),
-            None => self.judged(guard.as_ref(), robot, *wanted, to_goal),
+            None => self.judged((guard.as_ref(), outline), robot, *wanted, to_goal),
         };
         if guard.is_none() {
             return decision;
@@ -474,7 +496,8 @@ impl SafeLaw {
                     decision.velocity = self.limits.clipped(robot.velocity, rest);
                 }
                 let command = decision.velocity;
-                self.course = Some(Course::of_velocity(time, robot, command, &self.limits));
+                let begun = situation.time;
+                self.course = Some(Course::of_velocity(begun, robot, command, &self.limits));
             }
         }
         decision
@@ -483,7 +506,7 @@ impl SafeLaw {
     /// Yielding and shield for a wanted velocity of a robot with two wheels.
     fn turned(
         &self,
-        guard: &TwistGuard,
+        (guard, outline): (&TwistGuard, Option<&OutlineGuard>),
         view: &TwistView<'_>,
         robot: &RobotState<f64>,
         wanted: Vector2<f64>,
@@ -495,18 +518,28 @@ impl SafeLaw {
             .clipped(robot.velocity, self.limits.slowed(wanted));
         // It drives backwards only to give way.
         let twist = |velocity: Vector2<f64>| guard.toward(state, velocity, velocity != kept);
-        let verified = |velocity| guard.verified(view, twist(velocity));
-        match self.give_way(robot, wanted, to_goal, verified) {
+        let verified = |twist: Twist| match outline {
+            Some(outline) => {
+                let times = guard.limits.period * guard.limits.braking_periods(twist);
+                let command = BodyCommand::of_twist(state, twist, [guard.limits.period, times]);
+                outline.verified(&command, view.people, &view.walls)
+            }
+            None => guard.verified(view, twist),
+        };
+        match self.give_way(robot, wanted, to_goal, |velocity| verified(twist(velocity))) {
             Some(velocity) if velocity == kept => (twist(velocity), Status::Kept),
             Some(velocity) => (twist(velocity), Status::Changed),
-            None => guard.decide(view, guard.toward(state, self.limits.slowed(wanted), false)),
+            None => {
+                let wish = guard.toward(state, self.limits.slowed(wanted), false);
+                guard.decide_by(state, wish, verified)
+            }
         }
     }
 
     /// Command of yielding and shield for a wanted velocity.
     fn judged(
         &self,
-        guard: Option<&Guard>,
+        (guard, outline): (Option<&Guard>, Option<(&OutlineGuard, f64)>),
         robot: &RobotState<f64>,
         wanted: Vector2<f64>,
         to_goal: Vector2<f64>,
@@ -520,11 +553,23 @@ impl SafeLaw {
         let kept = self
             .limits
             .clipped(robot.velocity, self.limits.slowed(wanted));
-        let verifier = guard.filter(|_| self.yielder.is_some());
+        let verifier = guard.filter(|_| self.yielder.is_some() && outline.is_none());
         let mut verifier = verifier.map(|guard| Verifier::new(guard, view));
-        let verified = |velocity| {
-            let verifier = verifier.as_mut();
-            verifier.is_none_or(|verifier| verifier.admits(velocity))
+        let of_outline = |outline: &OutlineGuard, heading: f64, velocity: Vector2<f64>| {
+            let period = self.limits.period;
+            let braking = braking_periods(velocity.norm(), &self.limits) * period;
+            let command = BodyCommand::of_velocity(robot, heading, velocity, [period, braking]);
+            outline.verified(&command, view.people, &view.walls)
+        };
+        let verified = |velocity: Vector2<f64>| match outline {
+            Some((outline, heading)) => {
+                self.limits.reaches(robot.velocity, velocity)
+                    && of_outline(outline, heading, velocity)
+            }
+            None => {
+                let verifier = verifier.as_mut();
+                verifier.is_none_or(|verifier| verifier.admits(velocity))
+            }
         };
         if let Some(velocity) = self.give_way(robot, wanted, to_goal, verified) {
             let status = if velocity == kept {
@@ -533,6 +578,11 @@ impl SafeLaw {
                 Status::Changed
             };
             return Decision { velocity, status };
+        }
+        if let Some((guard, (outline, heading))) = guard.zip(outline) {
+            return guard.decide_by(&view, wanted, |velocity| {
+                of_outline(outline, heading, velocity)
+            });
         }
         match guard {
             Some(guard) => guard.decide(&view, wanted),

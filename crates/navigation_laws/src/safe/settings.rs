@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::LawFamily;
 use crate::foresight::Foresight;
-use crate::guide::{Guidance, Guide, TakeoverOptions};
+use crate::guide::{Guidance, Guide, RobotRoom, TakeoverOptions};
 use crate::safe::boundary::boundary_obstacle;
 use crate::safe::plans::Plans;
 use crate::shield::Shield;
@@ -110,10 +110,13 @@ impl SafeNavigation {
         let Some(guide) = self.guide else {
             return Ok(None);
         };
-        let radius = scenario.robot.radius;
+        let robot = RobotRoom {
+            least: scenario.least_room(),
+            turning: scenario.robot.radius,
+        };
         let ends = [scenario.start, scenario.goal];
-        let plan = self.plans.get(&guide, self.map.as_ref(), radius, ends)?;
-        Ok(Some(Guidance::new(guide, radius, plan)))
+        let plan = self.plans.get(&guide, self.map.as_ref(), robot, ends)?;
+        Ok(Some(Guidance::new(guide, robot, plan)))
     }
 }
 
@@ -129,7 +132,12 @@ fn slowed(scenario: &Scenario, speed: f64) -> Result<Scenario> {
 
 /// Refuses a start in contact with the map, and a goal that the robot cannot stand on.
 fn check_ends(map: &StaticMap, scenario: &Scenario) -> Result<()> {
-    let radius = scenario.robot.radius;
+    if scenario.footprint.is_some() && scenario.distance_from(map, scenario.start) <= 0.0 {
+        let rule = "not be in contact with the map";
+        let given = Given::Pair(scenario.start);
+        return Err(Failure::invalid("start", rule, given).mended_by("the footprint overlaps it"));
+    }
+    let radius = scenario.least_room();
     let check = |name: &str, place: [f64; 2], words: &str, allowed: fn(f64, f64) -> bool| {
         let clearance = map.clearance(place.into());
         if allowed(clearance, radius) {

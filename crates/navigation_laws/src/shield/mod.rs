@@ -11,6 +11,7 @@ mod blind;
 mod bound;
 mod course;
 mod half_disc;
+mod outline;
 mod person;
 mod plan;
 mod reading;
@@ -24,6 +25,7 @@ pub use blind::{BlindCorner, CornerEdge};
 pub use bound::speed_bound;
 pub use course::Course;
 pub use half_disc::half_disc_distance;
+pub use outline::{BodyCommand, OutlineGuard};
 pub use person::{KnownVelocity, Person};
 pub use plan::{BrakingPlan, braking, braking_periods};
 pub use reading::PlanTimes;
@@ -230,7 +232,7 @@ impl ShieldLimits {
     }
 
     /// Whether a velocity is reached within a period.
-    fn reaches(&self, before: Vector2<f64>, velocity: Vector2<f64>) -> bool {
+    pub(crate) fn reaches(&self, before: Vector2<f64>, velocity: Vector2<f64>) -> bool {
         let within = 1.0 + SPEED_ROUNDING;
         velocity.norm() <= self.max_speed * within
             && (velocity - before).norm() <= self.change() * within
@@ -388,17 +390,48 @@ impl Guard {
             };
         }
         let near: Vec<Person> = self.near(view).copied().collect();
-        self.project(verifier.among(&near), view, wanted)
-            .map_or_else(
-                || Decision {
-                    velocity: braking(view.robot.velocity, &self.limits),
-                    status: Status::Braking,
-                },
-                |velocity| Decision {
-                    velocity,
-                    status: Status::Changed,
-                },
-            )
+        let mut verifier = verifier.among(&near);
+        self.nearest(view, wanted, |velocity| verifier.admits(velocity))
+    }
+
+    /// The admitted velocity nearest to one that the robot can take up and that is not admitted.
+    fn nearest(
+        &self,
+        view: &View<'_>,
+        wanted: Vector2<f64>,
+        admits: impl FnMut(Vector2<f64>) -> bool,
+    ) -> Decision {
+        self.project(admits, view, wanted).map_or_else(
+            || Decision {
+                velocity: braking(view.robot.velocity, &self.limits),
+                status: Status::Braking,
+            },
+            |velocity| Decision {
+                velocity,
+                status: Status::Changed,
+            },
+        )
+    }
+
+    /// The velocity nearest to the wanted one that somebody else admits of those that the robot can take up.
+    #[must_use]
+    pub fn decide_by(
+        &self,
+        view: &View<'_>,
+        wanted: Vector2<f64>,
+        mut admits: impl FnMut(Vector2<f64>) -> bool,
+    ) -> Decision {
+        let wanted = self.clipped(&view.robot, wanted);
+        if admits(wanted) {
+            return Decision {
+                velocity: wanted,
+                status: Status::Kept,
+            };
+        }
+        let before = view.robot.velocity;
+        self.nearest(view, wanted, |velocity| {
+            self.limits.reaches(before, velocity) && admits(velocity)
+        })
     }
 
     /// From where the search takes angles: from the direction of slowing down, toward the side on which
@@ -437,7 +470,7 @@ impl Guard {
     /// The verified velocity nearest to one that is reachable but not verified.
     fn project(
         &self,
-        mut verifier: Verifier<'_>,
+        mut admits: impl FnMut(Vector2<f64>) -> bool,
         view: &View<'_>,
         wanted: Vector2<f64>,
     ) -> Option<Vector2<f64>> {
@@ -448,7 +481,7 @@ impl Guard {
         for velocity in tried {
             let distance = (velocity - wanted).norm();
             let nearer = first.is_none_or(|(least, _)| distance < least);
-            if nearer && verifier.admits(velocity) {
+            if nearer && admits(velocity) {
                 first = Some((distance, velocity));
             }
         }
@@ -458,7 +491,7 @@ impl Guard {
             wanted,
             farthest,
             first.map(|(_, velocity)| velocity),
-            |velocity| verifier.admits(velocity),
+            admits,
         )
     }
 }

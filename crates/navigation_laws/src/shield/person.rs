@@ -90,6 +90,17 @@ impl Person {
         worst.max(self.distance(place, radius, look, way) - spread)
     }
 
+    /// `g` of any set, by its distance from the center when that is moved by a way, in m.
+    pub(super) fn beyond(&self, time: f64, distance: impl Fn(Vector2<f64>) -> f64) -> f64 {
+        let worst = distance(Vector2::zeros()) - self.reach(time);
+        let Some(known) = &self.known else {
+            return worst;
+        };
+        let age = self.latency + time;
+        let spread = self.position_error + (known.error + 0.5 * known.acceleration * age) * age;
+        worst.max(distance(known.velocity * age) - spread)
+    }
+
     /// Distance of the outline, moved by a way, from the half discs of a look; of rectangles a lower bound.
     #[inline(always)]
     fn distance(&self, place: Vector2<f64>, radius: f64, look: &Look, way: Vector2<f64>) -> f64 {

@@ -169,17 +169,28 @@ impl TwistGuard {
     /// The verified twist nearest to a wanted one, or the rest of the last plan.
     #[must_use]
     pub fn decide(&self, view: &TwistView<'_>, wanted: Twist) -> (Twist, Status) {
-        if self.verified(view, wanted) {
+        self.decide_by(&view.robot, wanted, |twist| self.verified(view, twist))
+    }
+
+    /// The admitted twist nearest to a wanted one, or the rest of the last plan.
+    #[must_use]
+    pub fn decide_by(
+        &self,
+        robot: &TwistState,
+        wanted: Twist,
+        admits: impl Fn(Twist) -> bool,
+    ) -> (Twist, Status) {
+        if admits(wanted) {
             return (wanted, Status::Kept);
         }
-        let tried = self.candidates(&view.robot, wanted);
+        let tried = self.candidates(robot, wanted);
         let priced = tried.iter().enumerate();
         let mut order: Vec<(f64, usize)> = priced.map(|(place, tried)| (tried.0, place)).collect();
         sort_pairs(&mut order);
         let mut twists = order.iter().map(|(_, place)| tried[*place].1);
-        match twists.find(|twist| self.verified(view, *twist)) {
+        match twists.find(|twist| admits(*twist)) {
             Some(twist) => (twist, Status::Changed),
-            None => (self.limits.braking(view.robot.twist), Status::Braking),
+            None => (self.limits.braking(robot.twist), Status::Braking),
         }
     }
 

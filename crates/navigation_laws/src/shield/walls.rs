@@ -1,5 +1,7 @@
 //! Static obstacles of the shield: rectangles that stand, and the map.
 
+use navigation_world::world::footprint::{Footprint, Sweep};
+use navigation_world::world::frame::Frame;
 use navigation_world::world::map::StaticMap;
 use navigation_world::world::shape::PlacedShape;
 use numeric::lanes::Vector2;
@@ -37,6 +39,31 @@ impl StaticObstacles<'_> {
         let least = distances.fold(most, f64::min);
         self.map
             .map_or(least, |map| map.clearance_up_to(point, least))
+    }
+
+    /// Distance of an outline at a pose from the nearest wall in m, zero where they meet; all that is at least `most` away
+    /// counts as that far.
+    pub(super) fn clearance_of(&self, outline: &Footprint, pose: &Frame, most: f64) -> f64 {
+        let distances = self.shapes.iter();
+        let distances = distances.map(|shape| outline.separation(pose, shape).distance.max(0.0));
+        let least = distances.fold(most, f64::min);
+        self.map
+            .map_or(least, |map| outline.clearance(pose, map, least))
+    }
+
+    /// Whether an outline stays at least so far from every wall while it moves from a pose, in m.
+    pub(super) fn sweep_keeps(
+        &self,
+        outline: &Footprint,
+        pose: &Frame,
+        sweep: Sweep,
+        least: f64,
+    ) -> bool {
+        let apart = |shape: &PlacedShape| outline.keeps_off_shape(pose, sweep, shape, least);
+        self.shapes.iter().all(apart)
+            && self
+                .map
+                .is_none_or(|map| outline.keeps_off(pose, sweep, map, least))
     }
 
     /// Whether all points of a segment are at least so far from every wall, in m.

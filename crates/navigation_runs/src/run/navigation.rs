@@ -321,6 +321,7 @@ impl<L: Listener> Navigation<L> {
         runs.position = reading.robot.position;
         runs.velocity = reading.robot.velocity;
         runs.speed = reading.speed;
+        runs.face(reading.heading);
         runs.account(&self.scene.frames[1], before, later, true);
         if runs.running {
             return 1.0;

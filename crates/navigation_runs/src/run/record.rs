@@ -241,6 +241,18 @@ impl Recorder<f64> for TrajectoryRecorder {
     }
 }
 
+impl TrajectoryRecorder {
+    /// Puts other distances into the last row, if they are recorded and it was kept.
+    pub fn set_distances(&mut self, distances: impl ExactSizeIterator<Item = f64>) {
+        let kept = self.left + 1 == self.every;
+        if self.wanted.distance && kept {
+            let last = self.columns.distance.len() - distances.len();
+            self.columns.distance.truncate(last);
+            self.columns.distance.extend(distances);
+        }
+    }
+}
+
 /// Position of an obstacle in m; NaN while it is absent.
 fn place_of(body: &Body) -> [f64; 2] {
     if body.state.present {

@@ -1,6 +1,8 @@
 //! Contacts with maps: what stands counts whether or not it is an obstacle of the scenario.
 
 use navigation_world::sensing::SensorOptions;
+use navigation_world::world::footprint::Footprint;
+use navigation_world::world::frame::Frame;
 use navigation_world::world::map::StaticMap;
 use navigation_world::world::scenario::Scenario;
 use numeric::lanes::{Planar, Real, Truth, Vector2};
@@ -93,6 +95,24 @@ impl<R: Real> WallContacts<R> {
             seen: Vector2::new(x, y),
             spare,
         })
+    }
+
+    /// Distance in m of an outline at a pose from the maps; all that is at least `most` away counts as that far.
+    pub fn clearance_of(&self, outline: &Footprint, pose: &Frame, most: f64) -> f64 {
+        let maps = self.maps.0.iter();
+        maps.fold(most, |least, map| outline.clearance(pose, map, least))
+    }
+
+    /// Takes down a distance of the robot in the first lane in m, and a contact with its time in s and its speed in m/s;
+    /// returns whether that is the first one.
+    pub fn note(&mut self, distance: f64, contact: Option<(f64, f64)>) -> bool {
+        self.least = self.least.replace(0, self.least.lane(0).min(distance));
+        let Some((time, speed)) = contact.filter(|_| self.contact_time.lane(0).is_nan()) else {
+            return false;
+        };
+        self.contact_time = self.contact_time.replace(0, time);
+        self.contact_speed = self.contact_speed.replace(0, speed);
+        true
     }
 
     /// A run begins in a lane.

@@ -1,10 +1,16 @@
 //! Records of a run of a robot as built.
 
+use std::sync::Arc;
+
 use crate::run::record::{Recorder, Trajectory, TrajectoryRecorder};
 use navigation_laws::Command;
 use navigation_world::robots::drives::Reading;
+use navigation_world::world::footprint::Footprint;
+use navigation_world::world::frame::Frame;
 use navigation_world::world::geometry::Body;
 use navigation_world::world::scenario::Scenario;
+use navigation_world::world::shape::PlacedShape;
+use numeric::lanes::Planar;
 
 /// Columns of a recorded run; vectors of the plane and wheels are interleaved.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -27,6 +33,20 @@ pub struct AsBuiltTrajectory {
     pub seen_position: Vec<f64>,
 }
 
+/// Distance `d` of a disc around a robot that is as far from an obstacle as its outline is; NaN while that is absent.
+pub(super) fn distance_of(outline: &Footprint, radius: f64, reading: &Reading, body: &Body) -> f64 {
+    if !body.state.present {
+        return f64::NAN;
+    }
+    let pose = Frame::at(reading.robot.position.lane(0), reading.heading);
+    let placed = PlacedShape {
+        center: body.state.position.into(),
+        shape: body.shape,
+    };
+    let gap = outline.separation(&pose, &placed).distance;
+    (gap + radius + body.shape.inner_radius()).max(0.0)
+}
+
 /// Listens to a run of a robot as built.
 pub trait Listener {
     /// A force was computed from a position in m as the law knows it.
@@ -46,6 +66,7 @@ pub struct Everything {
     command: Command<f64>,
     seen: [f64; 2],
     columns: AsBuiltTrajectory,
+    outline: Option<(Arc<Footprint>, f64)>,
 }
 
 impl Everything {
@@ -58,6 +79,10 @@ impl Everything {
                 lyapunov: f64::NAN,
             },
             seen: scenario.start,
+            outline: scenario
+                .footprint
+                .clone()
+                .map(|footprint| (footprint, scenario.robot.radius)),
             columns: AsBuiltTrajectory {
                 wheels,
                 ..AsBuiltTrajectory::default()
@@ -90,6 +115,12 @@ impl Listener for Everything {
             &self.command,
             bodies,
         );
+        if let Some((outline, radius)) = &self.outline {
+            let distances = bodies
+                .iter()
+                .map(|body| distance_of(outline, *radius, reading, body));
+            self.motion.set_distances(distances);
+        }
         let columns = &mut self.columns;
         let wheels = columns.wheels;
         columns.heading.push(reading.heading);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::run::Interrupted;
 use crate::run::any_law::AnyLaw;
 use crate::run::as_built::AsBuilt;
-use crate::run::as_built::history::Listener;
+use crate::run::as_built::history::{Listener, distance_of};
 use crate::run::as_built::run::clock_of;
 use crate::run::episode::Episode;
 use crate::run::metrics::{Nominal, Weights, score};
@@ -13,6 +13,7 @@ use crate::run::nominal::Ways;
 use crate::run::outcome::{Contact, RunSummary};
 use crate::run::table::{BatchTable, Cell};
 use navigation_world::robots::drives::Reading;
+use navigation_world::world::footprint::Footprint;
 use navigation_world::world::geometry::Body;
 use navigation_world::world::scenario::Scenario;
 use numeric::error::{Failure, Given, Result};
@@ -35,12 +36,16 @@ struct Sampled {
     kept: Histories,
     every: usize,
     next: usize,
+    outline: Option<(Arc<Footprint>, f64)>,
 }
 
 impl Sampled {
     fn keep(&mut self, time: f64, reading: &Reading, bodies: &[Body]) {
         let position = reading.robot.position;
         let distance = |body: &Body| {
+            if let Some((outline, radius)) = &self.outline {
+                return distance_of(outline, *radius, reading, body);
+            }
             if body.state.present {
                 body.offset(position).distance_squared.sqrt()
             } else {
@@ -177,6 +182,10 @@ impl Many<'_> {
             kept: Histories::default(),
             every: clock_of(scenario, self.built)?.steps_per_sample,
             next: 0,
+            outline: scenario
+                .footprint
+                .clone()
+                .map(|footprint| (footprint, scenario.robot.radius)),
         };
         let (summary, sampled) = self.one(scenario, law, self.built, sampled)?;
         Ok((summary, sampled.kept))

@@ -43,6 +43,13 @@ impl<W: World, R: Real> LaneState<W, R> {
         }
         self.squared_current += R::select(self.running, squared, R::zero());
         self.path += R::select(self.running, way, R::zero());
+        if self.outline.is_some() {
+            let since = (before.lane(0).into(), since.time.lane(0));
+            let end = self.end_time.lane(0);
+            let end = if end.is_nan() { time.lane(0) } else { end };
+            self.watch_outline(bodies, Some(since), end);
+            return;
+        }
         for (slot, body) in bodies.iter().enumerate() {
             if self.watched[slot] {
                 self.watch(self.obstacle(slot), body, time, self.running, Some(&since));
@@ -137,6 +144,9 @@ impl<W: World, R: Real> LaneState<W, R> {
             let instant = (time.lane(lane) - step) + share.lane(lane) * step;
             self.arrival_time = self.arrival_time.replace(lane, instant);
             self.end_time = self.end_time.replace(lane, instant);
+            if self.outline.is_some() {
+                continue;
+            }
             // Only this lane is watched at its own instant.
             let others = (0..R::WIDTH).filter(|other| *other != lane);
             let only = others.fold(R::Mask::splat(true), Mask::without);

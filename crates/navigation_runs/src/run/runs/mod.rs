@@ -3,6 +3,7 @@
 mod account;
 mod dormant;
 mod ends;
+mod outline;
 mod totals;
 mod touch;
 
@@ -17,6 +18,7 @@ use navigation_world::sensing::sampled::Past;
 use navigation_world::world::geometry::Body;
 use navigation_world::world::scenario::{PlacedObstacle, Scenario};
 use numeric::lanes::{Mask, Planar, Real, Vector2};
+use outline::OutlineState;
 use touch::{ContactState, alert_squared};
 
 /// Room for rounding where a distance bound spares work, in m.
@@ -76,6 +78,8 @@ pub(crate) struct LaneState<W: World, R: Real> {
     touches: Vec<ContactState>,
     /// Clearance and contacts of walls, where there are any.
     walls: Option<Box<WallContacts<R>>>,
+    /// Of a robot that is no disc: runs of it are stepped by themselves.
+    outline: Option<Box<OutlineState>>,
 }
 
 impl<W: World, R: Real> LaneState<W, R> {
@@ -87,6 +91,11 @@ impl<W: World, R: Real> LaneState<W, R> {
         maps: Maps,
     ) -> Self {
         let mut runs = Self::at_start(scenario, clock, bodies.len(), maps);
+        if runs.outline.is_some() {
+            let bodies: Vec<_> = bodies.collect();
+            runs.watch_outline(&bodies, None, 0.0);
+            return runs;
+        }
         for (index, body) in bodies.enumerate() {
             runs.watch(index, &body, R::zero(), runs.running, None);
         }
@@ -133,6 +142,10 @@ impl<W: World, R: Real> LaneState<W, R> {
             min_distance_squared: vec![R::zero(); count],
             touches: vec![ContactState::default(); count * R::WIDTH],
             walls: WallContacts::new(maps, scenario.robot.radius).map(Box::new),
+            outline: scenario.footprint.clone().map(|footprint| {
+                let (radius, heading) = (scenario.robot.radius, scenario.rules.heading);
+                Box::new(OutlineState::new(footprint, radius, heading))
+            }),
             scenario: world,
         };
         let world = runs.scenario.clone();
@@ -140,7 +153,9 @@ impl<W: World, R: Real> LaneState<W, R> {
             runs.take_obstacles(lane, world.of_lane(lane));
             runs.enter(lane, world.of_lane(lane));
         }
-        runs.watch_walls(None, R::zero(), runs.running);
+        if runs.outline.is_none() {
+            runs.watch_walls(None, R::zero(), runs.running);
+        }
         runs.remember();
         runs
     }

@@ -22,9 +22,9 @@ pub(super) struct ContactState {
     /// Whether the obstacle appeared in the scene where the robot was, and touched it then.
     pub apart: bool,
     /// Whether that contact lasts.
-    appearing: bool,
+    pub appearing: bool,
     /// Whether they have overlapped by [`crate::run::DECIDED_OVERLAP`].
-    decided: bool,
+    pub decided: bool,
 }
 
 /// Where robots were at the start of a motion step, and when, in s.
@@ -119,7 +119,7 @@ impl<W: World, R: Real> LaneState<W, R> {
     }
 
     /// Whether an obstacle has come into the scene so shortly before an instant that nobody is to blame.
-    fn appears(&self, placed: &PlacedObstacle, time: f64) -> bool {
+    pub(super) fn appears(&self, placed: &PlacedObstacle, time: f64) -> bool {
         let (from, _) = placed.obstacle.motion.presence();
         let step = self.clock.step;
         // The first instant that shows it.

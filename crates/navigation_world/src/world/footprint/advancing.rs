@@ -7,15 +7,54 @@ use super::{Footprint, Side};
 /// Twist of a robot at an instant: velocity ahead in m/s and turn rate in rad/s, positive to the left.
 pub type Twist = [f64; 2];
 
+/// Motion of a body at an instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyMotion {
+    /// Velocity of the origin in coordinates of the body, in m/s.
+    pub velocity: Vector2<f64>,
+    /// Turn rate in rad/s, positive to the left.
+    pub turn_rate: f64,
+}
+
+impl BodyMotion {
+    /// At rest.
+    pub const REST: Self = Self {
+        velocity: Vector2::new(0.0, 0.0),
+        turn_rate: 0.0,
+    };
+
+    /// Velocity of a point of the body, in its coordinates, in m/s.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, point: Vector2<f64>) -> Vector2<f64> {
+        self.velocity + Vector2::new(-point.y, point.x) * self.turn_rate
+    }
+}
+
+impl From<Twist> for BodyMotion {
+    fn from([ahead, turn_rate]: Twist) -> Self {
+        Self {
+            velocity: Vector2::new(ahead, 0.0),
+            turn_rate,
+        }
+    }
+}
+
 impl Footprint {
     /// Distance in m of a point from the room ahead of the outline: all places at most `depth` in m outward of a point of
     /// the outline that moves outward, and from there inward to the middle; infinite at rest.
     #[must_use]
-    pub fn distance_from_room_ahead(&self, point: Vector2<f64>, twist: Twist, depth: f64) -> f64 {
+    pub fn distance_from_room_ahead(
+        &self,
+        point: Vector2<f64>,
+        motion: impl Into<BodyMotion>,
+        depth: f64,
+    ) -> f64 {
+        let motion = &motion.into();
         let strips = self
             .sides
             .iter()
-            .map(|side| side.distance_from_strip(point, twist, depth));
+            .map(|side| side.distance_from_strip(point, motion, depth));
         let count = self.sides.len();
         let sectors = (0..count).map(|index| {
             let normals = [
@@ -24,7 +63,7 @@ impl Footprint {
             ];
             from_sector(
                 point - self.corners[(index + 1) % count],
-                velocity(self.corners[(index + 1) % count], twist),
+                motion.at(self.corners[(index + 1) % count]),
                 normals,
                 depth,
             )
@@ -33,16 +72,10 @@ impl Footprint {
     }
 }
 
-/// Velocity of a point of the body in m/s.
-fn velocity(point: Vector2<f64>, [ahead, turn]: Twist) -> Vector2<f64> {
-    Vector2::new(ahead - turn * point.y, turn * point.x)
-}
-
 impl Side {
     /// Distance of a point in m from the strip ahead of the part of the side that moves outward.
-    fn distance_from_strip(&self, point: Vector2<f64>, twist: Twist, depth: f64) -> f64 {
-        let outward =
-            |share: f64| velocity(self.start + self.along * share, twist).dot(&self.normal);
+    fn distance_from_strip(&self, point: Vector2<f64>, motion: &BodyMotion, depth: f64) -> f64 {
+        let outward = |share: f64| motion.at(self.start + self.along * share).dot(&self.normal);
         let (first, last) = (outward(0.0), outward(self.length));
         let zero = self.length * first / (first - last);
         let [from, to] = match (first > 0.0, last > 0.0) {

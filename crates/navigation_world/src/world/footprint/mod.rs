@@ -3,9 +3,14 @@
 //! Coordinates are those of the body: the origin is the point that drives and turns (the middle of the axle), x ahead.
 
 mod advancing;
+mod contact;
 mod sweep;
 #[cfg(test)]
 mod tests;
+
+pub use advancing::{BodyMotion, Twist};
+pub use contact::Separation;
+pub use sweep::Sweep;
 
 use nalgebra::Vector2;
 
@@ -132,6 +137,13 @@ impl Footprint {
             .iter()
             .map(|side| side.offset)
             .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Half of the width of the straight lane around the x axis that holds the outline, in m.
+    #[must_use]
+    pub fn half_width(&self) -> f64 {
+        let beside = self.corners.iter().map(|corner| corner.y.abs());
+        beside.fold(0.0, f64::max)
     }
 
     /// Distance of a point in m; inside the outline minus the distance to the nearest side.

@@ -6,6 +6,31 @@ use nalgebra::Vector2;
 
 use super::{Arc, Footprint};
 
+/// Motion over a time with a constant twist, from a pose in whose coordinates it is told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sweep {
+    /// Velocity of the origin in coordinates of the body times the duration, in m.
+    pub way: Vector2<f64>,
+    /// Angle turned in rad, positive to the left.
+    pub angle: f64,
+}
+
+impl From<Arc> for Sweep {
+    fn from(arc: Arc) -> Self {
+        Self {
+            way: Vector2::new(arc.distance, 0.0),
+            angle: arc.angle,
+        }
+    }
+}
+
+impl Sweep {
+    /// Center of the turn in coordinates of the body, in m.
+    fn center(&self) -> Vector2<f64> {
+        Vector2::new(-self.way.y, self.way.x) / self.angle
+    }
+}
+
 /// Angles beyond the end of an arc that count as on it, in rad: a nearest place there is none less near.
 const ROUNDING: f64 = 1e-12;
 
@@ -45,7 +70,7 @@ impl ArcPiece {
 }
 
 /// Distance of a point from a segment in m.
-fn from_segment(point: Vector2<f64>, [start, end]: [Vector2<f64>; 2]) -> f64 {
+pub(super) fn from_segment(point: Vector2<f64>, [start, end]: [Vector2<f64>; 2]) -> f64 {
     let (along, way) = (end - start, point - start);
     let squared = along.norm_squared();
     let share = if squared > 0.0 {
@@ -75,14 +100,14 @@ impl Footprint {
     /// Least distance in m of a point from the outline on an arc, from its start in the body frame; zero if the outline
     /// reaches it.
     #[must_use]
-    pub fn swept_point(&self, point: Vector2<f64>, arc: Arc) -> f64 {
-        if arc.angle == 0.0 {
-            let way = [point, point - Vector2::new(arc.distance, 0.0)];
-            return self.distance_from_segment(way);
+    pub fn swept_point(&self, point: Vector2<f64>, motion: impl Into<Sweep>) -> f64 {
+        let sweep = motion.into();
+        if sweep.angle == 0.0 {
+            return self.distance_from_segment([point, point - sweep.way]);
         }
         // Seen from the body the point moves back on a circle around the center of the turn.
-        let center = Vector2::new(0.0, arc.distance / arc.angle);
-        let path = ArcPiece::new(center, point, -arc.angle);
+        let center = sweep.center();
+        let path = ArcPiece::new(center, point, -sweep.angle);
         let mut least = self.distance(point).min(self.distance(path.ends()[1]));
         for corner in &self.corners {
             let from = corner - center;
@@ -113,21 +138,21 @@ impl Footprint {
     /// Least distance in m of a segment from the outline on an arc, from its start in the body frame; zero if the
     /// outline reaches it.
     #[must_use]
-    pub fn swept_segment(&self, segment: [Vector2<f64>; 2], arc: Arc) -> f64 {
+    pub fn swept_segment(&self, segment: [Vector2<f64>; 2], motion: impl Into<Sweep>) -> f64 {
+        let sweep = motion.into();
         let mut least = self.distance_from_segment(segment);
         for end in segment {
-            least = least.min(self.swept_point(end, arc));
+            least = least.min(self.swept_point(end, sweep));
         }
         if least <= 0.0 {
             return 0.0;
         }
-        let straight = Vector2::new(arc.distance, 0.0);
         for corner in &self.corners {
-            let distance = if arc.angle == 0.0 {
-                between_segments([*corner, corner + straight], segment)
+            let distance = if sweep.angle == 0.0 {
+                between_segments([*corner, corner + sweep.way], segment)
             } else {
-                let center = Vector2::new(0.0, arc.distance / arc.angle);
-                between_arc_and_segment(&ArcPiece::new(center, *corner, arc.angle), segment)
+                let path = ArcPiece::new(sweep.center(), *corner, sweep.angle);
+                between_arc_and_segment(&path, segment)
             };
             least = least.min(distance);
         }
@@ -135,7 +160,7 @@ impl Footprint {
     }
 
     /// Distance of a segment from the outline in m, zero if they meet.
-    fn distance_from_segment(&self, segment: [Vector2<f64>; 2]) -> f64 {
+    pub(super) fn distance_from_segment(&self, segment: [Vector2<f64>; 2]) -> f64 {
         let ends = segment.map(|end| self.distance(end));
         let sides = self.sides.iter().map(|side| {
             let end = side.start + side.along * side.length;

@@ -1,7 +1,10 @@
 use nalgebra::Vector2;
 use proptest::prelude::*;
 
-use super::{Arc, Footprint};
+use super::{Arc, Footprint, Sweep};
+use crate::world::frame::Frame;
+use crate::world::map::{Capsule, MapShapes};
+use crate::world::shape::PlacedShape;
 
 fn rectangle() -> Footprint {
     let (a, b) = (0.254, 0.215);
@@ -181,5 +184,80 @@ fn outlines_that_are_none_are_refused() {
         ],
     ] {
         assert!(Footprint::polygon(&corners).is_err(), "{corners:?}");
+    }
+}
+
+/// Points of the outline of a convex polygon, as many on each side.
+fn contour(corners: &[Vector2<f64>], each: u32) -> Vec<Vector2<f64>> {
+    let count = corners.len();
+    (0..count)
+        .flat_map(|index| {
+            let [from, to] = [corners[index], corners[(index + 1) % count]];
+            (0..each).map(move |part| from + (to - from) * (f64::from(part) / f64::from(each)))
+        })
+        .collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn distances_of_shapes_are_least_among_their_points(
+        outline in outlines(), place in prop::array::uniform2(-1.5..1.5f64), angle in -4.0..4.0f64,
+        center in prop::array::uniform2(-1.5..1.5f64), sides in prop::array::uniform2(0.0..0.8f64), turn in -4.0..4.0f64
+    ) {
+        let pose = Frame::at(place, angle);
+        let disc = PlacedShape::disc(center, 0.5 * sides[0]);
+        let found = outline.separation(&pose, &disc);
+        let of_center = outline.signed_distance(pose.inward(disc.center - pose.position));
+        prop_assert!((found.distance - (of_center - 0.5 * sides[0])).abs() < 1e-12);
+        let rectangle = PlacedShape::turned(center, sides, turn);
+        let found = outline.separation(&pose, &rectangle);
+        let world = |own: &Vector2<f64>| pose.position + pose.outward(*own);
+        let own: Vec<_> = outline.corners().iter().map(world).collect();
+        let near = contour(&own, 200).iter().map(|point| rectangle.distance(*point)).fold(f64::INFINITY, f64::min);
+        let inside = outline.signed_distance(pose.inward(rectangle.center - pose.position)) <= 0.0;
+        let least = if inside { 0.0 } else { near };
+        prop_assert!((found.distance.max(0.0) - least).abs() < 2e-2, "{} {}", found.distance, least);
+        // Moved apart by what they overlap they touch.
+        if found.distance < -1e-9 {
+            let away = pose.outward(found.outward) * -found.distance;
+            let apart = PlacedShape { center: rectangle.center + away, ..rectangle };
+            prop_assert!(outline.separation(&pose, &apart).distance.abs() < 1e-9);
+        } else {
+            let touching = pose.position + pose.outward(found.place + found.outward * found.distance);
+            prop_assert!(rectangle.distance(touching) < 1e-9);
+        }
+    }
+
+    #[test]
+    fn moved_outlines_stay_off_what_all_their_poses_stay_off(
+        outline in outlines(), way in prop::array::uniform2(-0.8..0.8f64), angle in prop_oneof![Just(0.0), -2.0..2.0f64],
+        ends in prop::array::uniform4(-2.0..2.0f64)
+    ) {
+        let sweep = Sweep { way: way.into(), angle };
+        let start = Frame::at([0.3, -0.2], 0.7);
+        let wall = Capsule::wall([ends[0], ends[1]].into(), [ends[2], ends[3]].into(), 0.05);
+        let mut shapes = MapShapes::new();
+        prop_assume!(shapes.polyline(&[[ends[0], ends[1]], [ends[2], ends[3]]], 0.05).is_ok());
+        let map = shapes.map();
+        let least = (0..=400).map(|part| {
+            let share = f64::from(part) / 400.0;
+            let turned = share * angle;
+            let own = if angle == 0.0 {
+                sweep.way * share
+            } else {
+                let center = Vector2::new(-sweep.way.y, sweep.way.x) / angle;
+                let (sin, cos) = turned.sin_cos();
+                center - Vector2::new(cos * center.x - sin * center.y, sin * center.x + cos * center.y)
+            };
+            let place = start.position + start.outward(own);
+            outline.clearance(&Frame::at(place.into(), 0.7 + turned), &map, 9.0)
+        }).fold(f64::INFINITY, f64::min);
+        prop_assert!(!outline.keeps_off(&start, sweep, &map, least + 1e-9));
+        prop_assert!(least < 1e-2 || outline.keeps_off(&start, sweep, &map, least - 1e-2));
+        let at_start = outline.clearance(&start, &map, 9.0);
+        let ends = [wall.from, wall.to].map(|end| start.inward(end - start.position));
+        prop_assert!((at_start - (outline.distance_from_segment(ends) - 0.05).max(0.0)).abs() < 1e-12);
     }
 }

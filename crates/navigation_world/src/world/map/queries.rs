@@ -2,6 +2,7 @@
 
 use nalgebra::Vector2;
 
+use crate::world::map::Capsule;
 use crate::world::map::StaticMap;
 use crate::world::map::boundary::Beyond;
 use crate::world::map::index::BoundingBox;
@@ -36,6 +37,26 @@ impl StaticMap {
     }
 
     /// Whether a point is inside a filled polygon or an occupied cell.
+    pub(crate) fn is_inside(&self, point: Vector2<f64>) -> bool {
+        self.inside(point)
+    }
+
+    /// Visits all capsules within a reach in m of a place, and perhaps others; a visit returns the reach from then on,
+    /// a negative one to end.
+    pub(crate) fn visit_near(
+        &self,
+        place: Vector2<f64>,
+        reach: f64,
+        mut visit: impl FnMut(&Capsule) -> f64,
+    ) {
+        let squared = |reach: f64| reach.abs() * reach;
+        self.parts.index.visit(
+            squared(reach),
+            |bounds| Some(bounds.distance_squared(place)),
+            |_, capsule, _| squared(visit(capsule)),
+        );
+    }
+
     fn inside(&self, point: Vector2<f64>) -> bool {
         self.parts.grids.iter().any(|grid| grid.occupied_at(point))
             || (self.parts.outlines && self.turns_around(point) > 0)

@@ -2,11 +2,15 @@
 
 mod placed;
 
+use std::sync::Arc;
+
 pub use placed::PlacedObstacle;
 use placed::{place, place_all};
 
 use crate::robots::{DifferentialDriveRobot, HolonomicRobot};
 use crate::sensing::measurement::Measurement;
+use crate::world::footprint::Footprint;
+use crate::world::frame::Frame;
 use crate::world::map::StaticMap;
 use crate::world::obstacle::Obstacle;
 use crate::world::region::{RobotLimits, Sensing};
@@ -57,6 +61,8 @@ pub struct Scenario {
     pub robot: HolonomicRobot,
     /// Two-wheel robot that follows, if it is one.
     pub differential: Option<DifferentialDriveRobot>,
+    /// Outline of the robot, if it is no disc; its radius is then that of the circle around it.
+    pub footprint: Option<Arc<Footprint>>,
     /// Start of the robot in m.
     pub start: [f64; 2],
     /// Goal of the robot in m.
@@ -135,8 +141,22 @@ impl Scenario {
         rules: Rules,
         measurement: Option<Measurement>,
     ) -> Result<Self> {
+        Self::shaped((robot, None), ends, obstacles, rules, measurement)
+    }
+
+    /// Scenario of any robot with an outline of its own, whose radius is that of the circle around it.
+    ///
+    /// # Errors
+    /// Fails like [`Self::new`]; in contact is what touches the outline at the heading of the start.
+    pub fn shaped(
+        (robot, footprint): (Mover, Option<Arc<Footprint>>),
+        ends: [[f64; 2]; 2],
+        obstacles: Vec<Obstacle>,
+        rules: Rules,
+        measurement: Option<Measurement>,
+    ) -> Result<Self> {
         let sensing = Sensing::by(measurement);
-        let known = (&rules, &sensing);
+        let known = (&rules, &sensing, footprint);
         match robot {
             Mover::Holonomic(robot) => {
                 let limits = robot.checked()?.limits();
@@ -158,7 +178,7 @@ impl Scenario {
         limits: &RobotLimits,
         [start, goal]: [[f64; 2]; 2],
         obstacles: Vec<Obstacle>,
-        (rules, sensing): (&Rules, &Sensing),
+        (rules, sensing, footprint): (&Rules, &Sensing, Option<Arc<Footprint>>),
     ) -> Result<Self> {
         finite_pair("start", start)?;
         finite_pair("goal", goal)?;
@@ -171,10 +191,13 @@ impl Scenario {
             let rule = "be farther from the start than the arrival tolerance";
             return Err(Failure::invalid("goal", rule, Given::Pair(goal)));
         }
-        let (obstacles, blocked) = place_all(limits, [start, goal], obstacles, rules, sensing)?;
+        let body = footprint.as_deref();
+        let (obstacles, blocked) =
+            place_all((limits, body), [start, goal], obstacles, rules, sensing)?;
         Ok(Self {
             robot,
             differential: None,
+            footprint,
             start,
             goal,
             obstacles,
@@ -217,6 +240,7 @@ impl Scenario {
         Ok(Self {
             robot: point,
             differential,
+            footprint: None,
             start,
             goal,
             obstacles: placed.collect::<Result<_>>()?,
@@ -248,7 +272,9 @@ impl Scenario {
             let obstacles = self.obstacles.into_iter();
             let obstacles = obstacles.map(|placed| placed.obstacle);
             let ends = [self.start, self.goal];
-            (self.obstacles, self.blocked) = place_all(&robot, ends, obstacles, &rules, &sensing)?;
+            let body = self.footprint.as_deref();
+            (self.obstacles, self.blocked) =
+                place_all((&robot, body), ends, obstacles, &rules, &sensing)?;
         }
         self.measurement = measurement;
         self.seed = seed;
@@ -269,8 +295,13 @@ impl Scenario {
         let sensing = Sensing::by(self.measurement);
         let obstacles = self.obstacles.iter().map(|placed| placed.obstacle.clone());
         let ends = [self.start, self.goal];
-        (slowed.obstacles, slowed.blocked) =
-            place_all(&limits, ends, obstacles, &self.rules, &sensing)?;
+        (slowed.obstacles, slowed.blocked) = place_all(
+            (&limits, self.footprint.as_deref()),
+            ends,
+            obstacles,
+            &self.rules,
+            &sensing,
+        )?;
         Ok(slowed)
     }
 
@@ -293,6 +324,7 @@ impl Scenario {
         Self {
             robot: self.robot,
             differential: self.differential,
+            footprint: self.footprint.clone(),
             start: self.start,
             goal: self.goal,
             obstacles: Vec::new(),
@@ -312,6 +344,7 @@ impl Scenario {
             && self.goal == other.goal
             && self.robot == other.robot
             && self.differential == other.differential
+            && self.footprint == other.footprint
             && self.rules == other.rules
     }
 
@@ -385,11 +418,37 @@ impl Scenario {
         self.differential.as_ref()
     }
 
+    /// Least distance in m of a plain way through its middle: half the width of a robot with two wheels, the inner
+    /// radius of another outline, the radius of a disc.
+    #[must_use]
+    pub fn least_room(&self) -> f64 {
+        match &self.footprint {
+            Some(outline) if self.differential.is_some() => outline.half_width(),
+            Some(outline) => outline.inner_radius(),
+            None => self.robot.radius,
+        }
+    }
+
+    /// Distance in m of the robot from a map at a place, with the heading of the start; zero where they meet.
+    #[must_use]
+    pub fn distance_from(&self, map: &StaticMap, place: [f64; 2]) -> f64 {
+        let Some(outline) = &self.footprint else {
+            return (map.clearance(place.into()) - self.robot.radius).max(0.0);
+        };
+        let pose = Frame::at(place, self.rules.heading);
+        outline.clearance(&pose, map, f64::INFINITY)
+    }
+
     /// Returns the scenario if its robot moves as a point mass.
     ///
     /// # Errors
     /// The robot has two wheels.
     pub fn of_point_mass(&self) -> Result<()> {
+        if self.footprint.is_some() {
+            let rule = "be a disc here, where robots move as point masses";
+            let given = Given::Found("a robot with a footprint".into());
+            return Err(Failure::invalid("robot", rule, given));
+        }
         if self.differential.is_none() {
             return Ok(());
         }

@@ -1,8 +1,11 @@
 //! Obstacles with their regions, and the rules that regions and the ends of a way keep to.
 
+use crate::world::footprint::Footprint;
+use crate::world::frame::Frame;
 use crate::world::obstacle::{Obstacle, Regions, Shape};
 use crate::world::region::{self, RobotLimits, Sensing};
 use crate::world::scenario::Rules;
+use crate::world::shape::PlacedShape;
 use numeric::error::{Failure, Given, Result};
 
 /// Rounding of a critical radius that was computed as the contact distance, in m.
@@ -48,7 +51,7 @@ impl PlacedObstacle {
 /// # Errors
 /// A region breaks a rule, or the start touches an obstacle.
 pub(super) fn place_all(
-    robot: &RobotLimits,
+    (robot, outline): (&RobotLimits, Option<&Footprint>),
     [start, goal]: [[f64; 2]; 2],
     obstacles: impl IntoIterator<Item = Obstacle, IntoIter: ExactSizeIterator>,
     rules: &Rules,
@@ -65,7 +68,7 @@ pub(super) fn place_all(
     }
     let mut blocked = None;
     for (index, placed) in all.iter().enumerate() {
-        check_start(placed, index, start)?;
+        check_start(placed, index, (start, rules.heading), outline)?;
         blocked = blocked.or_else(|| goal_in_region(placed, index, goal).map(Box::new));
     }
     Ok((all, blocked))
@@ -175,8 +178,28 @@ fn too_near(
 }
 
 /// Refuses a start in contact with an obstacle.
-fn check_start(placed: &PlacedObstacle, index: usize, start: [f64; 2]) -> Result<()> {
+fn check_start(
+    placed: &PlacedObstacle,
+    index: usize,
+    (start, heading): ([f64; 2], f64),
+    outline: Option<&Footprint>,
+) -> Result<()> {
     let state = placed.obstacle.motion.at(0.0, &mut 0);
+    if let Some(outline) = outline {
+        let shape = PlacedShape {
+            center: state.position.into(),
+            shape: placed.obstacle.shape,
+        };
+        let gap = outline
+            .separation(&Frame::at(start, heading), &shape)
+            .distance;
+        if !state.present || gap > 0.0 {
+            return Ok(());
+        }
+        let rule = format!("not be in contact with obstacles[{index}]");
+        return Err(Failure::invalid("start", rule, Given::Pair(start))
+            .mended_by(format!("the footprint overlaps it by {} m", metres(-gap))));
+    }
     let distance = placed.obstacle.distance(state.position, start);
     let least = placed.contact_distance;
     if !state.present || distance > least {
