@@ -1,19 +1,51 @@
 //! Checked parameter objects behind the Python dataclasses.
 
+use std::sync::Arc;
+
 use numeric::error::Failure;
 use pyo3::prelude::*;
 use vff_core::robots::{self, DifferentialWheels, Wheels};
 use vff_core::sensing::measurement;
 use vff_core::sensing::measurement::{Distribution, Noisy};
+use vff_core::world::footprint;
 use vff_core::world::motion::{Motion, Segment};
 use vff_core::world::obstacle::{self, Limits};
 use vff_core::world::region::{self, Sensing};
 use vff_core::world::scenario::{self, Mover, Rules};
 
 use crate::errors::CoreError;
-use crate::keywords::{Keywords, taken, value_class, word};
+use crate::keywords::{Keywords, taken, word};
+use crate::robots::footprint::Footprint;
 
-value_class! {
+/// A class of robots: their numbers, and their outline if they are no discs.
+macro_rules! robot_class {
+    ($(#[$about:meta])* $name:ident($core:ty) of $given:ident $value:block) => {
+        $(#[$about])*
+        #[pyclass(frozen, module = "hrsafety._hrsafety")]
+        pub struct $name(pub $core, Outline);
+
+        #[pymethods]
+        impl $name {
+            #[new]
+            #[pyo3(signature = (footprint = None, **given))]
+            fn new(
+                footprint: Option<PyRef<'_, Footprint>>,
+                given: Option<Keywords<'_>>,
+            ) -> PyResult<Self> {
+                let $given = given.unwrap_or_default();
+                let core: $core = $value;
+                $given.done()?;
+                let outline = footprint.map(|footprint| Arc::new(footprint.0.clone()));
+                Ok(Self(core.checked().map_err(CoreError::from)?, outline))
+            }
+        }
+    };
+}
+
+/// Outline of a robot that is no disc.
+type Outline = Option<Arc<footprint::Footprint>>;
+
+robot_class! {
     /// Holonomic robot.
     HolonomicRobot(robots::HolonomicRobot) of given {
         let wheels = taken!(given: Wheels {
@@ -26,7 +58,7 @@ value_class! {
     }
 }
 
-value_class! {
+robot_class! {
     /// Differential-drive robot.
     DifferentialDriveRobot(robots::DifferentialDriveRobot) of given {
         let wheels = taken!(given: DifferentialWheels {
@@ -252,8 +284,8 @@ impl Scenario {
         let (measurement, seed) = noise;
         let measurement = measurement.map(|measurement| measurement.0);
         let ends = [ends.0.into(), ends.1.into()];
-        let scenario =
-            scenario::Scenario::sensed(mover_of(robot)?, ends, obstacles, rules, measurement);
+        let body = (mover_of(robot)?, outline_of(robot));
+        let scenario = scenario::Scenario::shaped(body, ends, obstacles, rules, measurement);
         Ok(Self(scenario.map_err(CoreError::from)?.reseeded(seed)))
     }
 
@@ -278,6 +310,16 @@ pub fn mover_of(robot: &Bound<'_, PyAny>) -> PyResult<Mover> {
         Ok(robot) => Mover::Holonomic(robot.get().0),
         Err(_) => Mover::Differential(robot.cast::<DifferentialDriveRobot>()?.get().0),
     })
+}
+
+/// Outline of a robot of either kind that is no disc.
+pub fn outline_of(robot: &Bound<'_, PyAny>) -> Outline {
+    let holonomic = robot.cast::<HolonomicRobot>();
+    let differential = robot.cast::<DifferentialDriveRobot>();
+    let of_either = holonomic.map(|robot| robot.get().1.clone()).ok();
+    of_either
+        .or_else(|| differential.map(|robot| robot.get().1.clone()).ok())
+        .flatten()
 }
 
 /// Critical and active radius of an obstacle for a robot.

@@ -13,7 +13,7 @@ use vff_core::world::random_scenes::{random_crowd, random_traffic};
 use vff_core::world::scenario::{self, Mover, Rules};
 
 use crate::errors::CoreError;
-use crate::parameters::{HolonomicRobot, Scenario, mover_of};
+use crate::parameters::{HolonomicRobot, Scenario, mover_of, outline_of};
 use crate::watch::{Report, here};
 
 /// Scenarios that crossed the boundary once.
@@ -56,7 +56,12 @@ impl Scenarios {
             seed: seed.as_slice()?,
         };
         let made = robot.py().detach(|| arrays.scenarios());
-        Ok(Self(Arc::new(made.map_err(CoreError::from)?)))
+        let made = made.map_err(CoreError::from)?;
+        let shaped = made.into_iter().map(|scenario| scenario::Scenario {
+            footprint: outline_of(robot),
+            ..scenario
+        });
+        Ok(Self(Arc::new(shaped.collect())))
     }
 
     /// Random traffic of a number of obstacles for each seed.

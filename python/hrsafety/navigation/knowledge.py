@@ -14,6 +14,7 @@ from hrsafety.navigation.obstacles.base import Obstacle
 from hrsafety.navigation.obstacles.moving_rectangle import Mobile
 from hrsafety.navigation.regions import region_radii
 from hrsafety.navigation.robots.as_built import AsBuilt
+from hrsafety.navigation.robots.bodies import least_reach
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.sensing.measurement import Measurement
@@ -169,12 +170,13 @@ def warnings_of(scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:
                 f"radius {regions.active_radius:.3g} m of what it reads: what moves at {sensor.max_speed:g} m/s is "
                 f"seen too late; give a larger {sensor.RANGE} or a smaller max_speed",
             )
-        if isinstance(sensor, Lidar) and sensor.range_min > scenario.robot.radius:
+        covered = least_reach(scenario.robot)
+        if isinstance(sensor, Lidar) and sensor.range_min > covered:
             yield ResultWarning(
                 BLIND_NEARBY,
                 f"sensors[{index}].range_min",
                 f"sensors[{index}] takes what is nearer than range_min, {sensor.range_min:.4g} m, to be that far away, "
-                f"but the robot has a radius of {scenario.robot.radius:.4g} m: it may touch what the law takes to be "
+                f"but the robot covers {covered:.4g} m around its center only: it may touch what the law takes to be "
                 f"off; give a range_min of at most the radius",
             )
 

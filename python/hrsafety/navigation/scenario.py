@@ -124,11 +124,18 @@ class Scenario(Place):
 
     def _standing(self, walls: StaticMap) -> _hrsafety.StaticMap:
         """Return the native walls; the robot must not start in contact with them."""
-        gap = float(instance("walls", walls, StaticMap).clearance(self.start)) - self.robot.radius
+        outline = self.robot.footprint
+        known = instance("walls", walls, StaticMap)
+        if outline is not None:
+            if float(outline.clearance(known, [self.start], [self.heading])[0]) > 0.0:
+                return known._native
+            remedy = "the footprint overlaps them at this heading"
+            raise InvalidParameterError("start", "not be in contact with the walls", self.start, remedy)
+        gap = float(known.clearance(self.start)) - self.robot.radius
         if gap < 0.0:
             remedy = f"the bodies overlap by {-gap:.4f} m"
             raise InvalidParameterError("start", "not be in contact with the walls", self.start, remedy)
-        return walls._native
+        return known._native
 
     def _rules(self) -> tuple[float, float, float, float, float]:
         """Return the numbers of a run in the order of the core, as floats."""

@@ -317,10 +317,14 @@ def as_built(
     InvalidParameterError
         If ``built`` is of another kind, or the options do not suit such robots.
     """
-    if built is None and not any(isinstance(each.robot, DifferentialDriveRobot) for each in scenarios):
+    kinds = [each.robot for each in scenarios]
+    wheels = any(isinstance(robot, DifferentialDriveRobot) for robot in kinds)
+    if built is None and not wheels and all(robot.footprint is None for robot in kinds):
         return None
     robot = AsBuilt() if built is None else instance("built", built, AsBuilt)
-    whose = "a DifferentialDriveRobot" if built is None else "a robot as built"
+    whose = "a robot as built"
+    if built is None:
+        whose = "a DifferentialDriveRobot" if wheels else "a robot with a footprint"
     if flag("hold", hold) is False:
         raise InvalidParameterError("hold", f"be True for {whose}", hold)
     if not isinstance(integrator, str) or integrator != "semi_implicit_euler":

@@ -122,7 +122,8 @@ class Leg:
     @cached_property
     def _episode(self) -> Episode:
         run = self.trajectory
-        return episodes_in(self.world, run.robot_position, run.obstacle_position, run.obstacle_radius)[0]
+        places = run.robot_position, run.obstacle_position, run.obstacle_radius
+        return episodes_in(self.world, *places, robot_heading=run.robot_heading)[0]
 
     @cached_property
     def contacts(self) -> Contacts:

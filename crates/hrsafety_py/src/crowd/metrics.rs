@@ -1,21 +1,25 @@
 //! Metrics of robots among people: episodes are converted once, and scored side by side.
 
+use std::sync::Arc;
+
 use nalgebra::Vector2;
 use numeric::parallel::each_run;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::crowd::metrics::{
-    self, DeclaredMetric, EXTREMES, Kind, KnownArrival, MetricRules, Paths, ROBOT_METRICS,
-    WORLD_METRICS, Whole, Without,
+    self, DeclaredMetric, EXTREMES, Kind, KnownArrival, MetricRules, ObservedBody, Paths,
+    ROBOT_METRICS, WORLD_METRICS, Whole, Without,
 };
 use vff_core::crowd::neighbors::grid::Period;
 use vff_core::crowd::walls::Wall;
+use vff_core::world::footprint;
 use vff_core::world::shape::PlacedShape;
 
 use crate::arrays::Fields;
 use crate::errors::CoreError;
 use crate::keywords::{Keywords, taken};
+use crate::robots::footprint::Footprint;
 use crate::watch::{Report, spread};
 
 type Rows<'py> = PyReadonlyArray2<'py, f64>;
@@ -86,6 +90,7 @@ pub struct CrowdEpisode {
     without: Option<Vec<Vector2<f64>>>,
     goals: Vec<Vector2<f64>>,
     arrivals: Option<[Vec<KnownArrival>; 2]>,
+    body: Option<(Arc<footprint::Footprint>, Vec<f64>)>,
     rules: MetricRules,
 }
 
@@ -103,7 +108,12 @@ impl CrowdEpisode {
         ];
         let radii: PyReadonlyArray1<'_, f64> = given.take("person_radius")?;
         let groups: PyReadonlyArray1<'_, i64> = given.take("groups")?;
+        let outline: Option<PyRef<'_, Footprint>> = given.take("footprint")?;
+        let headings: PyReadonlyArray1<'_, f64> = given.take("heading")?;
+        let headings = headings.as_slice()?.to_vec();
+        let body = outline.map(|outline| (Arc::new(outline.0.clone()), headings));
         let episode = Self {
+            body,
             robot: rows("position")?,
             people: rows("people")?,
             radii: radii.as_slice()?.to_vec(),
@@ -146,6 +156,10 @@ impl CrowdEpisode {
                     .as_ref()
                     .map(|known| known.each_ref().map(Vec::as_slice)),
             }),
+            body: self
+                .body
+                .as_ref()
+                .map(|(outline, headings)| ObservedBody { outline, headings }),
             rules: self.rules,
         }
     }

@@ -31,7 +31,7 @@ use crate::arrays::fields;
 use crate::errors::{CoreError, CoreResult};
 use crate::keywords::{Keywords, taken};
 use crate::laws::Law;
-use crate::parameters::{Measurement, Obstacle, mover_of};
+use crate::parameters::{Measurement, Obstacle, mover_of, outline_of};
 use crate::robots::as_built::AsBuilt;
 use crate::watch::{Report, watched};
 
@@ -220,7 +220,7 @@ impl CrowdRobot {
     ) -> PyResult<Self> {
         let given = given.unwrap_or_default();
         let setup = taken!(given: RobotSetup {
-            mover = mover_of(robot)?, start, goal, heading, control_period, arrival_tolerance,
+            mover = mover_of(robot)?, footprint = outline_of(robot), start, goal, heading, control_period, arrival_tolerance,
             sensing_range, occlusion, task = task_of(&given)?, measurement = measurement.map(Measurement::core),
             built = built.map(|built| built.run(0.01, false)),
             law = law.map(|law| law.any.clone()),

@@ -3,9 +3,12 @@
 use nalgebra::Vector2;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
-use vff_core::world::footprint::{self, Arc};
+use vff_core::world::footprint::{self, Arc, PassingWay};
+use vff_core::world::frame::Frame;
+use vff_core::world::shape::Shape;
 
 use crate::errors::CoreError;
+use crate::maps::StaticMap;
 
 type Rows<'py> = PyReadonlyArray2<'py, f64>;
 type Column<'py> = Bound<'py, PyArray1<f64>>;
@@ -73,6 +76,38 @@ impl Footprint {
         })
     }
 
+    /// Least distances of discs in steps, as rows: offset from the robot at both ends (x, y, x, y), headings at both ends,
+    /// radius.
+    fn least_in_steps<'py>(&self, py: Python<'py>, steps: Rows<'_>) -> PyResult<Column<'py>> {
+        each(py, &steps, |row: &[f64; 7]| passing(row).least(&self.0))
+    }
+
+    /// Contact in a step, given as a row of `least_in_steps`, of a robot with a velocity in a time: shares, whether the
+    /// bodies overlap by a depth, and speeds of the touching points with their parts toward the disc.
+    fn contact_in_step(
+        &self,
+        step: [f64; 7],
+        velocity: [f64; 2],
+        duration: f64,
+        depth: f64,
+    ) -> Option<([f64; 2], bool, [[f64; 2]; 2])> {
+        let found = passing(&step).contact(&self.0, (velocity.into(), duration), depth)?;
+        Some((found.shares, found.deep, found.speeds))
+    }
+
+    /// Distances of the outline at poses as rows (x, y, heading) from a map, zero where they meet.
+    fn clearances<'py>(
+        &self,
+        py: Python<'py>,
+        map: &StaticMap,
+        poses: Rows<'_>,
+    ) -> PyResult<Column<'py>> {
+        each(py, &poses, |[x, y, heading]: &[f64; 3]| {
+            let pose = Frame::at([*x, *y], *heading);
+            self.0.clearance(&pose, &map.0, f64::INFINITY)
+        })
+    }
+
     /// Distances of points as rows (x, y) from the room ahead of the part that moves outward.
     fn room_ahead_distances<'py>(
         &self,
@@ -85,6 +120,15 @@ impl Footprint {
             self.0
                 .distance_from_room_ahead(Vector2::new(*x, *y), twist, depth)
         })
+    }
+}
+
+fn passing(row: &[f64; 7]) -> PassingWay {
+    let [x0, y0, x1, y1, first, last, radius] = *row;
+    PassingWay {
+        offsets: [Vector2::new(x0, y0), Vector2::new(x1, y1)],
+        headings: [first, last],
+        shape: Shape::Disc { radius },
     }
 }
 

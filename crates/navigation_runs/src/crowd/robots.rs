@@ -509,6 +509,8 @@ fn scenario_of(world: &CrowdWorld, index: usize, known: Vec<KnownBody>) -> Resul
         .map(|one| (one.obstacle, one.bound, one.stands));
     let seed = stream_of(world.seed, Purpose::Law, index as u64).bits();
     let ends = [setup.start, setup.goal];
-    Scenario::among(setup.mover, ends, known, rules, setup.measurement)
-        .map(|scenario| scenario.reseeded(seed))
+    Scenario::among(setup.mover, ends, known, rules, setup.measurement).map(|scenario| Scenario {
+        footprint: setup.footprint.clone(),
+        ..scenario.reseeded(seed)
+    })
 }

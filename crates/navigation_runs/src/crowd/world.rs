@@ -1,6 +1,9 @@
 //! Worlds of people and robots, and their rules.
 
+use std::sync::Arc;
+
 use crate::crowd::agent::SHORTEST;
+use crate::crowd::metrics::ObservedBody;
 use crate::crowd::models::Model;
 use crate::crowd::neighbors::grid::Period;
 use crate::crowd::tasks::Task;
@@ -9,6 +12,7 @@ use crate::run::AnyLaw;
 use crate::run::as_built::AsBuilt;
 use crate::run::pursuit::Pursuer;
 use navigation_world::sensing::measurement::Measurement;
+use navigation_world::world::footprint::Footprint;
 use navigation_world::world::motion::Motion;
 use navigation_world::world::scenario::Mover;
 use numeric::error::{
@@ -252,6 +256,8 @@ impl SourceSetup {
 pub struct RobotSetup {
     /// Kinematics of the robot.
     pub mover: Mover,
+    /// Outline, if it is no disc; its radius is then that of the circle around it.
+    pub footprint: Option<Arc<Footprint>>,
     /// Position in m.
     pub start: [f64; 2],
     /// Goal in m.
@@ -472,9 +478,21 @@ impl CrowdWorld {
     fn check_contact(&self, index: usize) -> Result<()> {
         let robot = &self.robots[index];
         let place = Vector2::from(robot.start);
+        let headings = [robot.heading];
+        let body = robot.footprint.as_deref().map(|outline| ObservedBody {
+            outline,
+            headings: &headings,
+        });
         let gap = |other: [f64; 2], radius: f64| {
             let way = self.period.wrap(place - Vector2::from(other));
-            way.norm() - robot.radius() - radius
+            match &body {
+                None => way.norm() - robot.radius() - radius,
+                Some(body) => body.distance(0, -way) - radius,
+            }
+        };
+        let off_wall = |wall: &Wall| match &body {
+            None => wall.clearance(place) - robot.radius(),
+            Some(body) => body.gap_on_way(wall, 0, [place; 2]),
         };
         let people = self.people.iter().enumerate();
         let people = people.filter(|(_, person)| person.enters <= 0.0);
@@ -486,8 +504,7 @@ impl CrowdWorld {
         let robots =
             robots.map(|(other, found)| (gap(found.start, found.radius()), "robots", other));
         let walls = self.walls.iter().enumerate();
-        let walls =
-            walls.map(|(other, wall)| (wall.clearance(place) - robot.radius(), "walls", other));
+        let walls = walls.map(|(other, wall)| (off_wall(wall), "walls", other));
         for (gap, kind, other) in people.chain(robots).chain(walls) {
             if gap < 0.0 {
                 let rule = format!("not be in contact with {kind}[{other}]");

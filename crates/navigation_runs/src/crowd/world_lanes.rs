@@ -187,6 +187,7 @@ mod tests {
         }
         let robots = (0..robots).map(|index| RobotSetup {
             mover: Mover::Holonomic(HolonomicRobot::default()),
+            footprint: None,
             start: [-3.0, index as f64],
             goal: [20.0, 0.0],
             heading: 0.0,

@@ -54,6 +54,12 @@ impl Maps {
         distances.fold(f64::INFINITY, f64::min)
     }
 
+    /// Distance in m of an outline at a pose from the maps; all that is at least `most` away counts as that far.
+    pub fn outline_clearance(&self, outline: &Footprint, pose: &Frame, most: f64) -> f64 {
+        let nearer = |least: f64, map: &StaticMap| outline.clearance(pose, map, least);
+        self.0.iter().fold(most, nearer)
+    }
+
     /// Distance of a point from the nearest map in m; all that is at least `most` away counts as that
     /// far.
     pub fn clearance_up_to(&self, point: Vector2<f64>, most: f64) -> f64 {
@@ -99,8 +105,7 @@ impl<R: Real> WallContacts<R> {
 
     /// Distance in m of an outline at a pose from the maps; all that is at least `most` away counts as that far.
     pub fn clearance_of(&self, outline: &Footprint, pose: &Frame, most: f64) -> f64 {
-        let maps = self.maps.0.iter();
-        maps.fold(most, |least, map| outline.clearance(pose, map, least))
+        self.maps.outline_clearance(outline, pose, most)
     }
 
     /// Takes down a distance of the robot in the first lane in m, and a contact with its time in s and its speed in m/s;

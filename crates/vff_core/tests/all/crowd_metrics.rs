@@ -136,6 +136,7 @@ impl Case {
             groups: &self.groups,
             walls: &walls,
             without,
+            body: None,
             rules: self.rules,
         })
     }
@@ -327,6 +328,7 @@ fn walls_count_inside_discs_and_rectangles_too() {
         groups: &[],
         walls: &walls,
         without: None,
+        body: None,
         rules: case.rules,
     });
     let found = found.unwrap();

@@ -160,6 +160,7 @@ fn brief(model: Model, people: Vec<PersonSetup>) -> CrowdWorld {
 fn robot(start: [f64; 2], goal: [f64; 2], law: Option<AnyLaw>) -> RobotSetup {
     RobotSetup {
         mover: Mover::Holonomic(HolonomicRobot::default()),
+        footprint: None,
         start,
         goal,
         heading: 0.0,

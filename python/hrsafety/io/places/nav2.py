@@ -15,6 +15,7 @@ from hrsafety._yaml.documents import YamlDocument, YamlSection
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.io.reader import Document, Provenance
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
+from hrsafety.navigation.robots.footprint import corners_of
 from hrsafety.plausibility import ResultWarning, implausible
 
 __all__ = ["Nav2Settings", "costmap_footprint", "read_nav2"]
@@ -28,7 +29,6 @@ CORNERS = 16
 SAME = 1e-6
 Parameters = dict[str, YamlSection]
 """Parameters of a node by their names with dots."""
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _QUANTITIES = {
     "circumscribed_radius": "robot_radius",
     "max_speed": "robot_max_speed",
@@ -270,22 +270,10 @@ def costmap_footprint(entry: YamlSection) -> tuple[Pair, ...]:
     """Return the corners of a footprint as Nav2 writes them: text of pairs in brackets; none for an empty one."""
     if entry.is_list:
         raise entry.error("be text, as the costmap reads it", "put quotes around it")
-    words = entry.text().strip()
-    if words.replace(" ", "") in ("", "[]"):
-        return ()
-    inner = re.fullmatch(r"\[(.*)\]", words, re.DOTALL)
-    found: list[Pair] = []
-    rest = "" if inner is None else inner[1]
-    for part in re.findall(r"\[[^\[\]]*\]?|[^\[\],\s]+", rest):
-        match = re.fullmatch(rf"\[\s*({_NUMBER})\s*,\s*({_NUMBER})\s*\]", part)
-        if match is None or not max(abs(float(match[1])), abs(float(match[2]))) < 1e6:
-            raise entry.error(f"be pairs of finite numbers [x, y], but holds {part[:40]}", code="footprint")
-        found.append((float(match[1]), float(match[2])))
-    if inner is None or not re.fullmatch(r"\s*\[[^\[\]]*\](?:\s*,\s*\[[^\[\]]*\])*\s*", rest):
-        raise entry.error("be pairs [x, y] with commas between them, in brackets", code="footprint")
-    if len(found) < 3:
-        raise entry.error("have three corners or more", code="footprint")
-    return tuple(found)
+    found = corners_of(entry.text())
+    if isinstance(found, str):
+        raise entry.error(found, code="footprint")
+    return found
 
 
 def _shape(costmap: Parameters) -> dict[str, Any]:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array
-from hrsafety.navigation.metrics.between import PASSED, paths_of, until_arrival
+from hrsafety.navigation.metrics.between import ALONG, PASSED, distances_of, paths_of, until_arrival
 from hrsafety.navigation.metrics.episode import Episode
 from hrsafety.navigation.trajectory import CONTACT_SPEED, DECIDED_OVERLAP
 
@@ -114,7 +114,7 @@ def touches_of(episode: Episode, arrival_time: float) -> Touches:
         start, way, nearest = paths_of(episode, own, people)
         reach = episode.robot_radius + np.asarray(episode.person_radius)
         with np.errstate(invalid="ignore"):
-            touching = np.linalg.norm(start, axis=2) < reach
+            touching = distances_of(episode, start) < reach
             near = (nearest < reach - PASSED) | touching[:-1] | touching[1:]
         # Steps in which a person comes or goes have no way.
         near &= np.isfinite(nearest)
@@ -123,7 +123,10 @@ def touches_of(episode: Episode, arrival_time: float) -> Touches:
         for person in np.flatnonzero(near.any(axis=0)).tolist():
             appears = appears_until(people[:, person], episode.step)
             paths, steps = (start[:-1, person], way[:, person]), np.flatnonzero(near[:, person])
-            found[person] = touch_of(steps, paths, velocity, float(radii[person]), appears, episode.step)
+            if episode.footprint is None:
+                found[person] = touch_of(steps, paths, velocity, float(radii[person]), appears, episode.step)
+            else:
+                found[person] = _touch_of_outline(episode, (steps, person), paths, velocity, appears)
         # Whoever is there at single instants only has appeared.
         for person in np.flatnonzero(touching.any(axis=0) & ~near.any(axis=0)).tolist():
             found[person] = FirstTouch(apart=True)
@@ -201,6 +204,45 @@ def touch_of(
         toward = [moving and bool(velocity[step] @ (start + share * way) > 0.0) for share in (begin, end)]
         if first:
             touch = touch._replace(time=(step + begin) * length, speed=speed, toward=toward[0])
+        touch = touch._replace(at_fault=touch.at_fault or any(toward))
+        if decided:
+            break
+    return touch
+
+
+def _touch_of_outline(
+    episode: Episode,
+    who: tuple[npt.NDArray[np.intp], int],
+    paths: tuple[Array, Array],
+    velocity: Array,
+    appears: float,
+) -> FirstTouch:
+    """Return what the steps in which a person touches a robot with a footprint make of it, as `touch_of`.
+
+    The velocity is that of the touching point of the robot.
+    """
+    assert episode.footprint is not None
+    heading = np.asarray(episode.heading, dtype=np.float64)
+    radius = float(np.broadcast_to(np.asarray(episode.person_radius, dtype=np.float64), who[1] + 1)[who[1]])
+    touch, lasts = FirstTouch(), -1
+    for step in who[0].tolist():
+        start, way = paths[0][step], paths[1][step]
+        row = (*start, *(start + way), heading[step], heading[step + 1], radius)
+        found = episode.footprint._native.contact_in_step(row, tuple(velocity[step]), episode.step, DECIDED_OVERLAP)
+        if found is None:
+            continue
+        (begin, end), decided, speeds = found
+        first = math.isnan(touch.time)
+        if first and (step == lasts or step + begin <= appears):
+            touch = touch._replace(apart=True)
+            lasts = step + 1 if end >= 1.0 else -1
+            continue
+        speed = speeds[0][0]
+        if first and decided and end <= begin:
+            speed = 0.0  # at the start they overlapped: no person came
+        toward = [fast > CONTACT_SPEED and nearer > ALONG for fast, nearer in speeds]
+        if first:
+            touch = touch._replace(time=(step + begin) * episode.step, speed=speed, toward=toward[0])
         touch = touch._replace(at_fault=touch.at_fault or any(toward))
         if decided:
             break

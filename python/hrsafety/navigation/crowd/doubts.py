@@ -19,7 +19,7 @@ from hrsafety.navigation.obstacles.moving import MovingDisc
 from hrsafety.navigation.robots.bodies import NUMBERS
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
-from hrsafety.navigation.warnings.scenarios import own_speed
+from hrsafety.navigation.warnings.scenarios import circled, own_speed
 from hrsafety.navigation.warnings.shields import (
     SEES_LESS,
     Motion,
@@ -32,7 +32,7 @@ from hrsafety.navigation.warnings.shields import (
 from hrsafety.navigation.warnings.walls import unknown_walls
 from hrsafety.plausibility import RANGES, ResultWarning, gathered, implausible
 
-__all__ = ["of_numbers", "of_people", "of_robots", "of_sensors", "of_unknown_walls", "of_walls"]
+__all__ = ["of_footprints", "of_numbers", "of_people", "of_robots", "of_sensors", "of_unknown_walls", "of_walls"]
 
 MOST_TIME = 1e7
 """Longest time of a world, in s."""
@@ -298,6 +298,34 @@ _QUANTITIES = {
 
 def _body(owner: Person | Source) -> dict[str, object]:
     return {"radius": owner.radius, "desired_speed": owner.desired_speed}
+
+
+def of_footprints(
+    people: Sequence[Person], sources: Sequence[Source], robots: Sequence[Robot]
+) -> Iterator[ResultWarning]:
+    """Yield what takes the circle around the footprint of a robot for it.
+
+    Parameters
+    ----------
+    people, sources, robots : sequence of Person, Source, Robot
+        Who is in the world.
+
+    Yields
+    ------
+    ResultWarning
+        With the codes ``"circle_around_footprint"`` and ``"people_avoid_circle"``.
+    """
+    reacting = len(sources) > 0 or any(person.reacts and person.awareness > 0.0 for person in people)
+    for index, robot in enumerate(robots):
+        yield from circled(f"robots[{index}].body", robot.body)
+        if robot.body.footprint is not None and reacting:
+            yield ResultWarning(
+                "people_avoid_circle",
+                f"robots[{index}].body.footprint",
+                f"people who react keep away from the circle of {robot.body.radius:.4g} m around the footprint, farther "
+                "than they would from the footprint itself: there may be fewer contacts than with a robot that looks as "
+                "it is; people who are distracted or follow recordings do not know the circle",
+            )
 
 
 def of_robots(

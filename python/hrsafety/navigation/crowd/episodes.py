@@ -12,7 +12,15 @@ from hrsafety.navigation.metrics.sources import fields_in
 __all__ = ["episodes_in", "outcome_of"]
 
 
-def episodes_in(world: World, robot_position: Array, position: Array, radius: Array, **beside: Any) -> list[Episode]:
+def episodes_in(
+    world: World,
+    robot_position: Array,
+    position: Array,
+    radius: Array,
+    *,
+    robot_heading: Array | None = None,
+    **beside: Any,
+) -> list[Episode]:
     """Return what each robot of a world met, to be scored.
 
     Parameters
@@ -25,6 +33,8 @@ def episodes_in(world: World, robot_position: Array, position: Array, radius: Ar
         Positions of the people in m; NaN for those who are absent.
     radius : ndarray of shape (m,)
         Radii of the people in m.
+    robot_heading : ndarray of shape (n, k) or None
+        Headings of the robots in rad, which those with a footprint need.
     **beside
         More of an `Episode`: its warnings, the people of the world without its robots.
 
@@ -33,8 +43,9 @@ def episodes_in(world: World, robot_position: Array, position: Array, radius: Ar
     list of Episode
         One for each robot. Other robots are no people.
     """
+    places = (robot_position, position, radius)
     return [
-        Episode(**fields_in(world, index, (robot_position, position, radius)), simulated=True, **beside)
+        Episode(**fields_in(world, index, places, robot_heading), simulated=True, **beside)
         for index in range(len(world.robots))
     ]
 

@@ -17,7 +17,7 @@ from hrsafety.navigation.crowd.simulation import driven, simulated
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.crowd.world_run import WorldRun
 from hrsafety.navigation.laws.force_laws import Law
-from hrsafety.navigation.metrics.between import paths_of, until_arrival
+from hrsafety.navigation.metrics.between import moves_toward, paths_of, until_arrival
 from hrsafety.navigation.trajectory import CONTACT_SPEED, DECIDED_OVERLAP
 from hrsafety.plausibility import ResultWarning
 
@@ -84,14 +84,18 @@ def _pursued(world: World, person: tuple[float, float, float], drawn: tuple[int,
 
 def _fields(run: WorldRun) -> dict[str, Any]:
     """Return the fields of a `Pursuit`."""
-    episode = episodes_in(run.scenario, run.robot_position, run.obstacle_position, run.obstacle_radius)[0]
+    places = run.robot_position, run.obstacle_position, run.obstacle_radius
+    episode = episodes_in(run.scenario, *places, robot_heading=run.robot_heading)[0]
     own, people = until_arrival(episode, run.arrival_time)
     start, way, nearest = paths_of(episode, own, people)
     reach = episode.robot_radius + np.asarray(episode.person_radius)
     velocity = np.diff(own, axis=0) / episode.step
     moving = np.hypot(*velocity.T) > CONTACT_SPEED
-    ahead = [np.einsum("ti,tpi->tp", velocity, places) > 0.0 for places in (start[:-1], start[:-1] + way)]
-    toward = moving[:, None] & (ahead[0] | ahead[1])
+    if episode.footprint is None:
+        ahead = [np.einsum("ti,tpi->tp", velocity, places) > 0.0 for places in (start[:-1], start[:-1] + way)]
+        toward = moving[:, None] & (ahead[0] | ahead[1])
+    else:
+        toward = moves_toward(episode, start, velocity)
     # Who walks on through the robot is ahead of it at last, whoever came.
     deep = np.logical_or.accumulate(nearest <= reach - DECIDED_OVERLAP, axis=0)
     open_yet = np.vstack([np.ones((1, len(reach)), dtype=bool), ~deep[:-1]])

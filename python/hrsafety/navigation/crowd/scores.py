@@ -81,7 +81,13 @@ def episodes_of(run: WorldRun, without: WorldRun | None = None) -> list[Episode]
         instance("without", without, WorldRun)
     beside = {} if without is None else _beside(run, without)
     return episodes_in(
-        run.scenario, run.robot_position, run.obstacle_position, run.obstacle_radius, warnings=run.warnings, **beside
+        run.scenario,
+        run.robot_position,
+        run.obstacle_position,
+        run.obstacle_radius,
+        robot_heading=run.robot_heading,
+        warnings=run.warnings,
+        **beside,
     )
 
 

@@ -13,7 +13,14 @@ from hrsafety._doubts import checked_doubts
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.crowd.agents import Person, Robot, Source
-from hrsafety.navigation.crowd.doubts import of_numbers, of_robots, of_sensors, of_unknown_walls, of_walls
+from hrsafety.navigation.crowd.doubts import (
+    of_footprints,
+    of_numbers,
+    of_robots,
+    of_sensors,
+    of_unknown_walls,
+    of_walls,
+)
 from hrsafety.navigation.crowd.routes import Routes, of_routes
 from hrsafety.navigation.maps.outlines import outlines
 from hrsafety.navigation.maps.static_map import StaticMap
@@ -28,6 +35,8 @@ __all__ = ["WallShape", "World", "native_walls"]
 
 _STEP = 0.01
 """Longest step of the world of a scenario, in s."""
+ROUNDING = 1e-9
+"""Footprints that are so near touch, in m."""
 _FARTHEST = 1e6
 """How far the robot of a scenario sees, in m."""
 
@@ -198,7 +207,11 @@ class World(Place):
     def _check_starts(self, known: StaticMap) -> None:
         """Refuse robots that start within what is filled."""
         for index, robot in enumerate(self.robots):
-            gap = float(known.clearance(robot.start)) - robot.body.radius
+            outline = robot.body.footprint
+            if outline is None:
+                gap = float(known.clearance(robot.start)) - robot.body.radius
+            else:
+                gap = float(outline.clearance(known, [robot.start], [robot.heading])[0]) - ROUNDING
             if gap < 0.0:
                 rule = "not be in contact with the walls"
                 remedy = f"the bodies overlap by {-gap:.4f} m"
@@ -273,6 +286,7 @@ class World(Place):
             known = self.walls if isinstance(self.walls, StaticMap) else None
             seen = of_sensors(own[0], own[2], self.step, known)
             found = (*self.doubts, *of_numbers(*own, self.time_limit), *in_walls, *seen, *of_shields)
+            found = (*found, *of_footprints(own[0], own[1], own[2]))
             if known is not None:
                 lost = *of_routes(own[0], own[1], known), *of_unknown_walls(known, own[2])
                 found = (*found, *known.warnings, *lost)

@@ -14,7 +14,7 @@ from hrsafety.navigation.crowd.doubts import of_people
 from hrsafety.navigation.crowd.episodes import episodes_in, outcome_of
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.knowledge import Sensing, told_by
-from hrsafety.navigation.metrics.between import first_wall_contact, paths_of, until_arrival, wrapped
+from hrsafety.navigation.metrics.between import distances_of, first_wall_contact, paths_of, until_arrival, wrapped
 from hrsafety.navigation.metrics.scores import table_of
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.trajectory import Divergence, Trajectory
@@ -124,13 +124,13 @@ class WorldRun(Trajectory):
     def _met(self, robot: int) -> dict[str, Any]:
         """Return how the run ended for a robot, and which people and walls it touched."""
         places = self.robot_position, self.obstacle_position, self.obstacle_radius
-        episode = episodes_in(self.scenario, *places)[robot]
+        episode = episodes_in(self.scenario, *places, robot_heading=self.robot_heading)[robot]
         scored = table_of([episode], threads=1)[0]
         touches = touches_of(episode, scored.arrival_time)
         own, people = until_arrival(episode, scored.arrival_time)
         if people.size and len(own) > 1:
             start, _, nearest = paths_of(episode, own, people)
-            apart = np.linalg.norm(start, axis=2)
+            apart = distances_of(episode, start)
             least = np.fmin.reduce(np.concatenate([apart, nearest]), axis=0)
         else:
             least = np.full(len(self.obstacle_radius), np.inf)
@@ -144,7 +144,7 @@ class WorldRun(Trajectory):
             "outcome": "running"
             if running
             else outcome_of(touched=touched, arrived=arrived, diverged=self.diverged is not None),
-            "distance": np.hypot(away[..., 0], away[..., 1]),
+            "distance": distances_of(episode, away),
             "min_distance": least,
             "min_clearance": least - episode.robot_radius - self.obstacle_radius,
             **{f"contact_{each}": values for each, values in touches._asdict().items()},

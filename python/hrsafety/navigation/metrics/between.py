@@ -10,19 +10,24 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from hrsafety._arguments import Array
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.metrics.episode import Episode, Wall
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
+from hrsafety.navigation.trajectory import CONTACT_SPEED
 from hrsafety.plausibility import ResultWarning
 
 __all__ = [
+    "ALONG",
     "CONTACT_BETWEEN",
     "PASSED",
     "Between",
+    "distances_of",
     "doubts_between",
     "first_wall_contact",
+    "moves_toward",
     "paths_of",
     "touched_between",
     "until_arrival",
@@ -33,6 +38,9 @@ __all__ = [
 CONTACT_BETWEEN = "contact_between_instants"
 PASSED = 1e-9
 """Who passes between two instants touches if the bodies overlap by more, in m."""
+
+ALONG = 1e-9
+"""A point of a side that moves along it moves toward nobody: what rounding adds to that, in m/s."""
 
 
 class Between(NamedTuple):
@@ -90,7 +98,94 @@ def paths_of(episode: Episode, own: Array, people: Array) -> tuple[Array, Array,
     square = _dots(way, way)
     share = np.divide(-_dots(start[:-1], way), square, out=np.zeros_like(square), where=square > 0.0)
     nearest = start[:-1] + np.clip(share, 0.0, 1.0)[..., None] * way
-    return start, way, np.sqrt(_dots(nearest, nearest))
+    least = np.sqrt(_dots(nearest, nearest))
+    return start, way, least if episode.footprint is None else _least_of_outline(episode, start, way, least)
+
+
+def _turns(episode: Episode, steps: int) -> Array:
+    """Return the headings of the robot at both ends of the first steps in rad, shape (steps, 2)."""
+    heading = np.asarray(episode.heading, dtype=np.float64)[: steps + 1]
+    return np.column_stack([heading[:-1], heading[1:]])
+
+
+def _least_of_outline(episode: Episode, start: Array, way: Array, least: Array) -> Array:
+    """Return least distances in steps as `paths_of` does, of a robot with a footprint."""
+    assert episode.footprint is not None
+    found = np.where(np.isfinite(way).all(axis=2), least, np.nan)
+    radius = np.broadcast_to(np.asarray(episode.person_radius, dtype=np.float64), least.shape[1])
+    # Who is farther from the circle than it could matter keeps that distance, which is less.
+    rows, who = np.nonzero(found < 2.0 * episode.robot_radius + radius + 1.0)
+    turns = _turns(episode, len(way))[rows]
+    offsets = np.hstack([start[:-1][rows, who], start[:-1][rows, who] + way[rows, who]])
+    steps = np.column_stack([offsets, turns, radius[who]])
+    gaps = episode.footprint._native.least_in_steps(np.ascontiguousarray(steps))
+    found[rows, who] = gaps + episode.robot_radius + radius[who]
+    return found
+
+
+def distances_of(episode: Episode, offset: Array) -> Array:
+    """Return distances of people from the robot at every instant.
+
+    Parameters
+    ----------
+    episode : Episode
+        The robot.
+    offset : ndarray, shape (n, p, 2)
+        From the robot to the people in m.
+
+    Returns
+    -------
+    ndarray, shape (n, p)
+        In m, between the centers; of a robot with a footprint as in `paths_of`.
+    """
+    if episode.footprint is None:
+        return np.hypot(offset[..., 0], offset[..., 1])
+    heading = np.asarray(episode.heading, dtype=np.float64)[: len(offset)]
+    cosine, sine = np.cos(heading)[:, None], np.sin(heading)[:, None]
+    x, y = offset[..., 0], offset[..., 1]
+    own = np.stack([cosine * x + sine * y, cosine * y - sine * x], axis=-1)
+    found = np.full(offset.shape[:2], np.nan)
+    there = np.isfinite(own).all(axis=2)
+    found[there] = episode.footprint.distance(own[there]) + episode.robot_radius
+    return found
+
+
+def moves_toward(episode: Episode, start: Array, velocity: Array) -> npt.NDArray[np.bool_]:
+    """Return in which steps the nearest point of a footprint moves, and toward a person.
+
+    Parameters
+    ----------
+    episode : Episode
+        A robot with a footprint.
+    start : ndarray, shape (n, p, 2)
+        From the robot to the people in m, as of `paths_of`.
+    velocity : ndarray, shape (n - 1, 2)
+        Of the robot in each step, in m/s.
+
+    Returns
+    -------
+    ndarray of bool, shape (n - 1, p)
+        At the begin or at the end of each step.
+    """
+    assert episode.footprint is not None
+    found = np.zeros((len(velocity), start.shape[1]), dtype=np.bool_)
+    turns = _turns(episode, len(velocity))
+    # A disc that reaches the robot from wherever the person is touches its nearest point.
+    for step, person in zip(*np.nonzero(np.isfinite(start[:-1]).all(axis=2)), strict=True):
+        for row, heading in ((step, turns[step, 0]), (step + 1, turns[step, 1])):
+            place = start[row, person]
+            if not np.isfinite(place).all():
+                continue
+            turn = turns[step, 1] - turns[step, 0]
+            turn = (turn + np.pi) % (2.0 * np.pi) - np.pi
+            ends = (*place, *place, heading, heading + turn * 1e-9, float(np.hypot(*place)) + 1.0)
+            contact = episode.footprint._native.contact_in_step(
+                ends, tuple(velocity[step]), episode.step * 1e-9, np.inf
+            )
+            if contact is not None:
+                speed, toward = contact[2][0]
+                found[step, person] |= speed > CONTACT_SPEED and toward > ALONG
+    return found
 
 
 def touched_between(episode: Episode, arrival_time: float, time_to_collision: float) -> Between:
@@ -118,7 +213,10 @@ def touched_between(episode: Episode, arrival_time: float, time_to_collision: fl
     start, _, nearest = paths_of(episode, own, people)
     # Who is absent is nowhere near.
     gap = np.fmin.reduce(nearest, axis=0) - touch
-    shown = np.sqrt(np.fmin.reduce(_dots(start, start), axis=0)) - touch
+    if episode.footprint is None:
+        shown = np.sqrt(np.fmin.reduce(_dots(start, start), axis=0)) - touch
+    else:
+        shown = np.fmin.reduce(distances_of(episode, start), axis=0) - touch
     hidden = (gap < -PASSED) & ~(shown < 0.0)
     return Between(int(hidden.sum()), float(gap[hidden].min(initial=np.inf)))
 
@@ -148,6 +246,8 @@ def walls_between(episode: Episode, arrival_time: float, wall_clearance: float) 
     if not wall_clearance < np.inf:
         return Between(0, np.inf)
     own, _ = until_arrival(episode, arrival_time)
+    if episode.footprint is not None:
+        return Between(0, np.inf)  # the metrics count them, and no bound tells where to look again
     ways = np.diff(own, axis=0)
     moves = np.hypot(*ways.T) > 2.0 * wall_clearance
     if not moves.any():
@@ -177,16 +277,36 @@ def first_wall_contact(episode: Episode, arrival_time: float) -> tuple[float, fl
     """
     own, _ = until_arrival(episode, arrival_time)
     walls = _map_of(episode.walls)
-    shown = np.flatnonzero(walls.clearance(own) < episode.robot_radius).tolist()
+    if episode.footprint is not None:
+        shown = np.flatnonzero(_outline_gaps(episode, walls, own) <= PASSED).tolist()
+    else:
+        shown = np.flatnonzero(walls.clearance(own) < episode.robot_radius).tolist()
     rows = shown or [len(own)]
     # Only a step before that one may pass a wall and show it at neither end.
     for row, way in enumerate(itertools.pairwise(own[: rows[0]]), start=1):
-        if walls.segment_clearance(*way) < episode.robot_radius:
+        if episode.footprint is not None:
+            share = np.linspace(0.0, 1.0, 17)[:, None]
+            touched = bool((_outline_gaps(episode, walls, way[0] + share * (way[1] - way[0]), row - 1) <= PASSED).any())
+        else:
+            touched = walls.segment_clearance(*way) < episode.robot_radius
+        if touched:
             rows = [row]
             break
     row = min(rows[0], len(own) - 1)
     speed = float(np.hypot(*(own[max(row, 1)] - own[max(row, 1) - 1]))) / episode.step
     return row * episode.step, speed
+
+
+def _outline_gaps(episode: Episode, walls: StaticMap, places: Array, step: int | None = None) -> Array:
+    """Return the distances of a footprint from walls at instants, or at places of a step with a number, in m."""
+    assert episode.footprint is not None
+    heading = np.asarray(episode.heading, dtype=np.float64)
+    if step is None:
+        heading = heading[: len(places)]
+    else:
+        turn = (heading[step + 1] - heading[step] + np.pi) % (2.0 * np.pi) - np.pi
+        heading = heading[step] + turn * np.linspace(0.0, 1.0, len(places))
+    return episode.footprint.clearance(walls, places, heading)
 
 
 def _map_of(walls: Sequence[Wall] | StaticMap) -> StaticMap:

@@ -33,12 +33,15 @@ from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.metrics.sights import unseen_instants
 from hrsafety.navigation.metrics.sources import at_instants, doubts_of_run, steps_of_run, without_noise
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
+from hrsafety.navigation.robots.footprint import Footprint
 from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Episode", "Recorded", "Wall"]
 
 Wall = Disc | Rectangle | npt.ArrayLike
+_SAME = 1e-9
+"""Difference of radii that rounding explains, in m."""
 
 
 class Recorded(Protocol):
@@ -104,6 +107,12 @@ class Episode(Parameters):
         never if ``simulated``.
     person_speed : float
         Greatest speed of people while they are not seen, in m/s.
+    footprint : Footprint or None
+        Outline of a robot that is no disc: contacts and clearances are those of the polygon, also between instants, and
+        who came toward whom is told by the velocity of the touching point. ``robot_radius`` is that of the circle around it,
+        by which times to collision and people who are not seen are measured, which is more careful.
+    heading : array_like, shape (T + 1,)
+        Headings of the robot in rad; needed with ``footprint`` only.
 
     Notes
     -----
@@ -162,6 +171,8 @@ class Episode(Parameters):
     simulated: bool = False
     unseen: npt.ArrayLike | None = None
     person_speed: float = 1.6
+    footprint: Footprint | None = None
+    heading: npt.ArrayLike = ()
     _native: _hrsafety.CrowdEpisode = field(init=False, repr=False, compare=False)
     _resampled: bool = field(init=False, repr=False, default=False)
 
@@ -187,6 +198,9 @@ class Episode(Parameters):
             if not empty("person_goals", self.person_goals)
             else _NOWHERE,
         }
+        arrays["heading"] = numbers("heading", self.heading) if not empty("heading", self.heading) else np.empty(0)
+        if self.footprint is not None:
+            self._check_footprint(rules["robot_radius"])
         arrays |= {name: _arrivals(name, getattr(self, name)) for name in _ARRIVALS}
         missing = [name for name in _ARRIVALS if arrays[name].size == 0]
         if len(missing) == 1:
@@ -198,11 +212,19 @@ class Episode(Parameters):
             name: _rows(arrays[name]) for name in ("people", "people_without") if arrays[name] is not None
         }
         flat |= dict.fromkeys(missing)
-        native = _hrsafety.CrowdEpisode(**({**rules, **arrays} | flat | wall_rows(walls)))
+        outline = None if self.footprint is None else self.footprint._native
+        native = _hrsafety.CrowdEpisode(footprint=outline, **({**rules, **arrays} | flat | wall_rows(walls)))
         arrays["unseen"] = self._unseen(people)
         self._set(person_speed=not_negative("person_speed", self.person_speed))
         kept = {name: None if array is None else _frozen(array) for name, array in arrays.items()}
         self._set(**rules, **kept, walls=tuple(walls), warnings=doubts, _native=native)
+
+    def _check_footprint(self, radius: float) -> None:
+        """Refuse a radius that is not that of the circle around the footprint."""
+        around = instance("footprint", self.footprint, Footprint).outer_radius
+        if abs(radius - around) > _SAME:
+            rule = f"be {around:.6g} m, that of the circle around the footprint"
+            raise InvalidParameterError("robot_radius", rule, radius, "give footprint.outer_radius")
 
     def _unseen(self, people: Array) -> npt.NDArray[np.bool_] | None:
         """Return when people are not seen and may be there, ``None`` without people and in a simulation."""

@@ -19,6 +19,7 @@ from hrsafety.navigation.maps.outlines import outlines
 from hrsafety.navigation.metrics.sights import LOST
 from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
+from hrsafety.navigation.robots.footprint import Footprint
 from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plausibility import ResultWarning
 
@@ -38,7 +39,8 @@ def steps_of_run(run: Trajectory) -> dict[str, Any]:
     if len(run.time) < 2:
         raise InvalidParameterError("trajectory", "have two instants or more", Shown(f"{len(run.time)}"))
     if isinstance(run.scenario, World):
-        return fields_in(run.scenario, run.robot, (run.robot_position, run.obstacle_position, run.obstacle_radius))
+        places = (run.robot_position, run.obstacle_position, run.obstacle_radius)
+        return fields_in(run.scenario, run.robot, places, run.robot_heading)
     scene, step = run.scenario, float(run.time[1] - run.time[0])
     obstacles = scene.obstacles
     people = [index for index, each in enumerate(obstacles) if isinstance(each, Human)]
@@ -56,10 +58,18 @@ def steps_of_run(run: Trajectory) -> dict[str, Any]:
         "robot_radius": scene.robot.radius,
         "arrival_tolerance": scene.arrival_tolerance,
         "max_speed": scene.robot.max_speed,
+        **_outlined(scene.robot.footprint, run.heading),
     }
 
 
-def fields_in(world: World, robot: int, places: tuple[Array, Array, Array]) -> dict[str, Any]:
+def _outlined(footprint: Footprint | None, heading: Array | None) -> dict[str, Any]:
+    """Return the fields of an episode of a robot with a footprint, none for a disc."""
+    return {} if footprint is None else {"footprint": footprint, "heading": heading}
+
+
+def fields_in(
+    world: World, robot: int, places: tuple[Array, Array, Array], heading: Array | None = None
+) -> dict[str, Any]:
     """Return the fields of an episode of a robot of a world.
 
     Parameters
@@ -70,6 +80,8 @@ def fields_in(world: World, robot: int, places: tuple[Array, Array, Array]) -> d
         Which of its robots.
     places : (ndarray of shape (n, k, 2), ndarray of shape (n, m, 2), ndarray of shape (m,))
         Positions of the robots and of the people in m, and radii of the people in m.
+    heading : ndarray of shape (n, k) or None
+        Headings of the robots in rad, which those with a footprint need.
 
     Returns
     -------
@@ -91,6 +103,7 @@ def fields_in(world: World, robot: int, places: tuple[Array, Array, Array]) -> d
         "arrival_tolerance": own.arrival_tolerance,
         "max_speed": own.body.max_speed,
         "period": world.period,
+        **_outlined(own.body.footprint, None if heading is None else heading[:, robot]),
     }
 
 

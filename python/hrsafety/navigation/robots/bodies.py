@@ -9,10 +9,13 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Pair, Parameters, instance, number, sequence
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.robots.footprint import Footprint
 
 __all__ = ["DifferentialDriveRobot", "HolonomicRobot"]
 
 Triple = tuple[float, float, float]
+RADIUS = 0.2
+"""Radius of the robots of Zeng (2011) in m, the default of every disc."""
 
 
 def _of_wheels(name: str, value: object, wheels: int) -> tuple[float, ...]:
@@ -23,6 +26,41 @@ def _of_wheels(name: str, value: object, wheels: int) -> tuple[float, ...]:
         raise InvalidParameterError(name, rule, value)
     return tuple(number(name, part) for part in parts)
 
+
+def _shape(radius: object, footprint: object) -> dict[str, object]:
+    """Return radius and footprint of a robot, as far as they are told otherwise than they are kept."""
+    if footprint is None:
+        return {}
+    if isinstance(footprint, int | float) and not isinstance(footprint, bool):
+        given = number("footprint", footprint)
+        if radius is not RADIUS and radius != given:
+            raise InvalidParameterError("radius", "be left out where the footprint is a radius", radius)
+        return {"radius": given, "footprint": None}
+    outline = footprint
+    if isinstance(footprint, str):
+        outline = Footprint.parse(footprint)
+    elif not isinstance(footprint, Footprint):
+        outline = Footprint(sequence("footprint", "be a Footprint, text, corners or a radius", footprint))
+    around = instance("footprint", outline, Footprint).outer_radius
+    if radius is not RADIUS and (not isinstance(radius, int | float) or abs(radius - around) > ROUNDING):
+        rule = f"be left out beside a footprint, whose circle has a radius of {around:.6g} m"
+        raise InvalidParameterError("radius", rule, radius, f"give radius={around!r} where another robot is copied")
+    return {"radius": around, "footprint": outline}
+
+
+def least_reach(robot: HolonomicRobot | DifferentialDriveRobot) -> float:
+    """Return the radius of the largest circle around the center that a robot covers, in m.
+
+    Parameters
+    ----------
+    robot : HolonomicRobot or DifferentialDriveRobot
+        The robot.
+    """
+    return robot.radius if robot.footprint is None else robot.footprint.inner_radius
+
+
+ROUNDING = 1e-9
+"""Difference of radii that rounding explains, in m."""
 
 NUMBERS = (
     *("mass", "radius", "max_speed", "max_acceleration", "max_deceleration"),
@@ -50,7 +88,8 @@ class HolonomicRobot(Parameters):
     mass : float
         Mass M_r in kg.
     radius : float
-        Radius of the disc that models the robot, in m.
+        Radius of the disc that models the robot, in m; of a robot with a footprint that of the circle around it, which is
+        all that laws know of it.
     max_speed : float
         Largest speed, in m/s.
     max_acceleration : float
@@ -72,6 +111,9 @@ class HolonomicRobot(Parameters):
         Feed-forward B/K of each wheel, in A s.
     wheel_static_friction : tuple of float
         Feed-forward tau/K of each wheel, in A.
+    footprint : Footprint, str, sequence of (float, float), float or None
+        Convex outline at its heading, in place of a disc: contacts, clearances and the `Shield` are those of the polygon,
+        a `Guide` keeps half of its width from walls. Text is a footprint as Nav2 writes it; a number is a ``radius``.
 
     Raises
     ------
@@ -86,7 +128,7 @@ class HolonomicRobot(Parameters):
     """
 
     mass: float = 4.4
-    radius: float = 0.2
+    radius: float = RADIUS
     max_speed: float = 0.7
     max_acceleration: float = 10.0
     max_deceleration: float | None = None
@@ -95,10 +137,12 @@ class HolonomicRobot(Parameters):
     wheel_inertia: Triple = (0.0073, 0.0074, 0.0065)
     wheel_viscous_friction: Triple = (0.0019, 0.0020, 0.0024)
     wheel_static_friction: Triple = (0.19, 0.22, 0.18)
+    footprint: Footprint | None = None
     _native: _hrsafety.HolonomicRobot = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check the values."""
+        self._set(**_shape(self.radius, self.footprint))
         scalars = ("mass", "radius", "max_speed", "max_acceleration", "wheel_radius")
         self._set(**{name: number(name, getattr(self, name)) for name in scalars})
         self._set(winding_resistance=number("winding_resistance", self.winding_resistance))
@@ -107,6 +151,7 @@ class HolonomicRobot(Parameters):
         self._set(**{name: _of_wheels(name, getattr(self, name), 3) for name in wheels})
         self._set(
             _native=_hrsafety.HolonomicRobot(
+                None if self.footprint is None else self.footprint._native,
                 mass=self.mass,
                 radius=self.radius,
                 max_speed=self.max_speed,
@@ -147,7 +192,8 @@ class DifferentialDriveRobot(Parameters):
     mass : float
         Mass in kg.
     radius : float
-        Radius of the disc that models the robot, in m.
+        Radius of the disc that models the robot, in m; of a robot with a footprint that of the circle around it, which is
+        all that laws know of it.
     max_speed : float
         Largest speed, in m/s.
     max_acceleration : float
@@ -181,6 +227,9 @@ class DifferentialDriveRobot(Parameters):
         Feed-forward B/K of each wheel, in A s.
     wheel_static_friction : tuple of float
         Feed-forward tau/K of each wheel, in A.
+    footprint : Footprint, str, sequence of (float, float), float or None
+        Convex outline at its heading, in place of a disc: contacts, clearances and the `Shield` are those of the polygon,
+        a `Guide` keeps half of its width from walls. Text is a footprint as Nav2 writes it; a number is a ``radius``.
 
     Raises
     ------
@@ -195,7 +244,7 @@ class DifferentialDriveRobot(Parameters):
     """
 
     mass: float = 3.7
-    radius: float = 0.2
+    radius: float = RADIUS
     max_speed: float = 0.7
     max_acceleration: float = 10.0
     max_deceleration: float | None = None
@@ -209,18 +258,21 @@ class DifferentialDriveRobot(Parameters):
     wheel_inertia: Pair = (0.0079, 0.0057)
     wheel_viscous_friction: Pair = (0.0032, 0.0030)
     wheel_static_friction: Pair = (0.18, 0.28)
+    footprint: Footprint | None = None
     _native: _hrsafety.DifferentialDriveRobot = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check the values."""
+        self._set(**_shape(self.radius, self.footprint))
         wheels = ("wheel_inertia", "wheel_viscous_friction", "wheel_static_friction")
         self._set(**{name: _of_wheels(name, getattr(self, name), 2) for name in wheels})
         limits = _limits(self, "max_deceleration", "max_turn_rate", "max_turn_acceleration")
         self._set(**limits)
-        others = (item.name for item in fields(self) if item.init and item.name not in (*wheels, *limits))
+        others = (item.name for item in fields(self) if item.init and item.name not in (*wheels, *limits, "footprint"))
         scalars = self._as_numbers(*others)
         self._set(
             _native=_hrsafety.DifferentialDriveRobot(
+                None if self.footprint is None else self.footprint._native,
                 **scalars,
                 **limits,
                 wheel_inertia=self.wheel_inertia,

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterable, Sequence
 from dataclasses import field
-from typing import Annotated, Self
+from typing import TYPE_CHECKING, Annotated, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +13,10 @@ import numpy.typing as npt
 from hrsafety import _hrsafety
 from hrsafety._arguments import Parameters, finite, finite_pair, not_negative, numbers, points, positive
 from hrsafety._records import dataclass
-from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError, Shown
+
+if TYPE_CHECKING:
+    from hrsafety.navigation.maps.static_map import StaticMap
 
 __all__ = ["Footprint"]
 
@@ -40,7 +44,8 @@ class Footprint(Parameters):
     Raises
     ------
     InvalidParameterError
-        If the polygon is not convex, has equal corners or three on a line, or does not hold the origin inside.
+        If the polygon is not convex, has equal corners or three on a line, or does not hold the origin inside; `around`
+        gives the convex outline of others.
 
     See Also
     --------
@@ -63,7 +68,13 @@ class Footprint(Parameters):
 
     def __post_init__(self) -> None:
         """Check the values."""
-        native = _hrsafety.Footprint(points("corners", self.corners))
+        try:
+            native = _hrsafety.Footprint(points("corners", self.corners))
+        except InvalidParameterError as error:
+            if error.remedy is None and "convex" in error.requirement:
+                remedy = "Footprint.around(corners) is the convex outline around them"
+                raise InvalidParameterError(error.argument, error.requirement, error.value, remedy) from None
+            raise
         _, outer, inner = native.facts()
         corners = tuple((float(x), float(y)) for x, y in points("corners", self.corners).tolist())
         self._set(corners=corners, outer_radius=outer, inner_radius=inner, _native=native)
@@ -90,6 +101,64 @@ class Footprint(Parameters):
             )
         )
 
+    @classmethod
+    def around(cls, corners: npt.ArrayLike) -> Self:
+        """Return the convex outline around points: of a polygon with notches or with corners along its sides.
+
+        Whatever it adds belongs to the robot from then on, which makes results more careful.
+
+        Parameters
+        ----------
+        corners : array_like, shape (n, 2)
+            Points in coordinates of the body in m, three or more and not all on a line.
+
+        Returns
+        -------
+        Footprint
+            Their convex hull.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav
+        >>> notched = [(0.4, 0.3), (0.2, 0.0), (0.4, -0.3), (-0.3, -0.3), (-0.3, 0.0), (-0.3, 0.3)]
+        >>> len(nav.robots.Footprint.around(notched).corners)
+        4
+        """
+        return cls(_hull(_finite(points("corners", corners))))
+
+    @classmethod
+    def parse(cls, text: str) -> Self:
+        """Return the footprint that Nav2 writes as text, such as ``"[[0.3, 0.2], [0.3, -0.2], [-0.3, 0.0]]"``.
+
+        Corners along its sides are left out, which changes nothing.
+
+        Parameters
+        ----------
+        text : str
+            Pairs [x, y] in m with commas between them, in brackets.
+
+        Returns
+        -------
+        Footprint
+            Without the padding that a costmap adds.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the text is of another form, or the polygon is not convex or does not hold the origin.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav
+        >>> nav.robots.Footprint.parse("[[0.3, 0.2], [0.3, -0.2], [-0.3, -0.2], [-0.3, 0.2]]").inner_radius
+        0.2
+        """
+        found = corners_of(text)
+        if isinstance(found, str):
+            raise InvalidParameterError("footprint", found, Shown(repr(text[:60])), NAV2)
+        hull = _hull(np.array(found))
+        return cls(hull if abs(_area(np.array(found))) > (1.0 - ROUNDING) * _area(np.array(hull)) else found)
+
     def distance(self, places: npt.ArrayLike) -> Array:
         """Return the distances of points from the outline at rest.
 
@@ -104,6 +173,34 @@ class Footprint(Parameters):
             Distances in m; inside, minus the distance to the nearest side.
         """
         return self._native.distances(_finite(points("places", places)))
+
+    def clearance(self, map: StaticMap, places: npt.ArrayLike, heading: npt.ArrayLike) -> Array:
+        """Return the distances of the outline from a map.
+
+        Parameters
+        ----------
+        map : StaticMap
+            What stands.
+        places : array_like, shape (n, 2)
+            Where the robot is, in m.
+        heading : array_like, shape (n,)
+            Where it looks, in rad.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Distances in m, 0 where they meet.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav
+        >>> wall = nav.StaticMap.from_polylines([[(1.0, -2.0), (1.0, 2.0)]])
+        >>> nav.robots.Footprint.rectangle(0.8, 0.4).clearance(wall, [(0, 0), (0, 0)], [0.0, np.pi / 2]).round(3)
+        array([0.6, 0.8])
+        """
+        at = _finite(points("places", places))
+        angle = np.broadcast_to(_finite(numbers("heading", heading)), len(at))
+        return self._native.clearances(map._native, np.column_stack([at, angle]))
 
     def swept_distance(self, places: npt.ArrayLike, *, distance: float, angle: float) -> Array:
         """Return the least distances of what stands still from the outline while the robot drives along an arc.
@@ -158,6 +255,60 @@ class Footprint(Parameters):
         """
         twist = (finite("velocity", velocity), finite("turn_rate", turn_rate))
         return self._native.room_ahead_distances(_finite(points("places", places)), twist, not_negative("depth", depth))
+
+
+NAV2 = 'such as "[[0.3, 0.2], [0.3, -0.2], [-0.3, -0.2], [-0.3, 0.2]]"'
+ROUNDING = 1e-9
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+
+
+def corners_of(text: str) -> tuple[Pair, ...] | str:
+    """Return the corners that Nav2 writes as text, none for empty brackets; or the rule that the text breaks.
+
+    Parameters
+    ----------
+    text : str
+        The text.
+    """
+    words = text.strip()
+    if words.replace(" ", "") in ("", "[]"):
+        return ()
+    inner = re.fullmatch(r"\[(.*)\]", words, re.DOTALL)
+    found: list[Pair] = []
+    rest = "" if inner is None else inner[1]
+    for part in re.findall(r"\[[^\[\]]*\]?|[^\[\],\s]+", rest):
+        match = re.fullmatch(rf"\[\s*({_NUMBER})\s*,\s*({_NUMBER})\s*\]", part)
+        if match is None or not max(abs(float(match[1])), abs(float(match[2]))) < 1e6:
+            return f"be pairs of finite numbers [x, y], but holds {part[:40]}"
+        found.append((float(match[1]), float(match[2])))
+    if inner is None or not re.fullmatch(r"\s*\[[^\[\]]*\](?:\s*,\s*\[[^\[\]]*\])*\s*", rest):
+        return "be pairs [x, y] with commas between them, in brackets"
+    return tuple(found) if len(found) >= 3 else "have three corners or more"
+
+
+def _area(corners: Array) -> float:
+    """Return the area of a polygon in m^2, positive counterclockwise."""
+    x, y = corners.T
+    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) if len(corners) else 0.0
+
+
+def _hull(corners: Array) -> tuple[Pair, ...]:
+    """Return the convex hull of points, counterclockwise and without corners on its sides."""
+    ordered = sorted({(float(x), float(y)) for x, y in corners})
+    size = max((abs(value) for corner in ordered for value in corner), default=0.0)
+
+    def half(places: Iterable[Pair]) -> list[Pair]:
+        kept: list[Pair] = []
+        for x, y in places:
+            while len(kept) > 1:
+                (a, b), (c, d) = kept[-2:]
+                if (c - a) * (y - b) - (d - b) * (x - a) > ROUNDING * size * size:
+                    break
+                kept.pop()
+            kept.append((x, y))
+        return kept[:-1]
+
+    return (*half(ordered), *half(reversed(ordered)))
 
 
 def _finite(places: Array) -> Array:

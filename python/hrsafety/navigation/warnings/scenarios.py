@@ -14,11 +14,11 @@ from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.obstacles.moving_rectangle import Box, Mobile
 from hrsafety.navigation.obstacles.standing import Rectangle
 from hrsafety.navigation.regions import region_radii
-from hrsafety.navigation.robots.bodies import NUMBERS, DifferentialDriveRobot, HolonomicRobot
+from hrsafety.navigation.robots.bodies import NUMBERS, DifferentialDriveRobot, HolonomicRobot, least_reach
 from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.plausibility import ResultWarning, implausible
 
-__all__ = ["BELOW_SAFE", "GOAL_IN_REGION", "IN_CRITICAL_REGION", "found", "own_speed", "pieces"]
+__all__ = ["BELOW_SAFE", "GOAL_IN_REGION", "IN_CRITICAL_REGION", "circled", "found", "own_speed", "pieces"]
 
 # A critical radius this far below the safe one is that one, typed with fewer digits; in m.
 ROUNDING = 1e-9
@@ -67,11 +67,38 @@ def found(scenario: Described) -> tuple[ResultWarning, ...]:
     -------
     tuple of ResultWarning
         Codes ``"region_below_safe"``, ``"start_in_critical_region"``, ``"goal_in_active_region"``,
-        ``"implausible"``, ``"goal_out_of_reach"`` and ``"closed_in"``, and those of its ``doubts``.
+        ``"implausible"``, ``"goal_out_of_reach"``, ``"closed_in"`` and ``"circle_around_footprint"``, and those of its
+        ``doubts``.
     """
     about_ends = (*_starts(scenario), *_goals(scenario))
     own = (*_regions(scenario), *about_ends, *of_units(scenario), *_reach(scenario), *_closed(scenario))
+    own = (*own, *circled("robot", scenario.robot))
     return tuple(dict.fromkeys((*scenario.doubts, *own)))
+
+
+def circled(name: str, robot: HolonomicRobot | DifferentialDriveRobot) -> Iterator[ResultWarning]:
+    """Yield what stands for the footprint of a robot where discs are needed.
+
+    Parameters
+    ----------
+    name : str
+        Name of the robot.
+    robot : HolonomicRobot or DifferentialDriveRobot
+        The robot.
+
+    Yields
+    ------
+    ResultWarning
+        For a robot that is no disc.
+    """
+    if robot.footprint is not None:
+        yield ResultWarning(
+            "circle_around_footprint",
+            f"{name}.footprint",
+            f"laws, regions and yielding take the circle of {robot.radius:.4g} m around the footprint for the robot; "
+            "contacts, clearances and the shield are those of the footprint itself",
+            safe_side=True,  # the circle keeps the robot farther away
+        )
 
 
 def _regions(scenario: Described) -> Iterator[ResultWarning]:
@@ -267,7 +294,7 @@ def _reach(scenario: Described) -> Iterator[ResultWarning]:
 
 def _closed(scenario: Described) -> Iterator[ResultWarning]:
     """Yield stationary obstacles that leave no way for the robot, or no place near the goal."""
-    radius = scenario.robot.radius
+    radius = least_reach(scenario.robot)
     for index, obstacle in enumerate(scenario.obstacles):
         if not free_space.stands(obstacle):
             continue

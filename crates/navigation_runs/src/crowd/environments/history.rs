@@ -1,6 +1,6 @@
 //! Positions of an episode under way, for its metrics.
 
-use crate::crowd::metrics::{self, MetricRules, Paths, RobotMetrics};
+use crate::crowd::metrics::{self, MetricRules, ObservedBody, Paths, RobotMetrics};
 use crate::crowd::simulation::Simulation;
 use numeric::lanes::Vector2;
 
@@ -10,6 +10,7 @@ type Vector = Vector2<f64>;
 #[derive(Clone, Debug, Default)]
 pub(super) struct History {
     robot: Vec<Vector>,
+    headings: Vec<f64>,
     people: Vec<Vector>,
     /// Number of people up to each instant.
     counts: Vec<usize>,
@@ -20,6 +21,7 @@ pub(super) struct History {
 impl History {
     pub fn clear(&mut self) {
         self.robot.clear();
+        self.headings.clear();
         self.people.clear();
         self.counts.clear();
     }
@@ -27,6 +29,7 @@ impl History {
     pub fn push(&mut self, simulation: &Simulation) {
         let absent = Vector::repeat(f64::NAN);
         self.robot.push(simulation.robots()[0].state().position);
+        self.headings.push(simulation.robots()[0].heading());
         let places = simulation.people().iter();
         self.people.extend(places.map(|person| {
             if person.is_present() {
@@ -58,6 +61,10 @@ impl History {
             groups: &self.groups,
             walls: &world.walls,
             without: None,
+            body: setup.footprint.as_deref().map(|outline| ObservedBody {
+                outline,
+                headings: &self.headings,
+            }),
             rules: MetricRules {
                 step: world.step,
                 goal: setup.goal.into(),

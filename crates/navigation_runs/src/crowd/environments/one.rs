@@ -4,7 +4,7 @@ use crate::crowd::environments::history::History;
 use crate::crowd::environments::layout::seed_of;
 use crate::crowd::environments::observation::{Ranking, observe};
 use crate::crowd::environments::settings::{Action, EnvironmentSettings};
-use crate::crowd::metrics::{RobotMetrics, nearest_between};
+use crate::crowd::metrics::{ObservedBody, RobotMetrics, nearest_between};
 use crate::crowd::neighbors::grid::Period;
 use crate::crowd::people::OfPeople;
 use crate::crowd::simulation::{DecisionRoom, Simulation};
@@ -121,6 +121,8 @@ pub struct Environment {
     /// Least gap to walls in the step, in m, and where the robot was at the last instant.
     wall_gap: f64,
     place: Vector,
+    /// Heading of the robot in rad at the last looks at people and at walls.
+    headings: [f64; 2],
     /// From the robot to the people at the last instant; NaN for who was absent.
     ways: OfPeople<Vector>,
 }
@@ -150,6 +152,7 @@ impl Environment {
             clearance: f64::INFINITY,
             wall_gap: f64::INFINITY,
             place: Vector::zeros(),
+            headings: [0.0; 2],
             ways: OfPeople::new(),
         };
         environment.open(settings);
@@ -183,7 +186,8 @@ impl Environment {
         self.history.clear();
         self.note(settings);
         self.ways.clear();
-        self.place = self.simulation.robots()[0].state().position;
+        let robot = &self.simulation.robots()[0];
+        (self.place, self.headings) = (robot.state().position, [robot.heading(); 2]);
         self.look(settings);
     }
 
@@ -324,17 +328,28 @@ impl Environment {
     fn look(&mut self, settings: &EnvironmentSettings) -> f64 {
         let period = settings.world.period;
         if period == Period::default() {
-            self.look_along(|way| way)
+            self.look_along(settings, |way| way)
         } else {
-            self.look_along(|way| period.wrap(way))
+            self.look_along(settings, |way| period.wrap(way))
         }
     }
 
     /// Observes with differences of positions as the world has them.
     #[inline(always)]
-    fn look_along(&mut self, wrap: impl Fn(Vector) -> Vector) -> f64 {
+    fn look_along(
+        &mut self,
+        settings: &EnvironmentSettings,
+        wrap: impl Fn(Vector) -> Vector,
+    ) -> f64 {
         let robot = &self.simulation.robots()[0];
         let (place, radius) = (robot.state().position, robot.radius());
+        let headings = [self.headings[0], robot.heading()];
+        self.headings[0] = headings[1];
+        let outline = settings.world.robots[0].footprint.as_deref();
+        let body = outline.map(|outline| ObservedBody {
+            outline,
+            headings: &headings,
+        });
         let mut least = f64::INFINITY;
         let people = self.simulation.people();
         self.ways.resize(people.len(), Vector::repeat(f64::NAN));
@@ -344,6 +359,15 @@ impl Environment {
                 continue;
             }
             let way = wrap(person.position - place);
+            if let Some(body) = &body {
+                let come = before.x.is_nan();
+                let from = if come { way } else { way - wrap(way - *before) };
+                let gap = body.distance(1, way) - person.radius;
+                let passed = gap >= 0.0 && !come && body.meets(0, [from, way], person.radius);
+                least = least.min(if passed { -2.0 * TOUCH } else { gap });
+                *before = way;
+                continue;
+            }
             let distance = if before.x.is_nan() {
                 way.norm()
             } else {
@@ -362,10 +386,24 @@ impl Environment {
         // Where the world repeats itself, the robot may have been put to the other side of it.
         let from = place - world.period.wrap(place - self.place);
         let radius = world.robots[0].radius();
+        let headings = [self.headings[1], self.simulation.robots()[0].heading()];
+        let outline = world.robots[0].footprint.as_deref();
+        let body = outline.map(|outline| ObservedBody {
+            outline,
+            headings: &headings,
+        });
         for wall in &world.walls {
-            self.wall_gap = self.wall_gap.min(wall.gap_on_way(from, place, radius));
+            let gap = match &body {
+                None => wall.gap_on_way(from, place, radius),
+                Some(body) => match body.gap_on_way(wall, 1, [from, place]) {
+                    // Touched on the way only.
+                    gap if gap < 0.0 => gap.min(-2.0 * TOUCH),
+                    gap => gap,
+                },
+            };
+            self.wall_gap = self.wall_gap.min(gap);
         }
-        self.place = place;
+        (self.place, self.headings[1]) = (place, headings[1]);
     }
 
     fn note(&mut self, settings: &EnvironmentSettings) {

@@ -103,7 +103,13 @@ fn closing(
     if start >= end {
         return [0.0; 2];
     }
-    let robot = (episode.robot[start + 1] - episode.robot[start]) / step;
+    let mut robot = (episode.robot[start + 1] - episode.robot[start]) / step;
+    let mut toward = toward;
+    if let Some(body) = &episode.body {
+        let turning;
+        [toward, turning] = body.toward(start, to_person, step);
+        robot += turning;
+    }
     let other = people.velocity(start, person, step).unwrap_or_default();
     [robot.dot(&toward).max(0.0), (-other.dot(&toward)).max(0.0)]
 }
@@ -115,18 +121,25 @@ fn at_walls(episode: &ObservedEpisode<'_>, end: usize) -> (u32, f64) {
         return (count, least);
     }
     let mut before = episode.robot[0];
-    for place in &episode.robot[..=end] {
+    for (instant, place) in episode.robot[..=end].iter().enumerate() {
         // Where the world repeats itself, the robot may have been put to the other side of it.
         let from = place - episode.rules.period.wrap(place - before);
         let radius = episode.rules.robot_radius;
         let gaps = episode.walls.iter();
         let gap = gaps.fold(f64::INFINITY, |least, wall| {
-            least.min(wall.gap_on_way(from, *place, radius))
+            let gap = match &episode.body {
+                None => wall.gap_on_way(from, *place, radius),
+                Some(body) => body.gap_on_way(wall, instant, [from, *place]),
+            };
+            least.min(gap)
         });
         let touches = gap < 0.0;
         count += u32::from(touches && !touched);
         // What was touched on the way only is left again.
-        let clear = |wall: &Wall| wall.clearance(*place) >= radius;
+        let clear = |wall: &Wall| match &episode.body {
+            None => wall.clearance(*place) >= radius,
+            Some(body) => body.gap_on_way(wall, instant, [*place; 2]) >= 0.0,
+        };
         touched = touches && !episode.walls.iter().all(clear);
         least = least.min(gap);
         before = *place;

@@ -1,8 +1,9 @@
 //! Observed episodes: positions over time with the sizes and rules that they are measured by.
 
+use super::body::ObservedBody;
 use crate::crowd::neighbors::grid::Period;
 use crate::crowd::walls::Wall;
-use numeric::error::{Failure, Given, Result, finite_pair, not_negative, positive};
+use numeric::error::{Failure, Given, Result, finite, finite_pair, not_negative, positive};
 use numeric::lanes::Vector2;
 
 type Point = Vector2<f64>;
@@ -187,11 +188,23 @@ pub struct ObservedEpisode<'a> {
     pub walls: &'a [Wall],
     /// Paths of the people without robots, if known.
     pub without: Option<Without<'a>>,
+    /// Outline of a robot that is no disc; its radius is that of the circle around it.
+    pub body: Option<ObservedBody<'a>>,
     /// Sizes and bounds of the metrics.
     pub rules: MetricRules,
 }
 
 impl ObservedEpisode<'_> {
+    /// Distance in m of a place, given from the robot, from the center of a disc whose surface is as far from it as that of
+    /// the robot is at an instant.
+    #[inline]
+    pub(super) fn distance(&self, instant: usize, place: Point) -> f64 {
+        match &self.body {
+            None => place.norm(),
+            Some(body) => body.distance(instant, place) + self.rules.robot_radius,
+        }
+    }
+
     /// Looks at all values.
     ///
     /// # Errors
@@ -208,6 +221,12 @@ impl ObservedEpisode<'_> {
         }
         for (index, place) in self.robot.iter().enumerate() {
             finite_pair(&format!("position[{index}]"), (*place).into())?;
+        }
+        if let Some(body) = &self.body {
+            same("heading", "instants", body.headings.len(), self.robot.len())?;
+            for (index, heading) in body.headings.iter().enumerate() {
+                finite(&format!("heading[{index}]"), *heading)?;
+            }
         }
         if count > 0 {
             same(

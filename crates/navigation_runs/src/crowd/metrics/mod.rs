@@ -3,6 +3,7 @@
 //! Velocities, accelerations and jerks are forward differences of the positions. The end `E` is the first
 //! instant within the tolerance of the goal, else the last one; what concerns the robot counts up to it.
 
+mod body;
 mod contacts;
 mod declared;
 mod effect;
@@ -13,6 +14,7 @@ mod proximity;
 mod travel;
 mod whole;
 
+pub use body::ObservedBody;
 pub use declared::{
     DeclaredMetric, Kind, ROBOT_METRICS, RobotMetrics, WORLD_METRICS, WorldMetrics,
 };

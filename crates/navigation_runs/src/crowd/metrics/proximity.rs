@@ -146,7 +146,7 @@ impl Watch {
                 continue;
             }
             let to_person = rules.period.wrap(from - robot[instant]);
-            let distance = to_person.norm();
+            let distance = episode.distance(instant, to_person);
             let (zone, reach) = (distance - rules.robot_radius, rules.robot_radius + radius);
             near.zone = near.zone.min(zone);
             near.gap = near.gap.min(zone - radius);
@@ -164,6 +164,20 @@ impl Watch {
             let time = time_to_collision(to_person, closing, reach);
             near.time = near.time.min(time);
             self.pressures.add(instant, to_person, closing);
+            if let Some(body) = &episode.body {
+                let moved = (to - from) - (robot[next] - robot[instant]);
+                let end = to_person + rules.period.wrap(moved);
+                let later = episode.distance(next, end) - reach;
+                if gap >= 0.0 && later >= 0.0 && body.meets(instant, [to_person, end], *radius) {
+                    self.passing.push(person);
+                    near.passed = near.passed.min(-f64::MIN_POSITIVE);
+                    self.touches.push(Touch {
+                        person,
+                        instant: next,
+                    });
+                }
+                continue;
+            }
             // Most are too far away to come here within a step; whoever is touched is told of already.
             let far = 1.01 * step * step * closing.norm_squared() + 101.0 * slack * slack;
             if gap >= -slack && gap * gap <= far {
@@ -253,8 +267,8 @@ fn intrudes(episode: &ObservedEpisode<'_>, instant: usize, group: &[usize]) -> b
         .map(|person| rules.period.wrap(places[*person] - first))
         .sum();
     let center = first + sum / group.len() as f64;
-    let distance = rules.period.wrap(center - episode.robot[instant]).norm();
-    distance - rules.robot_radius < ZONES[1]
+    let place = rules.period.wrap(center - episode.robot[instant]);
+    episode.distance(instant, place) - rules.robot_radius < ZONES[1]
 }
 
 #[cfg(test)]
@@ -272,6 +286,7 @@ mod tests {
             groups: &[],
             walls: &[],
             without: None,
+            body: None,
             rules: MetricRules {
                 robot_radius: 0.3,
                 ..MetricRules::of_people()

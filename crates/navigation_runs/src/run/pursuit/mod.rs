@@ -5,6 +5,7 @@
 //! sensors; only what the measurement of the scenario tells of the last obstacle is computed here,
 //! from the way that it took.
 
+mod outline;
 mod pursuer;
 
 pub use pursuer::{NUMBERS, Pursuer};
@@ -168,6 +169,9 @@ struct PursuitParts<'a> {
     /// Obstacles as the law knows them.
     seen: Vec<Body>,
     reading: Reading,
+    /// Of the robot at the last two motion steps, in rad, and the time between them in s.
+    headings: [f64; 2],
+    step: f64,
     followed: Vec<Followed>,
     found: Encounter,
     rows: Option<&'a mut Pursued>,
@@ -212,6 +216,8 @@ pub fn pursue(
         sight,
         known: MeasuredState::exactly(reading.robot),
         seen: Vec::new(),
+        headings: [reading.heading; 2],
+        step: clock.step,
         reading,
         followed: vec![Followed::default(); scenario.obstacles.len()],
         found: Encounter {
@@ -261,15 +267,16 @@ impl PursuitParts<'_> {
             return;
         }
         let (place, radius) = (self.reading.robot.position, self.scenario.robot.radius);
+        let outlined = self.scenario.footprint.as_deref();
+        let off_outline = outlined.map(|outline| self.outline_off_walls(outline, from));
         let found = &mut self.found;
         let most = found.least.max(0.0) + radius + 1.0;
-        let mut off = self.maps.clearance_up_to(place, most) - radius;
-        if off > 0.0 && off <= (place - from).norm() {
-            let passed = self.maps.segment_clearance(from, place) - radius;
-            if passed < 0.0 {
-                off = passed;
-            }
-        }
+        let off = off_outline.unwrap_or_else(|| {
+            let off = self.maps.clearance_up_to(place, most) - radius;
+            let near = off > 0.0 && off <= (place - from).norm();
+            let passed = near.then(|| self.maps.segment_clearance(from, place) - radius);
+            passed.filter(|passed| *passed < 0.0).unwrap_or(off)
+        });
         found.least = found.least.min(off);
         if off <= 0.0 {
             found.least_toward = found.least_toward.min(off);
@@ -287,11 +294,14 @@ impl PursuitParts<'_> {
     fn look(&mut self, from: Vector2<f64>) {
         let robot = self.reading.robot;
         let bodies = self.bodies();
+        self.headings = [self.headings[1], self.reading.heading];
         self.look_at_walls(from);
         for (index, body) in bodies.iter().enumerate() {
             let seen = robot.position - Vector2::from(body.state.position);
             let before = self.followed[index].before.replace(seen);
-            if body.state.present {
+            if body.state.present && self.scenario.footprint.is_some() {
+                self.look_at_outline(index, body, before.unwrap_or(seen), from);
+            } else if body.state.present {
                 self.look_at(index, body, before.unwrap_or(seen));
             } else {
                 self.followed[index].before = None;

@@ -9,19 +9,14 @@ use super::LaneState;
 use super::touch::ContactState;
 use crate::run::outcome::{CONTACT_SPEED, Contact, DECIDED_OVERLAP};
 use crate::run::scene::{World, body_at};
-use navigation_world::world::footprint::{BodyMotion, Footprint, Separation};
+use navigation_world::world::footprint::{
+    BodyMotion, Footprint, Separation, TOUCH, first_closed, turned,
+};
 use navigation_world::world::frame::Frame;
 use navigation_world::world::geometry::Body;
 use navigation_world::world::scenario::PlacedObstacle;
 use navigation_world::world::shape::PlacedShape;
 use numeric::lanes::{Real, Vector2};
-
-/// Bodies touch at this distance, in m.
-const TOUCH: f64 = 1e-9;
-
-/// Least share of a motion step between two looks: what bodies that slide along each other overlap less than they move
-/// in it is no contact.
-const LEAST_SHARE: f64 = 1.0 / 65536.0;
 
 /// Looks at a contact within a motion step.
 const LOOKS: u32 = 4;
@@ -67,21 +62,6 @@ impl BodyStep {
             turn_rate: self.turn / duration,
         }
     }
-
-    /// First share at which a gap is closed, if it is; it changes at most by `most` in the step, in m.
-    fn closed(&self, most: f64, gap: impl Fn(f64) -> f64) -> Option<f64> {
-        let mut share = 0.0;
-        loop {
-            let left = gap(share);
-            if left <= TOUCH {
-                return Some(share);
-            }
-            if share >= 1.0 || left > most * (1.0 - share) {
-                return None;
-            }
-            share = (share + (left / most).max(LEAST_SHARE)).min(1.0);
-        }
-    }
 }
 
 impl OutlineState {
@@ -101,18 +81,7 @@ impl OutlineState {
 
     /// Velocity of the touching point in m/s and, of that, its part toward the other body.
     fn speeds(&self, step: &BodyStep, share: f64, touch: &Separation) -> [f64; 2] {
-        let velocity = step.motion(share).at(touch.place);
-        [velocity.norm(), velocity.dot(&touch.outward)]
-    }
-}
-
-/// The least angle from one heading to another.
-fn turned([from, to]: [f64; 2]) -> f64 {
-    let turn = (to - from).rem_euclid(std::f64::consts::TAU);
-    if turn > std::f64::consts::PI {
-        turn - std::f64::consts::TAU
-    } else {
-        turn
+        touch.speeds(&step.motion(share))
     }
 }
 
@@ -173,7 +142,7 @@ impl<W: World, R: Real> LaneState<W, R> {
             let most = outline.most(&step);
             let least = walls.least.lane(0).max(0.0);
             let at_end = gap(1.0, least.max(most));
-            let met = step.closed(most, |share| gap(share, most + TOUCH + 1.0));
+            let met = first_closed(most, |share| gap(share, most + TOUCH + 1.0));
             self.touched |= walls.note(
                 if met.is_some() { 0.0 } else { at_end },
                 met.map(|share| (step.time(share), speed(share))),
@@ -214,7 +183,7 @@ impl<W: World, R: Real> LaneState<W, R> {
         let met = if touch.decided || touch.appearing {
             None
         } else {
-            step.closed(most, |share| separation(share).distance)
+            first_closed(most, |share| separation(share).distance)
         };
         let passed = met.map_or(f64::INFINITY, |_| 0.0);
         let gap = at_end.distance.min(passed);

@@ -19,6 +19,163 @@ pub struct Separation {
     pub outward: Vector2<f64>,
 }
 
+/// Bodies touch at this distance, in m.
+pub const TOUCH: f64 = 1e-9;
+
+/// Least share of a step between two looks: what bodies that slide along each other overlap less than they move in it is
+/// no contact.
+const LEAST_SHARE: f64 = 1.0 / 65536.0;
+
+/// First share of a step at which a gap in m is closed, if it is; it changes at most by `most` in the step, in m.
+pub fn first_closed(most: f64, gap: impl Fn(f64) -> f64) -> Option<f64> {
+    let mut share = 0.0;
+    loop {
+        let left = gap(share);
+        if left <= TOUCH {
+            return Some(share);
+        }
+        if share >= 1.0 || left > most * (1.0 - share) {
+            return None;
+        }
+        share = (share + (left / most).max(LEAST_SHARE)).min(1.0);
+    }
+}
+
+/// The least angle from one heading to another in rad.
+#[must_use]
+pub fn turned([from, to]: [f64; 2]) -> f64 {
+    let turn = (to - from).rem_euclid(std::f64::consts::TAU);
+    if turn > std::f64::consts::PI {
+        turn - std::f64::consts::TAU
+    } else {
+        turn
+    }
+}
+
+/// A point of a side that moves along it moves toward nobody: what rounding adds to that, as a share of its speed.
+const ALONG: f64 = 1e-9;
+
+impl Separation {
+    /// Speed of the touching point of a body that moves, and its part toward the other one, in m/s.
+    #[must_use]
+    pub fn speeds(&self, motion: &super::BodyMotion) -> [f64; 2] {
+        let velocity = motion.at(self.place);
+        let (speed, toward) = (velocity.norm(), velocity.dot(&self.outward));
+        let along = toward.abs() <= ALONG * speed;
+        [speed, if along { 0.0 } else { toward }]
+    }
+}
+
+/// Way of a body past a robot in a step in which both move straight and the robot turns evenly.
+#[derive(Clone, Copy, Debug)]
+pub struct PassingWay {
+    /// From the robot to the center of the body at both ends of the step, in m.
+    pub offsets: [Vector2<f64>; 2],
+    /// Headings of the robot at both ends, in rad.
+    pub headings: [f64; 2],
+    /// Outline of the other body; a disc or a rectangle that keeps its heading.
+    pub shape: Shape,
+}
+
+/// A contact in a step.
+#[derive(Clone, Copy, Debug)]
+pub struct PassingContact {
+    /// Shares of the step at which it begins, and at which it ends or the bodies first overlap deeply.
+    pub shares: [f64; 2],
+    /// Whether they do.
+    pub deep: bool,
+    /// Touching points then: speed and its part toward the body, in m/s.
+    pub speeds: [[f64; 2]; 2],
+}
+
+/// Looks at a step in which bodies are near.
+const LOOKS: u32 = 64;
+
+impl PassingWay {
+    fn at(&self, outline: &Footprint, share: f64) -> (Frame, Separation) {
+        let [from, to] = self.offsets;
+        let heading = self.headings[0] + turned(self.headings) * share;
+        let frame = Frame::at([0.0; 2], heading);
+        let other = PlacedShape {
+            center: from + (to - from) * share,
+            shape: self.shape,
+        };
+        (frame, outline.separation(&frame, &other))
+    }
+
+    /// Distance of the surfaces at a share of the step in m; negative where they overlap.
+    #[must_use]
+    pub fn gap(&self, outline: &Footprint, share: f64) -> f64 {
+        self.at(outline, share).1.distance
+    }
+
+    /// Most that the gap changes in the step, in m.
+    fn most(&self, outline: &Footprint) -> f64 {
+        let [from, to] = self.offsets;
+        (to - from).norm() + turned(self.headings).abs() * outline.outer_radius()
+    }
+
+    fn looks(first: f64) -> impl DoubleEndedIterator<Item = f64> {
+        (0..=LOOKS).map(move |look| first + (1.0 - first) * f64::from(look) / f64::from(LOOKS))
+    }
+
+    /// Least distance of the surfaces in the step in m; negative where they overlap.
+    #[must_use]
+    pub fn least(&self, outline: &Footprint) -> f64 {
+        let ends = [0.0, 1.0].map(|share| self.gap(outline, share));
+        let (near, most) = (ends[0].min(ends[1]), self.most(outline));
+        // Nothing between is nearer than this; who is that far off need not be looked at.
+        if near - 0.5 * most > 1.0 {
+            return near - 0.5 * most;
+        }
+        let gaps = Self::looks(0.0).map(|share| self.gap(outline, share));
+        let least = gaps.fold(near, f64::min) - 0.5 * most / f64::from(LOOKS);
+        if least > 0.0 || first_closed(most, |share| self.gap(outline, share)).is_some() {
+            least
+        } else {
+            least.max(0.0)
+        }
+    }
+
+    /// Speed of the nearest point of a robot that moves at a velocity in m/s in a step of `duration` s at a share of it, and
+    /// its part toward the body, in m/s.
+    #[must_use]
+    pub fn speeds(
+        &self,
+        outline: &Footprint,
+        (velocity, duration): (Vector2<f64>, f64),
+        share: f64,
+    ) -> [f64; 2] {
+        let (frame, found) = self.at(outline, share);
+        found.speeds(&super::BodyMotion {
+            velocity: frame.inward(velocity),
+            turn_rate: turned(self.headings) / duration,
+        })
+    }
+
+    /// The contact of the step with a robot that moves at a velocity in m/s in a step of `duration` s, if there is one;
+    /// deep is an overlap of `depth` m.
+    #[must_use]
+    pub fn contact(
+        &self,
+        outline: &Footprint,
+        (velocity, duration): (Vector2<f64>, f64),
+        depth: f64,
+    ) -> Option<PassingContact> {
+        let gap = |share: f64| self.gap(outline, share);
+        let begin = first_closed(self.most(outline), gap)?;
+        let decided = Self::looks(begin).find(|share| gap(*share) <= -depth);
+        let last = Self::looks(begin).rev().find(|share| gap(*share) <= TOUCH);
+        let end = decided.or(last).unwrap_or(begin);
+        let speeds = [begin, end].map(|share| self.speeds(outline, (velocity, duration), share));
+        Some(PassingContact {
+            shares: [begin, end],
+            deep: decided.is_some(),
+            speeds,
+        })
+    }
+}
+
 impl Footprint {
     /// Of the outline at a pose and a shape.
     #[must_use]

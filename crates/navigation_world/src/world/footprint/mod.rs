@@ -9,7 +9,7 @@ mod sweep;
 mod tests;
 
 pub use advancing::{BodyMotion, Twist};
-pub use contact::Separation;
+pub use contact::{PassingContact, PassingWay, Separation, TOUCH, first_closed, turned};
 pub use sweep::Sweep;
 
 use nalgebra::Vector2;
