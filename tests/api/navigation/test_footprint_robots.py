@@ -82,7 +82,8 @@ def test_what_passes_between_two_steps_is_touched() -> None:
     bullet = nav.MovingDisc(center=(0.24, 5.1), velocity=(0.0, -40.0), radius=0.02, max_speed=40.0)
     stands = replace(scene(RECTANGLE, [bullet]), heading=0.0, time_limit=0.3)
     run = nav.simulate(stands, Standing(), step=0.02)
-    assert run.outcome == "collided" and not run.contact_at_fault[0]
+    assert run.outcome == "collided"
+    assert not run.contact_at_fault[0]
     assert run.contact_time[0] == pytest.approx((5.1 - 0.02 - 0.215) / 40.0, abs=1e-6)
     beside = replace(bullet, center=(0.28, 5.1))
     assert not np.isfinite(nav.simulate(replace(stands, obstacles=[beside]), Standing(), step=0.02).contact_time).any()
@@ -93,25 +94,31 @@ def test_a_corner_that_sweeps_into_a_person_is_at_fault_and_who_walks_into_a_sid
     beside = nav.Human(start=(-0.05, 0.56), velocity=(0.0, 0.0), radius=0.3)
     turning = nav.Scenario(robot=robot, start=(0, 0), goal=(0, 9), obstacles=[beside], time_limit=2.0)
     run = nav.simulate(turning, nav.OptimalReciprocalCollisionAvoidance())
-    assert run.outcome == "collided" and run.contact_toward[0] and run.contact_at_fault[0]
+    assert run.outcome == "collided"
+    assert run.contact_toward[0]
+    assert run.contact_at_fault[0]
     shielded = nav.simulate(turning, nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield()))
     assert not np.isfinite(shielded.contact_time).any()
     walks_in = nav.Human(start=(0.5, -1.5), velocity=(0.0, 1.4), radius=0.3)
     aside = replace(turning, goal=(9.0, 0.0), obstacles=[walks_in], time_limit=3.0)
     run = nav.simulate(aside, Ahead())
-    assert run.outcome == "collided" and not run.contact_at_fault[0]
+    assert run.outcome == "collided"
+    assert not run.contact_at_fault[0]
 
 
 def test_a_footprint_is_told_in_the_ways_of_others() -> None:
     text = "[[0.3, 0.2], [0.3, 0.0], [0.3, -0.2], [-0.3, -0.2], [-0.3, 0.2]]"
     robot = nav.DifferentialDriveRobot(footprint=text)  # type: ignore[arg-type]  # text is one of its forms
-    assert robot.footprint is not None and robot.footprint.inner_radius == 0.2
+    assert robot.footprint is not None
+    assert robot.footprint.inner_radius == 0.2
     clockwise = nav.DifferentialDriveRobot(footprint=tuple(reversed(RECTANGLE.corners)))  # type: ignore[arg-type]
     assert clockwise.radius == RECTANGLE.outer_radius
     disc = nav.HolonomicRobot(footprint=0.35)  # type: ignore[arg-type]
-    assert disc.footprint is None and disc == nav.HolonomicRobot(radius=0.35)
+    assert disc.footprint is None
+    assert disc == nav.HolonomicRobot(radius=0.35)
     copied = replace(robot, mass=9.0)
-    assert copied.footprint == robot.footprint and copied.radius == robot.radius
+    assert copied.footprint == robot.footprint
+    assert copied.radius == robot.radius
 
 
 @pytest.mark.parametrize(
@@ -148,12 +155,15 @@ def test_a_start_is_in_contact_by_the_polygon() -> None:
 
 
 def test_a_rectangle_drives_through_a_gap_that_its_circle_does_not_fit() -> None:
-    gap = nav.StaticMap.from_polylines([[(2, 3), (2, 0.26), (3, 0.26), (3, 3)], [(2, -3), (2, -0.26), (3, -0.26), (3, -3)]])
+    gap = nav.StaticMap.from_polylines(
+        [[(2, 3), (2, 0.26), (3, 0.26), (3, 3)], [(2, -3), (2, -0.26), (3, -0.26), (3, -3)]]
+    )
     law = nav.SafeNavigation(nav.VirtualForceField(), map=gap, guide=nav.Guide(), shield=nav.Shield())
     robot = nav.DifferentialDriveRobot(footprint=RECTANGLE, max_acceleration=2.0)
     place = nav.Scenario(robot=robot, start=(0, 0), goal=(5, 0), walls=gap, arrival_tolerance=0.3)
     run = nav.simulate(place, law)
-    assert run.outcome == "arrived" and run.map_clearance > 0.0
+    assert run.outcome == "arrived"
+    assert run.map_clearance > 0.0
     assert not math.isfinite(run.map_contact_time)
     disc = replace(place, robot=nav.DifferentialDriveRobot(radius=RECTANGLE.outer_radius))
     with pytest.raises(InvalidParameterError):
@@ -174,7 +184,8 @@ def test_runs_of_a_robot_in_a_world_are_those_of_the_polygon() -> None:
     assert shown == pytest.approx(np.array(gaps), abs=1e-9)
     assert run.min_clearance[0] == pytest.approx(min(gaps), abs=2e-3)
     touched = min(gaps) < 0.0
-    assert np.isfinite(run.contact_time[0]) == touched and (run.outcome == "collided") == touched
+    assert np.isfinite(run.contact_time[0]) == touched
+    assert (run.outcome == "collided") == touched
     scored = nav.metrics.evaluate(nav.metrics.Episode.from_trajectory(run))
     assert scored.min_clearance == pytest.approx(min(gaps), abs=2e-3)
 
@@ -184,7 +195,8 @@ def test_the_results_say_what_stands_for_the_footprint() -> None:
     robot = nav.Robot(nav.HolonomicRobot(footprint=RECTANGLE), start=(0, 0), goal=(4, 0), law=nav.VirtualForceField())
     world = nav.World(people=[person], robots=[robot])
     told = {each.code: each.safe_side for each in nav.simulate(world).warnings}
-    assert told["circle_around_footprint"] is True and told["people_avoid_circle"] is False
+    assert told["circle_around_footprint"] is True
+    assert told["people_avoid_circle"] is False
     run = nav.simulate(replace(scene(RECTANGLE, []), time_limit=30.0), nav.VirtualForceField())
     assert [each.code for each in run.warnings] == ["circle_around_footprint"]
     with pytest.raises(InvalidParameterError, match="footprint"):

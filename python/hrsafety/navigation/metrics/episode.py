@@ -199,6 +199,8 @@ class Episode(Parameters):
             else _NOWHERE,
         }
         arrays["heading"] = numbers("heading", self.heading) if not empty("heading", self.heading) else np.empty(0)
+        if arrays["heading"].ndim != 1:
+            raise ShapeError("heading", "(T + 1,)", arrays["heading"].shape)
         if self.footprint is not None:
             self._check_footprint(rules["robot_radius"])
         arrays |= {name: _arrivals(name, getattr(self, name)) for name in _ARRIVALS}

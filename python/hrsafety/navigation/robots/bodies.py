@@ -88,8 +88,8 @@ class HolonomicRobot(Parameters):
     mass : float
         Mass M_r in kg.
     radius : float
-        Radius of the disc that models the robot, in m; of a robot with a footprint that of the circle around it, which is
-        all that laws know of it.
+        Radius of the disc that models the robot, in m; of a robot with a footprint that of the circle around it, which
+        is all that laws know of it.
     max_speed : float
         Largest speed, in m/s.
     max_acceleration : float
@@ -112,8 +112,9 @@ class HolonomicRobot(Parameters):
     wheel_static_friction : tuple of float
         Feed-forward tau/K of each wheel, in A.
     footprint : Footprint, str, sequence of (float, float), float or None
-        Convex outline at its heading, in place of a disc: contacts, clearances and the `Shield` are those of the polygon,
-        a `Guide` keeps half of its width from walls. Text is a footprint as Nav2 writes it; a number is a ``radius``.
+        Convex outline at its heading, in place of a disc: contacts, clearances and the `Shield` are those of the
+        polygon, a `Guide` keeps half of its width from walls. Text is a footprint as Nav2 writes it; a number is a
+        ``radius``.
 
     Raises
     ------
@@ -192,8 +193,8 @@ class DifferentialDriveRobot(Parameters):
     mass : float
         Mass in kg.
     radius : float
-        Radius of the disc that models the robot, in m; of a robot with a footprint that of the circle around it, which is
-        all that laws know of it.
+        Radius of the disc that models the robot, in m; of a robot with a footprint that of the circle around it, which
+        is all that laws know of it.
     max_speed : float
         Largest speed, in m/s.
     max_acceleration : float
@@ -228,8 +229,9 @@ class DifferentialDriveRobot(Parameters):
     wheel_static_friction : tuple of float
         Feed-forward tau/K of each wheel, in A.
     footprint : Footprint, str, sequence of (float, float), float or None
-        Convex outline at its heading, in place of a disc: contacts, clearances and the `Shield` are those of the polygon,
-        a `Guide` keeps half of its width from walls. Text is a footprint as Nav2 writes it; a number is a ``radius``.
+        Convex outline at its heading, in place of a disc: contacts, clearances and the `Shield` are those of the
+        polygon, a `Guide` keeps half of its width from walls. Text is a footprint as Nav2 writes it; a number is a
+        ``radius``.
 
     Raises
     ------

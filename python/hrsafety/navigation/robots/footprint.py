@@ -199,7 +199,10 @@ class Footprint(Parameters):
         array([0.6, 0.8])
         """
         at = _finite(points("places", places))
-        angle = np.broadcast_to(_finite(numbers("heading", heading)), len(at))
+        angle = _finite(numbers("heading", heading))
+        if angle.shape not in ((), (len(at),)):
+            raise ShapeError("heading", f"({len(at)},)", angle.shape)
+        angle = np.broadcast_to(angle, len(at))
         return self._native.clearances(map._native, np.column_stack([at, angle]))
 
     def swept_distance(self, places: npt.ArrayLike, *, distance: float, angle: float) -> Array:
