@@ -35,14 +35,14 @@ class Wandering:
 class Standing:
     """Commands to stay."""
 
-    def velocity(self, situation: nav.laws.Situation) -> tuple[float, float]:
+    def velocity(self, _situation: nav.laws.Situation) -> tuple[float, float]:
         return 0.0, 0.0
 
 
 class Ahead:
     """Commands to drive straight on."""
 
-    def velocity(self, situation: nav.laws.Situation) -> tuple[float, float]:
+    def velocity(self, _situation: nav.laws.Situation) -> tuple[float, float]:
         return 0.5, 0.0
 
 

@@ -167,8 +167,9 @@ def test_bad_value_is_refused_by_name(kind: str, argument: str, value: Any) -> N
 def test_rules_cover_every_argument(kind: str) -> None:
     build, _ = RIGHT[kind]
     fields = {field.name for field in dataclasses.fields(build) if not field.name.startswith("_")}
-    # Caps depend on the mode, motions on their class methods, walls are a map; they have tests of their own.
-    elsewhere = {"stabilizing_force_cap", "stabilizing_momentum_cap", "segments", "path", "walls"}
+    # Caps depend on the mode, motions on their class methods, walls are a map, footprints have several forms; they have
+    # tests of their own.
+    elsewhere = {"stabilizing_force_cap", "stabilizing_momentum_cap", "segments", "path", "walls", "footprint"}
     assert fields - elsewhere == set(RULES[kind])
 
 

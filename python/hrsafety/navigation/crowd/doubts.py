@@ -322,9 +322,9 @@ def of_footprints(
             yield ResultWarning(
                 "people_avoid_circle",
                 f"robots[{index}].body.footprint",
-                f"people who react keep away from the circle of {robot.body.radius:.4g} m around the footprint, farther "
-                "than they would from the footprint itself: there may be fewer contacts than with a robot that looks as "
-                "it is; people who are distracted or follow recordings do not know the circle",
+                f"people who react keep away from the circle of {robot.body.radius:.4g} m around the footprint, "
+                "farther than they would from the footprint itself: there may be fewer contacts than with a robot that "
+                "looks as it is; people who are distracted or follow recordings do not know the circle",
             )
 
 

@@ -108,9 +108,9 @@ class Episode(Parameters):
     person_speed : float
         Greatest speed of people while they are not seen, in m/s.
     footprint : Footprint or None
-        Outline of a robot that is no disc: contacts and clearances are those of the polygon, also between instants, and
-        who came toward whom is told by the velocity of the touching point. ``robot_radius`` is that of the circle around it,
-        by which times to collision and people who are not seen are measured, which is more careful.
+        Outline of a robot that is no disc: contacts and clearances are those of the polygon, also between instants,
+        and who came toward whom is told by the velocity of the touching point. ``robot_radius`` is that of the circle
+        around it, by which times to collision and people who are not seen are measured, which is more careful.
     heading : array_like, shape (T + 1,)
         Headings of the robot in rad; needed with ``footprint`` only.
 

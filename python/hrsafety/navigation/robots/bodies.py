@@ -40,7 +40,11 @@ def _shape(radius: object, footprint: object) -> dict[str, object]:
     if isinstance(footprint, str):
         outline = Footprint.parse(footprint)
     elif not isinstance(footprint, Footprint):
-        outline = Footprint(sequence("footprint", "be a Footprint, text, corners or a radius", footprint))
+        corners = sequence("footprint", "be a Footprint, text, corners or a radius", footprint)
+        try:
+            outline = Footprint(corners)
+        except InvalidParameterError as error:
+            raise InvalidParameterError("footprint", error.requirement, error.value, error.remedy) from None
     around = instance("footprint", outline, Footprint).outer_radius
     if radius is not RADIUS and (not isinstance(radius, int | float) or abs(radius - around) > ROUNDING):
         rule = f"be left out beside a footprint, whose circle has a radius of {around:.6g} m"
