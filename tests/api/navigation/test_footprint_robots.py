@@ -201,3 +201,15 @@ def test_the_results_say_what_stands_for_the_footprint() -> None:
     assert [each.code for each in run.warnings] == ["circle_around_footprint"]
     with pytest.raises(InvalidParameterError, match="footprint"):
         nav.simulate(scene(RECTANGLE, [], two=False), nav.VirtualForceField(), integrator="rk4")
+
+
+@pytest.mark.parametrize("two", [True, False])
+def test_nobody_brings_a_rectangle_under_a_shield_to_fault(two: bool) -> None:
+    place = replace(scene(RECTANGLE, [], two=two), goal=(6.0, 0.0), heading=0.0, time_limit=10.0)
+    law = nav.OptimalReciprocalCollisionAvoidance(horizon=2.0, margin=0.0)
+    guarded = nav.SafeNavigation(law, shield=nav.Shield())
+    assert nav.falsify(place, guarded, episodes=80, seed=4).share.value == 0.0
+    assert nav.falsify(place, law, episodes=60, seed=2).broken or not two
+    body = nav.Robot(place.robot, start=(0, 0), goal=(6, 0), law=guarded, control_period=0.06)
+    world = nav.World(robots=[body], step=0.02, time_limit=8.0)
+    assert not nav.falsify(world, guarded, episodes=6, seed=3).broken

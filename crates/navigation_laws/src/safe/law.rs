@@ -561,15 +561,13 @@ impl SafeLaw {
             let command = BodyCommand::of_velocity(robot, heading, velocity, [period, braking]);
             outline.verified(&command, view.people, &view.walls)
         };
-        let verified = |velocity: Vector2<f64>| match outline {
-            Some((outline, heading)) => {
-                self.limits.reaches(robot.velocity, velocity)
-                    && of_outline(outline, heading, velocity)
+        let verified = |velocity: Vector2<f64>| {
+            if let Some((outline, heading)) = outline {
+                return self.limits.reaches(robot.velocity, velocity)
+                    && of_outline(outline, heading, velocity);
             }
-            None => {
-                let verifier = verifier.as_mut();
-                verifier.is_none_or(|verifier| verifier.admits(velocity))
-            }
+            let verifier = verifier.as_mut();
+            verifier.is_none_or(|verifier| verifier.admits(velocity))
         };
         if let Some(velocity) = self.give_way(robot, wanted, to_goal, verified) {
             let status = if velocity == kept {

@@ -42,7 +42,7 @@ def _shape(radius: object, footprint: object) -> dict[str, object]:
     elif not isinstance(footprint, Footprint):
         corners = sequence("footprint", "be a Footprint, text, corners or a radius", footprint)
         try:
-            outline = Footprint(corners)
+            outline = Footprint(tuple(corners))
         except InvalidParameterError as error:
             raise InvalidParameterError("footprint", error.requirement, error.value, error.remedy) from None
     around = instance("footprint", outline, Footprint).outer_radius

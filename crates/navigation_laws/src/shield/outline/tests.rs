@@ -135,7 +135,7 @@ fn bearing(people: f64) -> TrackingError {
 fn nobody_can_be_touched_by_a_part_that_moves_toward_him_in_a_verified_plan() {
     let mut drawn = Drawn(Stream::new(7, 1));
     let mut verified = [0, 0];
-    for trial in 0..1600 {
+    for trial in 0..700 {
         let wheels = trial % 2 == 0;
         let guard = guard(wheels, bearing(0.0));
         let command = drawn.command(wheels);
@@ -171,14 +171,14 @@ fn nobody_can_be_touched_by_a_part_that_moves_toward_him_in_a_verified_plan() {
             }
         }
     }
-    assert!(verified.iter().all(|count| *count > 100), "{verified:?}");
+    assert!(verified.iter().all(|count| *count > 40), "{verified:?}");
 }
 
 #[test]
 fn a_robot_that_follows_its_plan_to_a_share_is_behind_everybody_too() {
     let mut drawn = Drawn(Stream::new(8, 1));
     let mut verified = 0;
-    for trial in 0..600 {
+    for trial in 0..300 {
         let wheels = trial % 2 == 0;
         let guard = guard(wheels, bearing(0.1));
         let command = drawn.command(wheels);
@@ -211,7 +211,7 @@ fn a_robot_that_follows_its_plan_to_a_share_is_behind_everybody_too() {
             }
         }
     }
-    assert!(verified > 60, "{verified}");
+    assert!(verified > 30, "{verified}");
 }
 
 fn room(drawn: &mut Drawn) -> StaticMap {
@@ -229,7 +229,7 @@ fn room(drawn: &mut Drawn) -> StaticMap {
 fn a_verified_plan_keeps_off_walls() {
     let mut drawn = Drawn(Stream::new(9, 1));
     let mut verified = 0;
-    for trial in 0..4000 {
+    for trial in 0..1200 {
         let wheels = trial % 2 == 0;
         let guard = guard(wheels, bearing(0.0));
         let command = drawn.command(wheels);
@@ -253,7 +253,7 @@ fn a_verified_plan_keeps_off_walls() {
             assert!(gap > kept - 8e-4, "{command:?} {time} {gap} {kept}");
         }
     }
-    assert!(verified > 100, "{verified}");
+    assert!(verified > 30, "{verified}");
 }
 
 #[test]

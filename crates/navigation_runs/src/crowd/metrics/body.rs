@@ -26,6 +26,7 @@ impl ObservedBody<'_> {
     }
 
     /// Distance of a place, given from the robot, from the outline at an instant in m; negative inside.
+    #[must_use]
     pub fn distance(&self, instant: usize, place: Point) -> f64 {
         let frame = self.frame(instant, 0.0);
         self.outline.signed_distance(frame.inward(place))
@@ -40,6 +41,7 @@ impl ObservedBody<'_> {
 
     /// Whether a disc of a radius in m, that moves between two places given from the robot, touches the outline in the step
     /// from an instant.
+    #[must_use]
     pub fn meets(&self, instant: usize, [from, to]: [Point; 2], radius: f64) -> bool {
         let most = (to - from).norm() + self.swing(instant);
         let gap = |share: f64| {
@@ -53,6 +55,7 @@ impl ObservedBody<'_> {
 
     /// Direction of a place given from the robot, outward of the outline at an instant, and the velocity in m/s that
     /// turning in a step of `step` s gives to the nearest point of the outline.
+    #[must_use]
     pub fn toward(&self, instant: usize, place: Point, step: f64) -> [Point; 2] {
         let frame = self.frame(instant, 0.0);
         let nearest = self
@@ -67,6 +70,7 @@ impl ObservedBody<'_> {
 
     /// Least distance from a wall in m in the step to an instant that began at a place, at its end, or zero where it is
     /// touched before; negative inside.
+    #[must_use]
     pub fn gap_on_way(&self, wall: &Wall, instant: usize, [from, to]: [Point; 2]) -> f64 {
         let before = instant.saturating_sub(1);
         let at = |share: f64| {
