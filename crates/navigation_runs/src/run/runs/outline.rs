@@ -78,11 +78,6 @@ impl OutlineState {
     fn most(&self, step: &BodyStep) -> f64 {
         (step.to - step.from).norm() + step.turn.abs() * self.radius
     }
-
-    /// Velocity of the touching point in m/s and, of that, its part toward the other body.
-    fn speeds(&self, step: &BodyStep, share: f64, touch: &Separation) -> [f64; 2] {
-        touch.speeds(&step.motion(share))
-    }
 }
 
 impl<W: World, R: Real> LaneState<W, R> {
@@ -191,14 +186,13 @@ impl<W: World, R: Real> LaneState<W, R> {
         let distance = (gap + reach).max(0.0);
         let least = &mut self.min_distance_squared[index];
         *least = least.replace(0, least.lane(0).min(distance * distance));
-        let state = self.touched_by(outline, (step, placed), (touch, touching, met), separation);
+        let state = self.touched_by((step, placed), (touch, touching, met), separation);
         self.touches[index * R::WIDTH] = state;
     }
 
     /// State of the contacts with an obstacle after a step.
     fn touched_by(
         &mut self,
-        outline: &OutlineState,
         (step, placed): (&BodyStep, &PlacedObstacle),
         (mut touch, touching, met): (ContactState, bool, Option<f64>),
         separation: impl Fn(f64) -> Separation,
@@ -218,7 +212,7 @@ impl<W: World, R: Real> LaneState<W, R> {
         // From the first touch of the step on until they leave each other or overlap deeply.
         let mut at_fault = false;
         let mut decided = false;
-        let [speed, toward] = outline.speeds(step, share, &separation(share));
+        let [speed, toward] = separation(share).speeds(&step.motion(share));
         for part in 0..=LOOKS {
             let now = share + (1.0 - share) * f64::from(part) / f64::from(LOOKS);
             let found = separation(now);
@@ -229,7 +223,7 @@ impl<W: World, R: Real> LaneState<W, R> {
                 decided = true;
                 break;
             }
-            let [fast, nearer] = outline.speeds(step, now, &found);
+            let [fast, nearer] = found.speeds(&step.motion(now));
             at_fault |= fast > CONTACT_SPEED && nearer > 0.0;
         }
         if let Some(contact) = &mut touch.first {
