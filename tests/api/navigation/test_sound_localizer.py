@@ -21,7 +21,7 @@ def world(*sensors: nav.sensing.RobotSensor, **options: object) -> nav.World:
 
 
 @pytest.mark.parametrize("body", [nav.HolonomicRobot(), nav.DifferentialDriveRobot()])
-@pytest.mark.parametrize("law", [nav.VirtualImpedanceLaw(reach=0.3), nav.VirtualForceField(side_hysteresis=3.05)])
+@pytest.mark.parametrize("law", [nav.laws.VirtualImpedanceLaw(reach=0.3), nav.VirtualForceField(side_hysteresis=3.05)])
 def test_a_robot_ends_at_the_standoff_from_who_carries_the_sound(body: object, law: nav.Law) -> None:
     run = nav.simulate(world(EXACT, body=body, law=law))
     apart = math.dist(run.position[-1], (6.0, 3.0))
@@ -32,7 +32,7 @@ def test_a_robot_ends_at_the_standoff_from_who_carries_the_sound(body: object, l
 
 
 def test_without_the_sound_it_goes_to_its_own_goal() -> None:
-    followed, alone = (nav.simulate(world(*sensors, law=nav.VirtualImpedanceLaw())) for sensors in ([EXACT], []))
+    followed, alone = (nav.simulate(world(*sensors, law=nav.laws.VirtualImpedanceLaw())) for sensors in ([EXACT], []))
     assert math.dist(alone.position[-1], (9.0, 9.0)) < 0.5 < math.dist(followed.position[-1], (9.0, 9.0))
 
 
@@ -49,19 +49,19 @@ def test_a_scenario_with_a_carrier_follows_and_nobody_else_is_asked() -> None:
     far = nav.Disc(center=(20.0, 20.0), radius=0.3)
     scene = nav.Scenario(start=(0, 0), goal=(0, 8), obstacles=[leader, far], time_limit=15.0)
     built = nav.robots.AsBuilt(sensors=[EXACT])
-    run = nav.simulate(scene, nav.VirtualImpedanceLaw(reach=0.3), built=built)
+    run = nav.simulate(scene, nav.laws.VirtualImpedanceLaw(reach=0.3), built=built)
     assert 2.0 < run.position[-1, 0] < 4.0
     assert abs(run.position[-1, 1]) < 0.5
 
 
 def test_scatter_is_that_of_the_seed_and_grows_with_its_factor() -> None:
     noisy = nav.sensing.SoundLocalizer(carrier=0, noise_scale=1.0, burst_interval=0.1)
-    first, again, exact = (nav.simulate(world(each, law=nav.VirtualImpedanceLaw())) for each in (noisy, noisy, EXACT))
+    first, again, exact = (nav.simulate(world(each, law=nav.laws.VirtualImpedanceLaw())) for each in (noisy, noisy, EXACT))
     assert first.position.tobytes() == again.position.tobytes() != exact.position.tobytes()
 
 
 def test_a_stepped_run_is_the_whole_run() -> None:
-    place = world(EXACT, law=nav.VirtualImpedanceLaw())
+    place = world(EXACT, law=nav.laws.VirtualImpedanceLaw())
     stepped = nav.Run(place)
     while not stepped.finished:
         stepped.step()
@@ -81,4 +81,4 @@ def test_bad_options_are_refused_by_name() -> None:
     with pytest.raises(InvalidParameterError, match="burst_interval must be finite and positive"):
         nav.sensing.SoundLocalizer(carrier=0, burst_interval=0.0)
     with pytest.raises(InvalidParameterError, match="carrier must be the index"):
-        nav.simulate(world(nav.sensing.SoundLocalizer(carrier=7), law=nav.VirtualImpedanceLaw()))
+        nav.simulate(world(nav.sensing.SoundLocalizer(carrier=7), law=nav.laws.VirtualImpedanceLaw()))

@@ -48,7 +48,7 @@ class SoundLocalizer(RobotSensor):
     >>> from hrsafety import navigation as nav
     >>> leader = nav.Person(start=(1.5, 0.0), route=[(6.0, 3.0)], desired_speed=0.5)
     >>> sensors = [nav.sensing.SoundLocalizer(carrier=0), nav.sensing.Ultrasonic(max_speed=1.5)]
-    >>> law = nav.VirtualImpedanceLaw(reach=0.4)
+    >>> law = nav.laws.VirtualImpedanceLaw(reach=0.4)
     >>> robot = nav.Robot(start=(0, 0), goal=(6, 3), arrival_tolerance=1.4, sensors=sensors, law=law)
     >>> run = nav.simulate(nav.World(people=[leader], robots=[robot], time_limit=30.0))
     >>> run.outcome
