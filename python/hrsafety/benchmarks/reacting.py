@@ -87,7 +87,8 @@ def _standard(case: Case, index: int) -> World:
     """Return the standard scenes, seed after seed."""
     seed, number = divmod(index, len(scenarios.SOCIAL))
     world = scenarios.social(scenarios.SOCIAL[number], case.seed + seed)
-    law = case.built(margin=SCENE_ERROR, map=nav.StaticMap.from_polylines(world.wall_shapes))
+    walls = [each for each in world.wall_shapes if isinstance(each, tuple)]
+    law = case.built(margin=SCENE_ERROR, map=nav.StaticMap.from_polylines(walls))
     return _sensed(replace(world, robots=[replace(world.robots[0], law=law)]), case)
 
 

@@ -225,17 +225,17 @@ def dead_end(index: int, seed: int) -> nav.StaticMap:
         Walls of the dead ends and of the hall around them.
     """
     draw = np.random.Generator(np.random.PCG64([seed, index]))
-    walls = [([(-2.0, -5.0), (12.0, -5.0), (12.0, 5.0), (-2.0, 5.0), (-2.0, -5.0)], 0.02)]
+    walls = [nav.maps.PolylineWall(((-2.0, -5.0), (12.0, -5.0), (12.0, 5.0), (-2.0, 5.0), (-2.0, -5.0)), 0.02)]
     for number in range(1 + index % 2):
         depth, half = draw.uniform(1.0, 2.2), 0.5 * draw.uniform(1.2, 2.4)
         end, middle = 3.5 + 3.0 * number + draw.uniform(0.0, 0.5), draw.uniform(-0.4, 0.4)
         low, high = middle - half, middle + half
-        walls.append(([(end - depth, low), (end, low), (end, high), (end - depth, high)], 0.05))
+        walls.append(nav.maps.PolylineWall(((end - depth, low), (end, low), (end, high), (end - depth, high)), 0.05))
     return nav.StaticMap(walls=walls)
 
 
 def _dead_ends(case: Case) -> Iterator[Row]:
-    ends = {"start": (0.0, 0.0), "heading": 0.0, "goal": (10.0, 0.0)}
+    ends: dict[str, Any] = {"start": (0.0, 0.0), "heading": 0.0, "goal": (10.0, 0.0)}
     for index in case.cases:
         found = trial(_entry(case), dead_end(index, case.seed), case.seed * DEAD_ENDS + index, **ends)
         yield _row(index, found)

@@ -56,7 +56,8 @@ def test_a_scenario_with_a_carrier_follows_and_nobody_else_is_asked() -> None:
 
 def test_scatter_is_that_of_the_seed_and_grows_with_its_factor() -> None:
     noisy = nav.sensing.SoundLocalizer(carrier=0, noise_scale=1.0, burst_interval=0.1)
-    first, again, exact = (nav.simulate(world(each, law=nav.laws.VirtualImpedanceLaw())) for each in (noisy, noisy, EXACT))
+    law = nav.laws.VirtualImpedanceLaw()
+    first, again, exact = (nav.simulate(world(each, law=law)) for each in (noisy, noisy, EXACT))
     assert first.position.tobytes() == again.position.tobytes() != exact.position.tobytes()
 
 

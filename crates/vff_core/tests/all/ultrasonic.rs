@@ -214,7 +214,11 @@ fn firing_in_turn_and_faster_bodies_need_larger_regions() {
     let late = 11.0 * scenario.control_period();
     assert!(in_turn - moving >= late);
     // 3 m along the axis of sensors 0.15 m ahead of the center.
-    assert!((sonar(12, Firing::Together).reach() - 3.15).abs() < 1e-12);
+    let (_, reach) = sonar(12, Firing::Together)
+        .sight(&scenario)
+        .unwrap()
+        .unwrap();
+    assert!((reach - 3.15).abs() < 1e-12);
     let backward = Ultrasonic {
         max_speed: -1.0,
         ..sonar(1, Firing::Together)
