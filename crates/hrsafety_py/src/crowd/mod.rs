@@ -408,6 +408,9 @@ pub fn crowd_simulate<'py>(
     fields.collect()
 }
 
+/// Arrival in s and places every 0.2 s.
+type ArrivalAndPath = (f64, Vec<[f64; 2]>);
+
 /// When a robot that knows the future arrives in each of some worlds, in s, and its places every 0.2 s; `None` where it
 /// cannot.
 #[pyfunction]
@@ -416,7 +419,7 @@ pub fn crowd_certificates<'py>(
     py: Python<'py>,
     worlds: Vec<PyRef<'py, CrowdWorld>>,
     threads: Option<usize>,
-) -> PyResult<Vec<Option<(f64, Vec<[f64; 2]>)>>> {
+) -> PyResult<Vec<Option<ArrivalAndPath>>> {
     let cores: Vec<_> = worlds.iter().map(|world| Arc::clone(&world.core)).collect();
     let report = Report::new(None, cores.len());
     let found = watched(py, report, |control: &crate::watch::Control<'_>| {

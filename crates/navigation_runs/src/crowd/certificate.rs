@@ -22,9 +22,9 @@ const INTERVAL: f64 = 0.2;
 /// Sets in a second.
 const RATE: f64 = 5.0;
 /// Steps of the lattice by which a node is reached within an interval: 0.16 m, at 0.8 m/s.
-const REACH: i64 = 3;
+const REACH: isize = 3;
 /// Columns to either side that are reached in rows 0 to 3 away.
-const COLUMNS: [u32; 4] = [3, 3, 2, 1];
+const COLUMNS: [u8; 4] = [3, 3, 2, 1];
 /// Clearance from walls and from people in m, beyond the radii.
 const WALL_ROOM: f64 = 0.08;
 const PERSON_ROOM: f64 = 0.05;
@@ -120,16 +120,16 @@ impl Lattice {
             }
             for away in 0..=REACH {
                 for side in if away == 0 {
-                    &[0_i64][..]
+                    &[0_isize][..]
                 } else {
                     &[-1, 1][..]
                 } {
-                    let Some(other) = row.checked_add_signed((side * away) as isize) else {
+                    let Some(other) = row.checked_add_signed(side * away) else {
                         continue;
                     };
                     if other < self.rows {
                         let target = &mut wide[other * self.words..(other + 1) * self.words];
-                        spread(line, COLUMNS[away.unsigned_abs() as usize], target);
+                        spread(line, COLUMNS[away.unsigned_abs()], target);
                     }
                 }
             }
@@ -162,11 +162,11 @@ impl Lattice {
     /// A node of a set within reach of a node.
     fn before(&self, set: &[u64], column: usize, row: usize) -> Option<(usize, usize)> {
         for down in -REACH..=REACH {
-            let wide = i64::from(COLUMNS[down.unsigned_abs() as usize]);
+            let wide = isize::from(COLUMNS[down.unsigned_abs()]);
             for left in -wide..=wide {
                 let other = column
-                    .checked_add_signed(left as isize)
-                    .zip(row.checked_add_signed(down as isize));
+                    .checked_add_signed(left)
+                    .zip(row.checked_add_signed(down));
                 if let Some((column, row)) =
                     other.filter(|(column, row)| *column < self.columns && *row < self.rows)
                     && self.holds(set, column, row)
@@ -180,7 +180,7 @@ impl Lattice {
 }
 
 /// Adds a row of bits, and those up to some columns away, to another row.
-fn spread(line: &[u64], columns: u32, target: &mut [u64]) {
+fn spread(line: &[u64], columns: u8, target: &mut [u64]) {
     for (index, word) in line.iter().enumerate() {
         let left = if index > 0 { line[index - 1] } else { 0 };
         let right = line.get(index + 1).copied().unwrap_or(0);
@@ -282,11 +282,11 @@ pub fn certify(world: &CrowdWorld, interrupted: Interrupted<'_>) -> Result<Optio
         }
         for instant in (2 * number + 1..=2 * number + 3).map(|part| (part * half).min(instants - 1))
         {
-            for person in 0..people {
+            for (person, own) in radii.iter().enumerate() {
                 let at = 2 * (instant * people + person);
                 let place = Vector::new(positions[at], positions[at + 1]);
                 if !place.x.is_nan() {
-                    lattice.clear_disc(&mut next, place, radius + radii[person] + PERSON_ROOM);
+                    lattice.clear_disc(&mut next, place, radius + own + PERSON_ROOM);
                 }
             }
         }
