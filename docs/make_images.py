@@ -19,6 +19,7 @@ SAVED = re.compile(r"\"([\w.]+\.(?:png|gif))\"")
 GALLERY = "gallery.md"
 # Drawn from the source code by a script of its own.
 DRAWN = {
+    "standard_scenes.png": "measure_scenes.py",
     "architecture.png": "make_architecture.py",
     "live.png": "make_views.py",
     "player.png": "make_views.py",

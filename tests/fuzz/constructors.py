@@ -13,6 +13,7 @@ import numpy as np
 
 import hrsafety
 from hrsafety import (
+    arena,
     arms,
     contact,
     datasets,
@@ -43,6 +44,7 @@ NO_CONSTRUCTORS: dict[type, str] = {
     **dict.fromkeys((nav.metrics.Falsification, nav.metrics.Pursuit), "made by falsify"),
     **dict.fromkeys((nav.metrics.SafetyDecision, nav.metrics.SafetyRecord), "made by record_safety"),
     nav.laws.ShieldDecision: "made by a shield",
+    **dict.fromkeys((arena.Certificate, arena.Ranks), "made by functions of the arena"),
     nav.maps.Plan: "made by a map",
     **dict.fromkeys((standards.ContactLimit, standards.SpeedCurve), "made by functions of standards"),
     plausibility.ResultWarning: "made by the package",
@@ -159,6 +161,7 @@ REQUIRED: dict[Callable[..., Any], Right] = {
     nav.robots.WheelReference: {"angle": _SAMPLES, "speed": np.ones(5), "acceleration": np.zeros(5)},
     nav.sensing.AlphaBeta: {"position_gain": 0.5, "velocity_gain": 0.1},
     nav.sensing.ColorPatch: {"height": 0.1},
+    nav.sensing.SoundLocalizer: {"carrier": 0},
     nav.tracking.CircleReference: {"center": (0.0, 0.0), "radius": 2.0, "speed": 0.5},
     nav.tracking.LineReference: {"start": (0.0, 0.0)},
     nav.tracking.PathReference: {"time": _SAMPLES, "position": _SQUARE, "velocity": np.zeros((5, 2))},

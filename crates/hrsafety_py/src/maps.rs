@@ -15,6 +15,7 @@ use vff_core::world::obstacle::PlacedShape;
 use crate::errors::{CoreError, CoreResult};
 use crate::keywords::{parameter_class, taken, value_class};
 use crate::parameters::Scenario;
+use crate::robots::footprint::{Footprint, each};
 use crate::watch::{Report, watched};
 
 type Rows<'py> = PyReadonlyArray2<'py, f64>;
@@ -164,6 +165,19 @@ impl StaticMap {
     /// Lower and upper corner of the box around everything.
     fn bounds(&self) -> Option<[[f64; 2]; 2]> {
         self.0.bounds().map(|corners| corners.map(Into::into))
+    }
+
+    /// Distances of a footprint at poses as rows (x, y, heading), zero where they meet.
+    fn footprint_clearances<'py>(
+        &self,
+        py: Python<'py>,
+        footprint: &Footprint,
+        poses: Rows<'_>,
+    ) -> PyResult<Column<'py>> {
+        each(py, &poses, |[x, y, heading]: &[f64; 3]| {
+            let pose = Frame::at([*x, *y], *heading);
+            footprint.0.clearance(&pose, &self.0, f64::INFINITY)
+        })
     }
 }
 

@@ -65,7 +65,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
         HolonomicRobot as HolonomicRobot,
     )
     from hrsafety.navigation.run import Run as Run
-    from hrsafety.navigation.scan_controller import ScanController as ScanController
+    from hrsafety.navigation.scan_controller import LidarScan as LidarScan, ScanController as ScanController
     from hrsafety.navigation.scenario import Scenario as Scenario
     from hrsafety.navigation.scenario_arrays import Scenarios as Scenarios
     from hrsafety.navigation.sensing.lidar import Lidar as Lidar

@@ -4,11 +4,9 @@ use nalgebra::Vector2;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use vff_core::world::footprint::{self, Arc, PassingWay};
-use vff_core::world::frame::Frame;
 use vff_core::world::shape::Shape;
 
 use crate::errors::CoreError;
-use crate::maps::StaticMap;
 
 type Rows<'py> = PyReadonlyArray2<'py, f64>;
 type Column<'py> = Bound<'py, PyArray1<f64>>;
@@ -95,19 +93,6 @@ impl Footprint {
         Some((found.shares, found.deep, found.speeds))
     }
 
-    /// Distances of the outline at poses as rows (x, y, heading) from a map, zero where they meet.
-    fn clearances<'py>(
-        &self,
-        py: Python<'py>,
-        map: &StaticMap,
-        poses: Rows<'_>,
-    ) -> PyResult<Column<'py>> {
-        each(py, &poses, |[x, y, heading]: &[f64; 3]| {
-            let pose = Frame::at([*x, *y], *heading);
-            self.0.clearance(&pose, &map.0, f64::INFINITY)
-        })
-    }
-
     /// Distances of points as rows (x, y) from the room ahead of the part that moves outward.
     fn room_ahead_distances<'py>(
         &self,
@@ -133,7 +118,7 @@ fn passing(row: &[f64; 7]) -> PassingWay {
 }
 
 /// A number for each row, which the caller has made contiguous.
-fn each<'py, const N: usize>(
+pub(crate) fn each<'py, const N: usize>(
     py: Python<'py>,
     rows: &Rows<'_>,
     of: impl Fn(&[f64; N]) -> f64 + Send,

@@ -203,7 +203,7 @@ class Footprint(Parameters):
         if angle.shape not in ((), (len(at),)):
             raise ShapeError("heading", f"({len(at)},)", angle.shape)
         angle = np.broadcast_to(angle, len(at))
-        return self._native.clearances(map._native, np.column_stack([at, angle]))
+        return map._native.footprint_clearances(self._native, np.column_stack([at, angle]))
 
     def swept_distance(self, places: npt.ArrayLike, *, distance: float, angle: float) -> Array:
         """Return the least distances of what stands still from the outline while the robot drives along an arc.
