@@ -99,7 +99,7 @@ class SearchProblem:
             word(f"objectives[{name!r}]", goal, ("min", "max"))
             if known[name].kind not in ("number", "integer"):
                 raise InvalidParameterError("objectives", "be columns of numbers", name, "put it into require")
-        wanted = _mapping("require", self.require or {})
+        wanted = _mapping("require", {} if self.require is None else self.require)
         for name, value in wanted.items():
             _check_required(known[word("require", name, tuple(known))], value)
         object.__setattr__(self, "objectives", goals)
