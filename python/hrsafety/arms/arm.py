@@ -27,7 +27,7 @@ from hrsafety.arms.inputs import (
     vectors_of,
 )
 from hrsafety.arms.masses import RULES, EffectiveMass, Extremes, PointMasses, mass_by_rule
-from hrsafety.arms.mjcf import is_mjcf, mjcf_arm
+from hrsafety.arms.mjcf import filled_in, is_mjcf, mjcf_arm
 from hrsafety.arms.payload import Payload, payloads_of
 from hrsafety.arms.rolling import RollingBase
 from hrsafety.errors import InvalidParameterError
@@ -194,7 +194,9 @@ class Arm(Facts):
         if is_mjcf(text):
             found = mjcf_arm(text, Path(str(path_or_text)) if name else None)
             text, notes = found.urdf, found.doubts
-            armature = found.armature or None if armature is None else armature
+            if armature is None:
+                armature = found.armature or None
+                notes = (*notes, *filled_in(found.armature))
         try:
             motors = armature_of(armature, () if armature is None else tuple(_hrsafety.urdf_joint_names(text)))
             masses = armature_of(link_masses, (), "link_masses")

@@ -20,6 +20,8 @@ _ROOT = re.compile(r"\s*(?:<\?.*?\?>\s*|<!--.*?-->\s*|<!DOCTYPE[^>]*>\s*)*<mujoc
 _NAN = re.compile(r"""["'\s]nan["'\s]""", re.IGNORECASE)
 WATER = 1000.0
 """Density in kg/m^3 that MuJoCo takes where a file gives none."""
+ALIKE = 3
+"""Motors from which one number for all of them is doubted."""
 SLIDE, HINGE = 2, 3
 """Codes of joints that an arm has."""
 OF_JOINTS = 2
@@ -106,6 +108,17 @@ def _guessed(names: list[str]) -> ResultWarning:
         "give inertial, or mass or density of the geoms"
     )
     return ResultWarning("density", "urdf", message)
+
+
+def filled_in(armature: dict[str, float]) -> Iterator[ResultWarning]:
+    """Yield a doubt about motor inertias of a file that are one number for three joints or more."""
+    values = list(armature.values())
+    if len(values) >= ALIKE and len(set(values)) == 1:
+        message = (
+            f"armature of the MJCF is {values[0]:g} for all of its {len(values)} motors: such a number is often chosen "
+            "for a stable simulation, and motors of a hand and of a shoulder differ; give armature"
+        )
+        yield ResultWarning("armature_suspicious", "armature", message)
 
 
 class _Written:

@@ -84,6 +84,21 @@ def mass_matrix(model: object, data: object, full: np.ndarray) -> np.ndarray:
     return full
 
 
+def test_one_motor_inertia_for_all_joints_of_a_file_is_doubted_unless_others_are_given() -> None:
+    link = "<body name='{0}'><joint name='j{0}' axis='0 0 1' armature='{1}'/><inertial pos='0.2 0 0' mass='1' "
+    link += "diaginertia='0.02 0.02 0.02'/>{2}</body>"
+
+    def doubts(*armature: float, **options: object) -> list[str]:
+        inner = ""
+        for number, value in enumerate(armature):
+            inner = link.format(number, value, inner)
+        arm = arms.Arm.from_urdf(f"<mujoco><worldbody>{inner}</worldbody></mujoco>", **options)  # type: ignore[arg-type]
+        return [each.message for each in arm.warnings if "stable simulation" in each.message]
+
+    assert len(doubts(0.1, 0.1, 0.1)) == 1
+    assert doubts(0.1, 0.1, 0.2) == doubts(0.1, 0.1) == doubts(0.1, 0.1, 0.1, armature=0.3) == []
+
+
 def test_motors_of_the_file_are_taken_unless_others_are_given() -> None:
     text = chain(1)
     assert dict(arms.Arm.from_urdf(text).armature)["j30"] == pytest.approx(0.3)
