@@ -24,6 +24,7 @@ MOST_LINES, MOST_LETTERS = 40, 4000
 NO_RESULTS = {
     impact.ConstrainedHead: "a parameter object without parameters",
     nav.laws.Law: "the base of laws",
+    nav.LidarScan: "what a controller is told",
     nav.laws.Situation: "what a law in Python is given",
     nav.sensing.RobotSensor: "the base of sensors",
     sweep.Design: "the base of designs",
