@@ -144,6 +144,9 @@ class ScanController:
     says why: no scan for ``scan_timeout``, a pose off the plan, a clock that is set back. After a pose that jumped all
     that was seen before is forgotten, as it was seen from elsewhere.
 
+    **It knows nothing of people**: who moves is an obstacle where the last scan showed it, and may be driven into. What
+    is thinner than the beams are apart, glass, and what is not in the plane of the scans are not covered either.
+
     Parameters
     ----------
     rollouts : ArcRollouts
@@ -170,7 +173,7 @@ class ScanController:
     position_tracking : float
         How far in m the robot may be from where its plan has it until rest; plans keep so much more away.
     heading_tracking : float
-        How far in rad its heading may be.
+        How far in rad its heading may be; plans keep the way of the farthest corner more away.
 
     Raises
     ------

@@ -101,6 +101,34 @@ def test_without_scans_it_brakes_to_rest_within_its_plan() -> None:
     assert speeds[-1] == 0.0
 
 
+def test_small_slips_of_one_verified_plan_add_up() -> None:
+    robot, _, pose, twist = driving()
+    slip, off = 0.008, []
+    for step in range(10, 24):
+        command = robot.update(step * PERIOD, pose[:2], pose[2])
+        off.append(command.off_plan)
+        x, y, angle = moved(pose, twist, (command.speed, command.turn_rate))
+        pose, twist = (
+            (x + slip * math.cos(angle), y + slip * math.sin(angle), angle),
+            (command.speed, command.turn_rate),
+        )
+    # After 0.3 s without a scan a plan runs on, which keeps 0.01 m more away for the whole of it.
+    seen = [each for each in off if each is not None]
+    assert seen
+    assert seen[0][0] == pytest.approx(2 * slip, abs=1e-3)
+
+
+def test_an_update_without_a_pose_moves_the_plan_on() -> None:
+    robot, lidar, pose, twist = driving()
+    for step in range(10, 14):
+        told = (None, None) if step == 10 else (pose[:2], pose[2])
+        command = robot.update(step * PERIOD, *told, [] if step == 10 else [lidar.scan(pose[:2], pose[2])])
+        assert command.status == ("braking" if step == 10 else command.status)
+        assert command.off_plan is None
+        pose = moved(pose, twist, (command.speed, command.turn_rate))
+        twist = command.speed, command.turn_rate
+
+
 def test_scans_without_a_reading_tell_nothing() -> None:
     robot, _, pose, twist = driving()
     for step in range(10, 40):

@@ -29,7 +29,7 @@ pub struct Scanner {
     pub range_max: f64,
 }
 
-/// What updates may be like.
+/// Bounds of scans and poses within which the robot drives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trust {
     /// After so many seconds without a scan the robot stops.
@@ -81,12 +81,12 @@ pub struct Doubts {
     pub unknown_beams: usize,
 }
 
-/// What to do until the next update.
+/// Command until the next update.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Order {
     /// Twist at the end of the control period.
     pub twist: Twist,
-    /// What became of the commands.
+    /// Fate of the commands.
     pub status: Status,
     /// Time to the goal in s, where there is a way.
     pub time_to_go: Option<f64>,
@@ -96,7 +96,7 @@ pub struct Order {
     pub arrived: bool,
     /// Age of the newest scan in s; infinite before the first one.
     pub scan_age: f64,
-    /// What is not as it should be.
+    /// Broken assumptions.
     pub doubts: Doubts,
     /// Times from now in s with the twists of the plan, between which they change evenly: what to do without another
     /// update.
@@ -116,6 +116,12 @@ pub struct Controller {
     explorer: Explorer,
     /// Poses that were told with their instants in s, headings without jumps.
     poses: VecDeque<(f64, Vector2<f64>, f64)>,
+    /// Pose at the last update of a robot that has kept to the plan since it was verified.
+    planned: Option<Frame>,
+    /// Pose at the last update of one that has kept to it since the last pose was told.
+    reckoned: Option<Frame>,
+    /// Time of the last update in s.
+    updated: Option<f64>,
     newest: Vec<f64>,
     arrived: bool,
 }
@@ -153,7 +159,7 @@ impl Controller {
             .iter()
             .map(|scanner| scanner.bearings.iter().map(unit).collect())
             .collect();
-        let explorer = Explorer::new(&robot, with_margin(options, trust), goal)?;
+        let explorer = Explorer::new(&robot, with_margin(&robot, options, trust), goal)?;
         Ok(Self {
             newest: vec![f64::NEG_INFINITY; scanners.len()],
             robot,
@@ -165,6 +171,9 @@ impl Controller {
             tolerance,
             explorer,
             poses: VecDeque::new(),
+            planned: None,
+            reckoned: None,
+            updated: None,
             arrived: false,
         })
     }
@@ -195,13 +204,13 @@ impl Controller {
                 .map_err(|error| error.within(&format!("scans[{index}]")))?;
         }
         let mut doubts = Doubts::default();
-        if self.poses.back().is_some_and(|(last, ..)| time <= *last) {
+        if self.updated.is_some_and(|last| time <= last) {
             doubts.clock = true;
             // Which instants scans are from is not known any more: only the plan is left.
-            self.poses.clear();
-            self.newest.fill(f64::NEG_INFINITY);
+            self.start_again();
             return Ok(self.brake(time, doubts));
         }
+        self.pass(time);
         let Some((position, heading)) = pose else {
             return Ok(self.brake(time, doubts));
         };
@@ -218,6 +227,9 @@ impl Controller {
             return Ok(self.brake(time, doubts));
         }
         let decision = self.explorer.decide(&robot);
+        if decision.status != Status::Braking {
+            self.planned = Some(robot);
+        }
         Ok(self.order(time, decision, doubts))
     }
 
@@ -246,31 +258,49 @@ impl Controller {
         checked.checked().map(|_| ())
     }
 
+    /// Forgets when and where the robot was.
+    fn start_again(&mut self) {
+        self.poses.clear();
+        (self.planned, self.reckoned, self.updated) = (None, None, None);
+        self.newest.fill(f64::NEG_INFINITY);
+    }
+
+    /// Moves the robot along its plan until a time in s.
+    fn pass(&mut self, time: f64) {
+        if let Some(last) = self.updated.replace(time) {
+            let elapsed = time - last;
+            self.planned = self.planned.map(|pose| self.driven(&pose, elapsed));
+            self.reckoned = self.reckoned.map(|pose| self.driven(&pose, elapsed));
+            self.explorer.advance(elapsed);
+        }
+    }
+
     /// Notes a pose, and whether the robot can have come there by its plan.
     fn place(&mut self, time: f64, position: Vector2<f64>, heading: f64, doubts: &mut Doubts) {
-        let Some((last, before, angle)) = self.poses.back().copied() else {
-            self.poses.push_back((time, position, heading));
-            return;
-        };
-        let turn = (heading - angle + PI).rem_euclid(TAU) - PI;
-        let elapsed = time - last;
-        let driven = self.driven(&Frame::at(before.into(), angle), elapsed);
-        self.explorer.advance(elapsed);
-        let away = (position - driven.position).norm();
-        let off = (driven.angle() - heading + PI).rem_euclid(TAU) - PI;
+        let robot = Frame::at(position.into(), heading);
         let trust = self.trust;
-        if away > trust.position_tracking || off.abs() > trust.heading_tracking {
-            doubts.off_plan = Some([away, off.abs()]);
+        let [away, off] = apart(&self.planned.unwrap_or(robot), &robot);
+        if away > trust.position_tracking || off > trust.heading_tracking {
+            doubts.off_plan = Some([away, off]);
         }
+        let [away, off] = apart(&self.reckoned.unwrap_or(robot), &robot);
         let far = JUMP.max(2.0 * trust.position_tracking);
-        if away > far || off.abs() > JUMP.max(2.0 * trust.heading_tracking) {
+        if away > far || off > JUMP.max(2.0 * trust.heading_tracking) {
             // Whatever was seen was seen from elsewhere.
             doubts.forgotten = true;
             self.explorer.forget();
             self.newest.fill(f64::NEG_INFINITY);
             self.poses.clear();
+            self.planned = None;
         }
-        self.poses.push_back((time, position, angle + turn));
+        // Who rests has come to the end of its plan, wherever that is.
+        if self.planned.is_none() || self.explorer.twist() == Twist::default() {
+            self.planned = Some(robot);
+        }
+        self.reckoned = Some(robot);
+        let before = self.poses.back().map_or(heading, |(.., angle)| *angle);
+        let turn = (heading - before + PI).rem_euclid(TAU) - PI;
+        self.poses.push_back((time, position, before + turn));
         while self.poses.len() > 2
             && (self.poses.len() > MOST_POSES || self.poses[1].0 < time - self.trust.oldest_scan)
         {
@@ -368,21 +398,31 @@ impl Controller {
     /// # Errors
     /// The goal is not finite.
     pub fn restart(&mut self, goal: [f64; 2]) -> Result<()> {
-        self.explorer = Explorer::new(&self.robot, with_margin(self.options, self.trust), goal)?;
+        self.explorer = Explorer::new(
+            &self.robot,
+            with_margin(&self.robot, self.options, self.trust),
+            goal,
+        )?;
         self.goal = goal;
-        self.poses.clear();
-        self.newest.fill(f64::NEG_INFINITY);
+        self.start_again();
         self.arrived = false;
         Ok(())
     }
 }
 
-/// Wherever the robot may be off its plan, it keeps so much more away.
-fn with_margin(options: ExplorerOptions, trust: Trust) -> ExplorerOptions {
+/// Wherever the robot may be off its plan, it keeps so much more away; a heading that is off moves its corners.
+fn with_margin(robot: &Robot, options: ExplorerOptions, trust: Trust) -> ExplorerOptions {
+    let corners = trust.heading_tracking * robot.footprint.outer_radius();
     ExplorerOptions {
-        margin: options.margin + trust.position_tracking,
+        margin: options.margin + trust.position_tracking + corners,
         ..options
     }
+}
+
+/// Distance in m and angle in rad between two poses.
+fn apart(one: &Frame, other: &Frame) -> [f64; 2] {
+    let turn = (one.angle() - other.angle() + PI).rem_euclid(TAU) - PI;
+    [(other.position - one.position).norm(), turn.abs()]
 }
 
 impl Scanner {
