@@ -71,7 +71,7 @@ use crate::trace::{Examined, Trace};
 use navigation_world::world::geometry::{Body, RobotState};
 use navigation_world::world::map::StaticMap;
 use navigation_world::world::scenario::{PlacedObstacle, Scenario};
-use numeric::error::Result;
+use numeric::error::{Failure, Given, Result};
 use numeric::lanes::{Real, Vector2};
 
 /// What a law knows when it is asked for a force. `B`: numbers of the scene, which robots side by
@@ -164,6 +164,20 @@ pub trait Law<R: Real>: Send {
     fn examined(&self) -> Option<Examined> {
         None
     }
+}
+
+/// Sends a law to a goal that moves, in m.
+///
+/// # Errors
+/// The law cannot head for another goal.
+pub fn send(law: &mut dyn Law<f64>, goal: Vector2<f64>) -> Result<()> {
+    if !law.can_aim() {
+        let rule = "head for a goal that moves";
+        let given = Given::Found("a law that plans the whole way to the goal of the robot".into());
+        return Err(Failure::invalid("law", rule, given));
+    }
+    law.aim(goal.into());
+    Ok(())
 }
 
 /// A law for robots side by side, each with a scene and gains of its own.

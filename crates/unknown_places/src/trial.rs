@@ -30,9 +30,9 @@ const DRIFT: u64 = 2;
 pub struct Trial {
     /// The robot.
     pub robot: Robot,
-    /// How it finds its way.
+    /// Options of map, guide and rollouts.
     pub options: ExplorerOptions,
-    /// What is there.
+    /// Map of the place.
     pub place: StaticMap,
     /// Where it starts in m and rad, at rest.
     pub start: [f64; 2],
@@ -73,10 +73,10 @@ pub enum Ended {
     TimedOut,
 }
 
-/// What became of an episode.
+/// Outcome of an episode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
-    /// How it ended.
+    /// End of the episode.
     pub ended: Ended,
     /// Time from leaving the circle around the start to the end in s.
     pub time: f64,
@@ -101,9 +101,9 @@ pub enum Moment<'a> {
     Scanned,
     /// The robot has decided.
     Decided {
-        /// What it knows.
+        /// Explorer at the instant.
         explorer: &'a Explorer,
-        /// What it decided.
+        /// Decision of the explorer.
         decision: &'a Decision,
         /// Where it takes itself to be.
         pose: &'a Frame,

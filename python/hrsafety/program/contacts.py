@@ -13,7 +13,7 @@ from hrsafety.program.exposures import Exposer, Exposure, Masses, native_contact
 from hrsafety.program.task import ContactTask
 from hrsafety.standards.contact_limits import CONTACTS
 
-__all__ = ["BLOCK", "MASSES", "Choice", "Contacts", "Waypoints"]
+__all__ = ["BLOCK", "MASSES", "Choice", "TaskContacts", "Waypoints"]
 
 Choice = tuple[str | None, ...]
 """Covering of each point."""
@@ -32,7 +32,7 @@ class Waypoints(NamedTuple):
     place: Array
 
 
-class Contacts:
+class TaskContacts:
     """Limits of contacts of a task.
 
     Parameters

@@ -14,7 +14,7 @@ from hrsafety.contact import Annex
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning, unsafe_doubts
 from hrsafety.program.annexed import annex_of_task
-from hrsafety.program.contacts import BLOCK, Contacts, Waypoints
+from hrsafety.program.contacts import BLOCK, TaskContacts, Waypoints
 from hrsafety.program.draws import LISTED, OUTSIDE, DrawnMotions, Quantile, quantiles_of
 from hrsafety.program.judged import EVEN, JudgedExposure, fields_of, judged, robot_fields, shares_of
 from hrsafety.program.task import ContactTask
@@ -186,7 +186,7 @@ class DrawnStudy(Table):
 def study_of_draws(program: DrawnProgram, threads: int | None) -> DrawnStudy:
     """Return the study of a robot without a program, see `DrawnProgram.report`."""
     joints, rates = program.motion.drawn()
-    contacts = Contacts(program, joints, rates, [(0.0, 1.0)] * len(program.segments), threads)
+    contacts = TaskContacts(program, joints, rates, [(0.0, 1.0)] * len(program.segments), threads)
     found = contacts.contact(None).masses(joints, rates, body_masses=np.zeros(0), threads=threads)
     if program.tcp_speed is not None:
         with np.errstate(divide="ignore"):
@@ -249,7 +249,7 @@ def _by_quantile(row: JudgedExposure, share: float, program: DrawnProgram) -> Ju
 
 
 def _fields(
-    contacts: Contacts,
+    contacts: TaskContacts,
     program: DrawnProgram,
     verdict: str,
     held: list[JudgedExposure],

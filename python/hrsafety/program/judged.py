@@ -12,7 +12,7 @@ from hrsafety._arguments import Array
 from hrsafety._records import dataclass
 from hrsafety.arms.doubts import doubts_of_point, for_rule
 from hrsafety.plausibility import ResultWarning, unsafe_doubts
-from hrsafety.program.contacts import BLOCK, MASSES, Contacts, Waypoints
+from hrsafety.program.contacts import BLOCK, MASSES, TaskContacts, Waypoints
 from hrsafety.program.exposures import NOT_PERMITTED, Exposure
 from hrsafety.program.runs import Runs
 from hrsafety.program.task import ContactTask
@@ -85,7 +85,7 @@ def path_doubts(runs: Runs) -> Iterator[ResultWarning]:
 
 
 def judged(
-    runs: Contacts,
+    runs: TaskContacts,
     waypoints: Waypoints,
     contact: _hrsafety.ProgramContact,
     rows: tuple[Exposure, ...],
@@ -95,7 +95,7 @@ def judged(
 
     Parameters
     ----------
-    runs : Contacts
+    runs : TaskContacts
         Of the program.
     waypoints : Waypoints
         Planned places and rates.
@@ -124,7 +124,7 @@ def judged(
 
 
 def shares_of(
-    runs: Contacts, waypoints: Waypoints, contact: _hrsafety.ProgramContact, rows: tuple[Exposure, ...]
+    runs: TaskContacts, waypoints: Waypoints, contact: _hrsafety.ProgramContact, rows: tuple[Exposure, ...]
 ) -> Iterator[tuple[int, Array]]:
     """Yield planned over allowed speeds (waypoints, rows) by blocks, each with the index of its first waypoint."""
     points = np.array([each.point for each in rows], dtype=np.int64)
@@ -141,7 +141,7 @@ def shares_of(
 
 
 def _worst(
-    runs: Contacts, waypoints: Waypoints, contact: _hrsafety.ProgramContact, rows: tuple[Exposure, ...]
+    runs: TaskContacts, waypoints: Waypoints, contact: _hrsafety.ProgramContact, rows: tuple[Exposure, ...]
 ) -> tuple[Array, Array]:
     """Return the waypoint that uses each limit most, -1 for none, and the share."""
     worst, most = np.full(len(rows), -1), np.zeros(len(rows))
@@ -153,7 +153,7 @@ def _worst(
     return worst, most
 
 
-def _about_point(runs: Contacts, masses: Array, place: int) -> tuple[ResultWarning, ...]:
+def _about_point(runs: TaskContacts, masses: Array, place: int) -> tuple[ResultWarning, ...]:
     """Return the doubts about the masses of a point."""
     program, arm = runs.task, runs.task.motion.arm
     moving = masses[np.isfinite(masses)]
@@ -163,7 +163,7 @@ def _about_point(runs: Contacts, masses: Array, place: int) -> tuple[ResultWarni
 
 
 def _row(
-    runs: Contacts,
+    runs: TaskContacts,
     waypoints: Waypoints,
     numbers: dict[str, Array],
     row: Exposure,
@@ -197,7 +197,7 @@ def _row(
     )
 
 
-def fields_of(row: JudgedExposure, runs: Contacts) -> dict[str, Any]:
+def fields_of(row: JudgedExposure, runs: TaskContacts) -> dict[str, Any]:
     """Return a row as JSON holds it."""
     limit, program = row.exposure.limit, runs.task
     names = program.motion.arm.joint_names

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array
-from hrsafety.program.contacts import Choice, Contacts, Waypoints
+from hrsafety.program.contacts import Choice, TaskContacts, Waypoints
 from hrsafety.program.motion import INTERVALS, ArmMotion, Retimed
 from hrsafety.program.task import ProgramTask
 
@@ -34,7 +34,7 @@ class AllowedAlong(NamedTuple):
     scale: Array
 
 
-class Runs(Contacts):
+class Runs(TaskContacts):
     """Runs of a program; each is computed once."""
 
     def __init__(self, program: ProgramTask, intervals: int | None, threads: int | None) -> None:

@@ -1,8 +1,8 @@
 //! Any of the filters, by its name, and what it makes of a wanted velocity.
 
 use crate::filters::{
-    ApproachMonitor, Barrier, BarrierUnicycle, CollisionCone, Filtered, ResponsibilityRule,
-    Sighted, Status, VelocityClamp,
+    ApproachMonitor, Barrier, BarrierUnicycle, CollisionCone, FilterStatus, Filtered,
+    ResponsibilityRule, Sighted, VelocityClamp,
 };
 use navigation_world::arguments::Arguments;
 use numeric::error::{Failure, Given, Result, not_negative, positive};
@@ -90,13 +90,13 @@ impl Filter {
         })
     }
 
-    /// Whether it is for robots with two wheels, the others being for those that move in any direction.
+    /// True for robots with two wheels; the others are for those that move in any direction.
     #[must_use]
     pub fn is_for_wheels(&self) -> bool {
         matches!(self, Self::BarrierUnicycle(_))
     }
 
-    /// What it makes of a wanted velocity in m/s; of two wheels that is speed in m/s and turn rate in rad/s. A monitor
+    /// Filtered velocity for a wanted one in m/s; of two wheels that is speed in m/s and turn rate in rad/s. A monitor
     /// looks at the turn rate in rad/s beside the velocity.
     #[must_use]
     pub fn decide(&self, seen: &Sighted<'_>, wanted: Vector2<f64>, turn_rate: f64) -> Filtered {
@@ -109,9 +109,9 @@ impl Filter {
             Self::ApproachMonitor(rule) => {
                 let (share, _) = rule.share(seen, wanted, turn_rate);
                 let status = if share < 1.0 {
-                    Status::Changed
+                    FilterStatus::Changed
                 } else {
-                    Status::Kept
+                    FilterStatus::Kept
                 };
                 Filtered {
                     velocity: wanted * share,

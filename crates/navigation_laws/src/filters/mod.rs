@@ -1,6 +1,6 @@
 //! Safety filters: the permitted velocity nearest to a wanted one, by the rules that the field uses.
 //!
-//! Each filter says what it did ([`Status`]); none is a shield: what each assumes stands with it.
+//! Each filter says what it did ([`FilterStatus`]); none is a shield: what each assumes stands with it.
 
 mod choice;
 mod program;
@@ -9,7 +9,7 @@ mod rules;
 mod tests;
 
 pub use choice::Filter;
-pub use program::{Answer, Disc, Edge, Hard, solve};
+pub use program::{Answer, Disc, Hard, LinearBound, solve};
 pub use rules::{
     ApproachMonitor, Barrier, BarrierUnicycle, CollisionCone, ResponsibilityRule, VelocityClamp,
 };
@@ -29,7 +29,7 @@ pub struct Near {
     pub radius: f64,
 }
 
-/// What a filter looks at.
+/// Robot, people and walls as a filter knows them.
 #[derive(Clone, Copy, Debug)]
 pub struct Sighted<'a> {
     /// Position of the robot in m.
@@ -54,9 +54,9 @@ pub struct Sighted<'a> {
     pub points: &'a [Vector],
 }
 
-/// What a filter did with a wanted velocity.
+/// Fate of a wanted velocity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Status {
+pub enum FilterStatus {
     /// It let it through.
     Kept,
     /// It changed it as its rule asks.
@@ -69,7 +69,7 @@ pub enum Status {
     Stopped,
 }
 
-impl Status {
+impl FilterStatus {
     /// The status in a word.
     #[must_use]
     pub fn word(self) -> &'static str {
@@ -88,8 +88,8 @@ impl Status {
 pub struct Filtered {
     /// In m/s.
     pub velocity: Vector,
-    /// What was done.
-    pub status: Status,
+    /// Fate of the wanted velocity.
+    pub status: FilterStatus,
     /// By how much the rule is violated.
     pub slack: f64,
     /// Share of the wanted velocity, of filters that shorten it.

@@ -15,14 +15,14 @@ const NONE: f64 = 1e-9;
 
 /// Points with `n.u >= b`, `n` of length 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Edge {
+pub struct LinearBound {
     /// Inward normal.
     pub normal: Vector,
     /// Least component along it.
     pub least: f64,
 }
 
-impl Edge {
+impl LinearBound {
     /// The edge of a normal of any length but zero; `None` where that forbids nothing.
     #[must_use]
     pub fn normalized(normal: Vector, least: f64) -> Option<Self> {
@@ -55,7 +55,7 @@ pub struct Disc {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Hard {
     /// Half-planes.
-    pub edges: Vec<Edge>,
+    pub edges: Vec<LinearBound>,
     /// Discs.
     pub discs: Vec<Disc>,
 }
@@ -98,7 +98,7 @@ impl Hard {
     }
 
     /// Points of a line on the limits.
-    fn on_line(&self, line: &Edge, keep: &mut Vec<Vector>) {
+    fn on_line(&self, line: &LinearBound, keep: &mut Vec<Vector>) {
         self.edges
             .iter()
             .for_each(|edge| keep.extend(meet(edge, line)));
@@ -106,7 +106,7 @@ impl Hard {
     }
 
     /// The nearest points of each limit, and the points of each disc farthest along some normals.
-    fn feet(&self, wanted: Vector, soft: &[Edge], keep: &mut Vec<Vector>) {
+    fn feet(&self, wanted: Vector, soft: &[LinearBound], keep: &mut Vec<Vector>) {
         keep.push(wanted);
         keep.extend(self.edges.iter().map(|edge| edge.foot(wanted)));
         for disc in &self.discs {
@@ -124,7 +124,7 @@ impl Hard {
 }
 
 /// Where two lines cross.
-fn meet(one: &Edge, other: &Edge) -> Option<Vector> {
+fn meet(one: &LinearBound, other: &LinearBound) -> Option<Vector> {
     let sine = one.normal.perp(&other.normal);
     if sine.abs() < 1e-14 {
         return None;
@@ -137,7 +137,7 @@ fn meet(one: &Edge, other: &Edge) -> Option<Vector> {
 }
 
 /// Where a line crosses a circle.
-fn on_disc(line: &Edge, disc: &Disc, keep: &mut Vec<Vector>) {
+fn on_disc(line: &LinearBound, disc: &Disc, keep: &mut Vec<Vector>) {
     let foot = line.foot(disc.center);
     let square = disc.radius * disc.radius - (foot - disc.center).norm_squared();
     if square >= 0.0 {
@@ -154,7 +154,7 @@ fn both(one: &Disc, other: &Disc, keep: &mut Vec<Vector>) {
         return;
     }
     let least = 0.5 * (square + one.radius * one.radius - other.radius * other.radius);
-    if let Some(line) = Edge::normalized(way, way.dot(&one.center) + least) {
+    if let Some(line) = LinearBound::normalized(way, way.dot(&one.center) + least) {
         on_disc(&line, one, keep);
     }
 }
@@ -171,11 +171,11 @@ fn nearest(points: impl Iterator<Item = Vector>, wanted: Vector) -> Option<Vecto
 
 /// Solves the program of soft half-planes and limits.
 #[must_use]
-pub fn solve(soft: &[Edge], hard: &Hard, wanted: Vector) -> Answer {
+pub fn solve(soft: &[LinearBound], hard: &Hard, wanted: Vector) -> Answer {
     if hard.permits(wanted) && soft.iter().all(|edge| edge.violation(wanted) <= 0.0) {
         return Answer::Nearest(wanted);
     }
-    let mut taken: Vec<Edge> = Vec::new();
+    let mut taken: Vec<LinearBound> = Vec::new();
     loop {
         let Some(point) = within(&taken, hard, wanted) else {
             return if taken.is_empty() {
@@ -192,7 +192,12 @@ pub fn solve(soft: &[Edge], hard: &Hard, wanted: Vector) -> Answer {
 }
 
 /// The half-plane that is violated most, if it is by more than a bound and not yet taken.
-fn most_violated(soft: &[Edge], point: Vector, bound: f64, taken: &[Edge]) -> Option<Edge> {
+fn most_violated(
+    soft: &[LinearBound],
+    point: Vector,
+    bound: f64,
+    taken: &[LinearBound],
+) -> Option<LinearBound> {
     let mut worst = (bound, None);
     for edge in soft {
         let violation = edge.violation(point);
@@ -204,7 +209,7 @@ fn most_violated(soft: &[Edge], point: Vector, bound: f64, taken: &[Edge]) -> Op
 }
 
 /// The nearest point permitted by some half-planes and the limits.
-fn within(soft: &[Edge], hard: &Hard, wanted: Vector) -> Option<Vector> {
+fn within(soft: &[LinearBound], hard: &Hard, wanted: Vector) -> Option<Vector> {
     let mut points = Vec::new();
     hard.feet(wanted, &[], &mut points);
     hard.corners(&mut points);
@@ -222,8 +227,8 @@ fn within(soft: &[Edge], hard: &Hard, wanted: Vector) -> Option<Vector> {
 }
 
 /// The point at which the largest violation of the half-planes is least.
-fn least_violation(soft: &[Edge], hard: &Hard, wanted: Vector) -> Answer {
-    let mut taken: Vec<Edge> = soft.iter().take(1).copied().collect();
+fn least_violation(soft: &[LinearBound], hard: &Hard, wanted: Vector) -> Answer {
+    let mut taken: Vec<LinearBound> = soft.iter().take(1).copied().collect();
     loop {
         let Some((point, violation)) = least_of(&taken, hard, wanted) else {
             return Answer::Apart;
@@ -236,16 +241,16 @@ fn least_violation(soft: &[Edge], hard: &Hard, wanted: Vector) -> Answer {
     }
 }
 
-/// The same for a few half-planes, by all corners of the program in `(u, t)`.
-fn least_of(soft: &[Edge], hard: &Hard, wanted: Vector) -> Option<(Vector, f64)> {
+/// Least violation of a few half-planes, by all corners of the program in `(u, t)`.
+fn least_of(soft: &[LinearBound], hard: &Hard, wanted: Vector) -> Option<(Vector, f64)> {
     let mut points = Vec::new();
     hard.feet(wanted, soft, &mut points);
     points.extend(soft.iter().map(|edge| edge.foot(wanted)));
     hard.corners(&mut points);
-    let mut equal: Vec<Edge> = Vec::new();
+    let mut equal: Vec<LinearBound> = Vec::new();
     for (index, one) in soft.iter().enumerate() {
         for other in &soft[..index] {
-            equal.extend(Edge::normalized(
+            equal.extend(LinearBound::normalized(
                 one.normal - other.normal,
                 one.least - other.least,
             ));

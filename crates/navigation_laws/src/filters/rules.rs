@@ -1,7 +1,7 @@
 //! The rules of the filters.
 
-use crate::filters::program::{Answer, Disc, Edge, Hard, solve};
-use crate::filters::{Filtered, Near, Sighted, Status};
+use crate::filters::program::{Answer, Disc, Hard, LinearBound, solve};
+use crate::filters::{FilterStatus, Filtered, Near, Sighted};
 use numeric::lanes::Vector2;
 
 type Vector = Vector2<f64>;
@@ -49,7 +49,11 @@ impl Sighted<'_> {
         let (velocity, slack) = match answer {
             Answer::Nearest(velocity) => {
                 let kept = (velocity - wanted).norm() <= SAME;
-                let status = if kept { Status::Kept } else { Status::Changed };
+                let status = if kept {
+                    FilterStatus::Kept
+                } else {
+                    FilterStatus::Changed
+                };
                 return Filtered {
                     velocity,
                     status,
@@ -62,7 +66,7 @@ impl Sighted<'_> {
         };
         Filtered {
             velocity,
-            status: Status::Infeasible,
+            status: FilterStatus::Infeasible,
             slack,
             share: 1.0,
         }
@@ -80,13 +84,13 @@ pub struct Barrier {
 
 impl Barrier {
     /// Half-planes of velocities of a place in m, for a body of a radius in m around it.
-    fn edges(self, seen: &Sighted<'_>, place: Vector, radius: f64) -> Vec<Edge> {
+    fn edges(self, seen: &Sighted<'_>, place: Vector, radius: f64) -> Vec<LinearBound> {
         let people = seen.people.iter().map(|person| {
             let (distance, normal) = apart(place, person);
             let touch = radius + person.radius + self.margin;
             let square = distance * distance - touch * touch;
             let allowed = self.rate * square / (2.0 * distance.max(f64::MIN_POSITIVE));
-            Edge {
+            LinearBound {
                 normal,
                 least: normal.dot(&person.velocity) - allowed,
             }
@@ -98,7 +102,7 @@ impl Barrier {
                 radius: 0.0,
             };
             let (distance, normal) = apart(place, &at);
-            Edge {
+            LinearBound {
                 normal,
                 least: -self.rate * (distance - radius - self.margin),
             }
@@ -153,7 +157,7 @@ impl BarrierUnicycle {
         for edge in &mut edges {
             edge.normal = Vector::new(edge.normal.dot(&along), edge.normal.dot(&across));
         }
-        let limit = |normal: Vector, most: f64| Edge {
+        let limit = |normal: Vector, most: f64| LinearBound {
             normal,
             least: -most,
         };
@@ -195,7 +199,7 @@ impl CollisionCone {
             if square <= 0.0 {
                 return Filtered {
                     velocity: seen.braked(),
-                    status: Status::Touching,
+                    status: FilterStatus::Touching,
                     slack: 0.0,
                     share: 1.0,
                 };
@@ -209,7 +213,7 @@ impl CollisionCone {
             let value = closing + speed * leg;
             let normal = -(way + relative * (leg / speed));
             let least = -(speed * speed + speed * closing / leg + self.rate * value);
-            edges.extend(Edge::normalized(normal, least));
+            edges.extend(LinearBound::normalized(normal, least));
         }
         let asked = (wanted - seen.velocity) / seen.period;
         let hard = Hard {
@@ -282,9 +286,9 @@ impl VelocityClamp {
             .into_iter()
             .find(|share| self.is_safe(seen, full * *share));
         let (share, status) = match safe {
-            None => (0.0, Status::Stopped),
-            Some(1.0) => (1.0, Status::Kept),
-            Some(share) => (share, Status::Changed),
+            None => (0.0, FilterStatus::Stopped),
+            Some(1.0) => (1.0, FilterStatus::Kept),
+            Some(share) => (share, FilterStatus::Changed),
         };
         let filtered = Filtered {
             velocity: full * share,
@@ -317,7 +321,7 @@ pub struct ResponsibilityRule {
     pub acceleration: f64,
     /// In m/s^2.
     pub braking: f64,
-    /// The same of a person.
+    /// Largest acceleration of a person in m/s^2.
     pub person_acceleration: f64,
     /// In m/s^2.
     pub person_braking: f64,
@@ -357,7 +361,7 @@ impl ResponsibilityRule {
             if distance - seen.radius - person.radius - self.margin < asked {
                 let own = (-seen.velocity.dot(&normal)).max(0.0);
                 let most = (own - self.braking * seen.period).max(0.0);
-                edges.push(Edge {
+                edges.push(LinearBound {
                     normal,
                     least: -most,
                 });

@@ -177,6 +177,6 @@ fn degenerate_states_are_defined() {
     }
     // Limits of speed and of its change that have nothing in common: it brakes.
     let braked = filter("cbf", &Value::Null).decide(&seen, Vector::new(1.0, 0.0), 0.0);
-    assert_eq!(braked.status, Status::Infeasible);
+    assert_eq!(braked.status, FilterStatus::Infeasible);
     assert!((braked.velocity - Vector::new(1.7, 0.0)).norm() < 1e-12 && braked.slack.is_nan());
 }

@@ -43,7 +43,7 @@ impl Target {
 
 /// Target that was accepted, with the command toward it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Choice<C> {
+pub struct AcceptedTarget<C> {
     /// Velocity in m/s that the robot takes up.
     pub target: Vector2<f64>,
     /// Command toward it.

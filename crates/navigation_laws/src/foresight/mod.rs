@@ -22,7 +22,7 @@ use numeric::lanes::Vector2;
 use prediction::Prediction;
 use program::Program;
 
-pub use candidates::{Choice, Driven, Target, taken_up};
+pub use candidates::{AcceptedTarget, Driven, Target, taken_up};
 pub use estimate::Sighting;
 
 /// Most stages of the program.
@@ -123,7 +123,7 @@ impl Foresight {
 const LEAST_BLUR: f64 = 0.05;
 const MOST_BLUR: f64 = 0.4;
 
-/// What the robot knows at the instant of a decision.
+/// Knowledge of the robot at the instant of a decision.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
     /// The robot.
@@ -217,7 +217,7 @@ impl Foreseer {
         wheels: bool,
         driven: impl Fn(&Target) -> Driven,
         mut take: impl FnMut(&Target) -> Option<C>,
-    ) -> Option<Choice<C>> {
+    ) -> Option<AcceptedTarget<C>> {
         let period = self.limits.period;
         let (settings, radius) = (self.settings, self.limits.radius);
         self.estimates.observe(scene, settings.acceleration, period);
@@ -237,7 +237,7 @@ impl Foreseer {
             };
             foreseer.last = target;
             foreseer.ends[1] = driven(&target).places[3];
-            Some(Choice {
+            Some(AcceptedTarget {
                 target: target.velocity,
                 command,
                 cheapest,

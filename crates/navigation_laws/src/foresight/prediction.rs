@@ -49,7 +49,7 @@ impl Prediction {
             let Some(estimate) = estimates.of(person) else {
                 continue;
             };
-            // Who was lost long ago is taken to have gone on for the time that is foreseen.
+            // Who was lost long ago is taken to have walked for the time that is foreseen.
             let age = person.age.min(settings.stages as f64 * settings.step);
             let mut place = estimate.position + estimate.velocity * age;
             let step = 0.5 * settings.step;

@@ -1,6 +1,6 @@
 //! Foresight within safe navigation: it chooses among the velocities that the shield verifies.
 
-use crate::foresight::{Choice, Driven, Foreseer, Scene, Target, taken_up};
+use crate::foresight::{AcceptedTarget, Driven, Foreseer, Scene, Target, taken_up};
 use crate::guide::Guidance;
 use crate::safe::law::SafeLaw;
 use crate::shield::{Decision, Guard, Status, TwistGuard, TwistView, Verifier, View, braking};
@@ -9,7 +9,7 @@ use navigation_world::world::geometry::RobotState;
 use numeric::lanes::Vector2;
 
 impl SafeLaw {
-    /// What foresight knows.
+    /// Knowledge of foresight.
     fn scene(&self, robot: &RobotState<f64>, to_goal: Vector2<f64>) -> Scene<'_> {
         let leads = |guidance: &&Guidance| self.detour.is_none() || guidance.leads_around();
         let plan = self.guidance.as_ref().filter(leads).map(Guidance::plan);
@@ -85,7 +85,11 @@ impl SafeLaw {
 }
 
 /// Command and status of a choice, whose target is what is wanted; braking without one.
-fn chosen<C>(found: Option<Choice<C>>, wanted: &mut Vector2<f64>, braking: C) -> (C, Status) {
+fn chosen<C>(
+    found: Option<AcceptedTarget<C>>,
+    wanted: &mut Vector2<f64>,
+    braking: C,
+) -> (C, Status) {
     let Some(found) = found else {
         return (braking, Status::Braking);
     };

@@ -230,7 +230,7 @@ impl Law<f64> for SafeLaw {
     }
 
     fn can_aim(&self) -> bool {
-        self.guidance.is_none() && self.law.can_aim()
+        self.foreseer.is_some() || self.law.can_aim()
     }
 
     fn trace(&self) -> Option<Trace> {
@@ -393,7 +393,7 @@ impl SafeLaw {
         }
     }
 
-    /// What verifies for a robot that is no disc; one that is off its plan may be as far off again.
+    /// Verifier of a robot that is no disc; one that is off its plan may be as far off again.
     fn outline_now(&self, now: &Present) -> Option<OutlineGuard> {
         let outline = self.outline.as_ref()?;
         Some(if now.off.is_some() {

@@ -28,7 +28,7 @@ pub struct SafeNavigation {
     pub shield: Option<Shield>,
     /// How the robot gives way, if it does.
     pub yielding: Option<Yielding>,
-    /// How it looks ahead, in place of the law and of yielding.
+    /// Search ahead, in place of the law and of yielding.
     pub foresight: Option<Foresight>,
     /// Whether a robot that makes no progress heads for its (local) goal by itself.
     pub takeover: bool,

@@ -195,7 +195,7 @@ fn spread(line: &[u64], columns: u8, target: &mut [u64]) {
 /// The certificates of many worlds, spread over threads.
 ///
 /// # Errors
-/// Those of [`certify`], with the index of the world.
+/// Errors of [`certify`], with the index of the world.
 pub fn certify_all(
     worlds: &[Arc<CrowdWorld>],
     threads: Option<usize>,

@@ -13,7 +13,7 @@ use crate::run::navigation::MeasuredState;
 use crate::run::{AnyLaw, Interrupted, Request};
 use navigation_laws::Law;
 use navigation_laws::trace::{Examined, Trace};
-use navigation_laws::{Situation, Stop, force_toward};
+use navigation_laws::{Situation, Stop, force_toward, send};
 use navigation_world::robots::drives::{MotorDrive, PointMass, Reading};
 use navigation_world::world::geometry::RobotState;
 use navigation_world::world::scenario::{Rules, Scenario};
@@ -411,7 +411,9 @@ impl CrowdRobot {
                         if let Some((escort, person)) = pilot.escort.as_mut().zip(person) {
                             law.aim(escort.goal(known.robot.position, person).into());
                         }
-                        sensing.map_or(Ok(()), |sensing| sensing.sensors.send(&mut **law))?;
+                        if let Some(goal) = sensing.and_then(|sensing| sensing.sensors.goal()) {
+                            send(&mut **law, goal)?;
+                        }
                         law.command(&seen).force
                     }
                     None => Vector2::zeros(),

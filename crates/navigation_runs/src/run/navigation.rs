@@ -18,7 +18,7 @@ use crate::run::runs::LaneState;
 use crate::run::scene::{Scene, bodies_at};
 use crate::run::walls::Maps;
 use navigation_laws::trace::{Examined, Trace};
-use navigation_laws::{Command, Law, Situation, Stop, force_toward};
+use navigation_laws::{Command, Law, Situation, Stop, force_toward, send};
 use navigation_world::robots::drives::{MotorDrive, Order, PoseFix, Reading};
 use navigation_world::world::geometry::{Body, RobotState};
 use navigation_world::world::scenario::Scenario;
@@ -228,8 +228,8 @@ impl<L: Listener> Parts for Navigation<L> {
         interrupted: Interrupted<'_>,
     ) -> Result<bool> {
         self.runs.check_finite(time)?;
-        if let Some(law) = &mut self.law {
-            self.sight.send(&mut **law)?;
+        if let Some((law, goal)) = self.law.as_mut().zip(self.sight.goal()) {
+            send(&mut **law, goal)?;
         }
         let Some(command) = self.command(time, request, interrupted) else {
             return Ok(false);

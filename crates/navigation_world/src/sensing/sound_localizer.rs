@@ -14,7 +14,7 @@ use numeric::random::Stream;
 /// Streams of the scatter of localizers, counted up from here.
 const SOUND_STREAM: u64 = 1 << 60;
 
-/// A row of microphones, and how near the robot goes to what it hears.
+/// A row of microphones, and how near the robot goes to the source.
 ///
 /// The goal of the law becomes the point at `standoff` before the source, each time a burst is heard; between two
 /// bursts the last one counts.

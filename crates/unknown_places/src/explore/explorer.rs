@@ -26,7 +26,7 @@ pub struct Robot {
     pub period: f64,
 }
 
-/// How it finds its way.
+/// Options of map, guide and rollouts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExplorerOptions {
     /// Map.
@@ -77,7 +77,7 @@ impl ExplorerOptions {
     }
 }
 
-/// What became of the commands.
+/// Fate of the commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
     /// The best one is executed.
@@ -88,12 +88,12 @@ pub enum Status {
     Braking,
 }
 
-/// What to do until the next control period.
+/// Command for a control period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decision {
     /// Twist at its end; the present one becomes it at constant rates.
     pub twist: Twist,
-    /// What became of the commands.
+    /// Fate of the commands.
     pub status: Status,
     /// Time to the goal in s, where there is a way.
     pub time_to_go: Option<f64>,

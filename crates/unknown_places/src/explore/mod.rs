@@ -2,7 +2,7 @@
 //!
 //! Map, guide and rollouts choose where to go; the verified plan decides whether it may. In a static world where whatever
 //! lies in cells that count as free is within the margin of the point of an occupied cell, the robot touches nothing,
-//! whatever guide, goal and rollouts say: every piece that it executes belongs to a verified plan, and braking goes on
+//! whatever guide, goal and rollouts say: every piece that it executes belongs to a verified plan, and braking continues
 //! with it. Things thinner than the beams are apart, glass, and what is not in the plane of the scan are not covered.
 
 mod controller;

@@ -82,7 +82,7 @@ impl Reach {
     }
 }
 
-/// What commands lead to.
+/// Poses to which commands lead.
 #[derive(Clone, Debug)]
 pub struct Rollouts {
     reach: Reach,
@@ -109,7 +109,7 @@ struct Rolled {
     score: f64,
 }
 
-/// What poses are judged by.
+/// Cells and times by which poses are judged.
 struct Judge<'a> {
     cells: &'a Cells,
     plan: &'a mut TimeToGo,

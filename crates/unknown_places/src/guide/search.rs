@@ -23,7 +23,7 @@ pub struct GuideOptions {
     pub near_distance: f64,
     /// Price of unknown ground.
     pub unknown_weight: f64,
-    /// How much longer than to the robot the search goes on, in s.
+    /// How much longer than to the robot the search continues, in s.
     pub beyond: f64,
 }
 
@@ -81,7 +81,7 @@ pub struct Search {
     squares: Vec<i16>,
     /// Which of the least distances is tried.
     attempt: usize,
-    /// Until when the search goes on, once the robot was met.
+    /// End of the search, once the robot was met.
     until: f32,
     running: bool,
 }
@@ -89,7 +89,7 @@ pub struct Search {
 /// How a search stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
-    /// It goes on.
+    /// It continues.
     Running,
     /// A way was found.
     Found,

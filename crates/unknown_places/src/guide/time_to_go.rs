@@ -1,4 +1,4 @@
-//! What a search found: times to the goal, and the way of each node.
+//! Result of a search: times to the goal, and the way of each node.
 
 use nalgebra::Vector2;
 

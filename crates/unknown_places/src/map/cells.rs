@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::rolling::{RollingMap, WORD};
 
-/// What is known of a cell.
+/// Kind of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// No beam tells.

@@ -138,7 +138,7 @@ pub struct RollingMap {
     placed: bool,
 }
 
-/// What beams tell of a cell.
+/// Counts of beams in a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Evidence {
     pub(super) hits: f32,

@@ -2,7 +2,7 @@
 
 /// Hands the cells of a segment over one after the other, the first and the last included; ends are given in cells.
 ///
-/// As many cells are handed over as there are lines of the grid between the ends, and one: rounding may choose the
+/// The number of cells is that of the lines of the grid between the ends, and one: rounding may choose the
 /// other of two cells at a corner, but neither loses the last cell nor goes beyond it.
 pub fn walk(from: [f64; 2], to: [f64; 2], mut visit: impl FnMut([i64; 2])) {
     walk_while(from, to, |cell| {

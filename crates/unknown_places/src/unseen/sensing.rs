@@ -50,7 +50,7 @@ impl Sensing {
         Ok(self)
     }
 
-    /// Whether it looks all around.
+    /// True if it looks all around.
     #[must_use]
     pub fn all_round(&self) -> bool {
         self.field_of_view >= TAU

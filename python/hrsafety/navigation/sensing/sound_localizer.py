@@ -20,7 +20,8 @@ class SoundLocalizer(RobotSensor):
     heard; between two bursts the last one counts. Scatter of range and bearing is that of table 2 of Avi (2019). The
     localizer tells of nobody else: without another sensor obstacles are known exactly. The run still ends where the
     robot reaches its own goal, so that one says where the way of the source ends. A law that plans the whole way
-    itself (`RapidlyExploringRandomTree`, `FieldDStar`, `SafeNavigation` with a guide) is refused.
+    itself (`RapidlyExploringRandomTree`, `FieldDStar`) is refused; a guide in a map leads to the robot's own goal while
+    it does not see the source.
 
     Parameters
     ----------

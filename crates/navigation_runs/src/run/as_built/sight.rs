@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use crate::run::as_built::AsBuilt;
-use navigation_laws::Law;
 use navigation_world::robots::drives::{PoseFix, Reading};
 use navigation_world::sensing::noisy::NoisyPositions;
 use navigation_world::sensing::sensor::{Sensor, Truth};
@@ -11,7 +10,8 @@ use navigation_world::world::frame::Frame;
 use navigation_world::world::geometry::{Body, RobotState};
 use navigation_world::world::motion::BodyState;
 use navigation_world::world::scenario::{PlacedObstacle, Scenario};
-use numeric::error::{Failure, Given, Result};
+use numeric::error::Result;
+use numeric::lanes::Vector2;
 
 /// Knowledge of the controller at a sample.
 pub(crate) struct SensedState<'a> {
@@ -89,22 +89,9 @@ impl BuiltSensors {
         }
     }
 
-    /// Sends a law to the goal that a sensor has found, if one has.
-    ///
-    /// # Errors
-    /// The law cannot head for another goal.
-    pub fn send(&self, law: &mut dyn Law<f64>) -> Result<()> {
-        let Some(goal) = self.sensors.iter().find_map(|sensor| sensor.goal()) else {
-            return Ok(());
-        };
-        if !law.can_aim() {
-            let rule = "head for a goal that moves, where a sensor finds it";
-            let given =
-                Given::Found("a law that plans the whole way to the goal of the robot".into());
-            return Err(Failure::invalid("law", rule, given));
-        }
-        law.aim(goal.into());
-        Ok(())
+    /// Goal in m that a sensor has found, if one has.
+    pub fn goal(&self) -> Option<Vector2<f64>> {
+        self.sensors.iter().find_map(|sensor| sensor.goal())
     }
 
     /// The obstacles as known since the last look.

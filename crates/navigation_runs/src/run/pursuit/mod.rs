@@ -24,7 +24,7 @@ use crate::run::scene::bodies_at;
 use crate::run::walls::Maps;
 use crate::run::way::Way;
 use navigation_laws::Law;
-use navigation_laws::{Situation, Stop};
+use navigation_laws::{Situation, Stop, send};
 use navigation_world::robots::drives::{MotorDrive, Reading};
 use navigation_world::sensing::measurement::Noise;
 use navigation_world::world::geometry::Body;
@@ -384,7 +384,9 @@ impl Parts for PursuitParts<'_> {
 
     fn decide(&mut self, time: f64, _request: (), interrupted: Interrupted<'_>) -> Result<bool> {
         self.keep();
-        self.sight.send(&mut *self.law)?;
+        if let Some(goal) = self.sight.goal() {
+            send(&mut *self.law, goal)?;
+        }
         let command = self.law.command(&Situation {
             time,
             bodies: &self.seen,
