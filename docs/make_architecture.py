@@ -129,7 +129,7 @@ def draw(graph: Graph) -> plt.Figure:
         style = {"boxstyle": "round,pad=0.04", "facecolor": color, "edgecolor": "0.3"}
         axes.add_patch(FancyBboxPatch((x - 0.75, y - 0.28), 1.5, 0.56, **style))
         axes.text(x, y, name, ha="center", va="center", fontsize=10)
-    axes.set(xlim=(0, 10), ylim=(-0.6, 1.5 * len(rows) - 0.7))
+    axes.set(xlim=(-0.6, 10), ylim=(-0.6, 1.5 * len(rows) - 0.7))
     axes.set_axis_off()
     axes.text(0.05, 1.5 * len(rows) - 1.0, "Python packages", color="#23527c", fontsize=10)
     axes.text(0.05, -0.5, "Rust crates", color="#8a5a00", fontsize=10)
