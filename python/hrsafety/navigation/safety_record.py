@@ -166,7 +166,7 @@ def record_safety(
     Parameters
     ----------
     scenario : Scenario or World
-        Where; the robot is a `HolonomicRobot`.
+        Where; the robot is a `HolonomicRobot` without a footprint.
     law : SafeNavigation or None
         The law with its parts, in a world that of every robot; ``None``: robots of a world have their own.
     robot : int or None
@@ -212,7 +212,10 @@ def record_safety(
     else:
         own = place.robots[index]
         parts, body = instance(f"scenario.robots[{index}].law", own.law, SafeNavigation), own.body
-    instance("scenario.robot" if own is place else f"scenario.robots[{index}].body", body, HolonomicRobot)
+    name = "scenario.robot" if own is place else f"scenario.robots[{index}].body"
+    if instance(name, body, HolonomicRobot).footprint is not None:
+        # The plan and the margin of a record are those of a disc.
+        raise InvalidParameterError(f"{name}.footprint", "be None", body.footprint, "give the disc around it")
     plan = None
     if parts.guide is not None and parts.map is not None:
         plan = parts.guide.plan(parts.map, radius=body.radius, start=own.start, goal=own.goal)

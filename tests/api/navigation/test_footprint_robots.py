@@ -213,3 +213,10 @@ def test_nobody_brings_a_rectangle_under_a_shield_to_fault(two: bool) -> None:
     body = nav.Robot(place.robot, start=(0, 0), goal=(6, 0), law=guarded, control_period=0.06)
     world = nav.World(robots=[body], step=0.02, time_limit=8.0)
     assert not nav.falsify(world, guarded, episodes=6, seed=3).broken
+
+
+def test_a_record_of_decisions_refuses_a_footprint() -> None:
+    robot = nav.HolonomicRobot(footprint=nav.robots.Footprint.rectangle(0.8, 0.4))
+    law = nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield())
+    with pytest.raises(InvalidParameterError, match=r"scenario\.robot\.footprint must be None"):
+        nav.metrics.record_safety(nav.Scenario(robot=robot, start=(0, 0), goal=(2, 0)), law)
