@@ -1,0 +1,83 @@
+"""Costs of decisions in a place known from scans and of foresight, and of distances from a swept rectangle.
+
+On one core: processor time, the best of several rounds; decisions in an unknown place are timed one by one in the core,
+map, share of the guide, rollouts and verification. Nothing here asserts a time.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+import shapely.affinity
+
+from hrsafety import navigation as nav
+from hrsafety import scenarios
+from hrsafety.benchmarks.unknown import dead_end, rollout_entry, trial
+
+PLACES, ROUNDS, POINTS = 10, 5, 1000
+
+
+@pytest.mark.benchmark(group="decisions, one core")
+@pytest.mark.parametrize("deceleration", [10, 1])
+def test_decisions_in_a_place_known_from_scans(benchmark: Any, deceleration: int) -> None:
+    entry = rollout_entry(f"rollouts(acceleration={deceleration},noise=0.03,drift=1)")
+    ends = {"start": (0.0, 0.0), "heading": 0.0, "goal": (10.0, 0.0)}
+
+    def episodes() -> Any:
+        found = [trial(entry, dead_end(index, 0), index, timed=True, **ends) for index in range(PLACES)]
+        return np.concatenate([each["decision_times"] for each in found])
+
+    spent = benchmark.pedantic(episodes, rounds=1)
+    half, most = np.quantile(spent, [0.5, 0.999]) * 1e3
+    benchmark.extra_info |= {"median ms": half, "99.9 % ms": most, "decisions": len(spent)}
+    print(f"{deceleration} m/s^2: {half:.2f} ms, 99.9 % {most:.2f} ms, of {len(spent)} decisions")
+
+
+@pytest.mark.benchmark(group="decisions, one core")
+@pytest.mark.parametrize("ahead", [None, nav.Foresight()], ids=["shield", "foresight"])
+def test_decisions_among_twelve_people(benchmark: Any, ahead: nav.Foresight | None) -> None:
+    law = nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield(), foresight=ahead)
+    scenes = [scenarios.random_traffic(12, seed=seed) for seed in range(PLACES)]
+
+    def runs() -> list[Any]:
+        return [nav.simulate(scene, law) for scene in scenes]
+
+    spent = []
+    for _ in range(ROUNDS):
+        start = time.process_time()
+        found = runs()
+        spent.append(time.process_time() - start)
+    periods = sum(run.time[-1] / run.scenario.control_period for run in found)
+    benchmark.extra_info["ms a decision, simulation included"] = min(spent) / periods * 1e3
+    benchmark.pedantic(runs, rounds=1)
+    print(f"{'foresight' if ahead else 'shield'}: {min(spent) / periods * 1e3:.3f} ms a decision, simulation included")
+
+
+@pytest.mark.benchmark(group="swept rectangle, one core")
+@pytest.mark.parametrize("peer", [False, True], ids=["hrsafety", "shapely, 65 poses"])
+def test_distances_of_a_thousand_points_from_a_swept_rectangle(benchmark: Any, peer: bool) -> None:
+    outline = nav.robots.Footprint.rectangle(0.508, 0.430)
+    places = np.random.default_rng(1).uniform(-1.5, 1.5, (POINTS, 2))
+    exact = outline.swept_distance(places, distance=0.8, angle=0.6)
+    shares = np.linspace(0.0, 1.0, 65)
+    turns, way = 0.6 * shares, 0.8 / 0.6
+    body = [
+        shapely.affinity.translate(
+            shapely.affinity.rotate(shapely.Polygon(outline.corners), turn, origin=(0, 0), use_radians=True),
+            way * np.sin(turn),
+            way * (1.0 - np.cos(turn)),
+        )
+        for turn in turns
+    ]
+    points = shapely.points(places)
+
+    def sampled() -> Any:
+        return np.min([shapely.distance(each, points) for each in body], axis=0)
+
+    found = sampled()
+    benchmark.extra_info["largest difference from 65 poses, m"] = float(np.abs(found - exact).max())
+    benchmark(sampled if peer else lambda: outline.swept_distance(places, distance=0.8, angle=0.6))
