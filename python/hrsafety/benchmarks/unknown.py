@@ -152,6 +152,7 @@ def trial(entry: RolloutEntry, place: nav.StaticMap, seed: int, *, timed: bool =
         max_acceleration=entry.acceleration,
         max_turn_rate=TURN_RATE,
         max_turn_acceleration=entry.turn_acceleration,
+        footprint=nav.robots.Footprint.rectangle(LENGTH, WIDTH),
     )
     settings = {
         **{"start": START, "heading": HEADING, "goal": GOAL, "arrival_tolerance": 1.0, "time_limit": barn.LIMIT},
@@ -161,7 +162,6 @@ def trial(entry: RolloutEntry, place: nav.StaticMap, seed: int, *, timed: bool =
         replace(entry.law, seed=seed),
         robot,
         place,
-        footprint=nav.robots.Footprint.rectangle(LENGTH, WIDTH),
         control_period=PERIOD,
         beams=BEAMS,
         field_of_view=FIELD_OF_VIEW,

@@ -116,11 +116,10 @@ class KnownCells(NamedTuple):
     cell: float
 
 
-def outline_of(robot: DifferentialDriveRobot, footprint: Footprint | None) -> Footprint:
-    """Return the outline of a robot: the one that is given, its own, or a polygon around its disc."""
-    own = footprint if footprint is not None else getattr(robot, "footprint", None)
-    if isinstance(own, Footprint):
-        return own
+def outline_of(robot: DifferentialDriveRobot) -> Footprint:
+    """Return the footprint of a robot, or a polygon around its disc."""
+    if robot.footprint is not None:
+        return robot.footprint
     radius = robot.radius / math.cos(math.pi / SIDES)
     angles = 2.0 * math.pi * (np.arange(SIDES) + 0.5) / SIDES
     return Footprint(tuple((radius * math.cos(angle), radius * math.sin(angle)) for angle in angles))
@@ -152,11 +151,9 @@ class ScanController:
     rollouts : ArcRollouts
         How it finds its way.
     robot : DifferentialDriveRobot
-        Speeds and accelerations of the robot.
+        Speeds, accelerations and footprint; one without a footprint counts as a polygon of 16 sides around its disc.
     goal : (float, float)
         In the frame of the odometry, in m.
-    footprint : Footprint or None
-        Outline around the middle of the axle; ``None``: that of the robot, or a polygon of 16 sides around its disc.
     lidars : sequence of Lidar
         Beams and ranges of each.
     mountings : sequence of (float, float, float) or None
@@ -201,7 +198,6 @@ class ScanController:
         robot: DifferentialDriveRobot,
         goal: npt.ArrayLike,
         *,
-        footprint: Footprint | None = None,
         lidars: Sequence[Lidar],
         mountings: Sequence[Sequence[float]] | None = None,
         control_period: float = 0.05,
@@ -214,8 +210,6 @@ class ScanController:
         self._rollouts = instance("rollouts", rollouts, ArcRollouts)
         self._cell = rollouts.map.cell
         body = instance("robot", robot, DifferentialDriveRobot)
-        if footprint is not None:
-            instance("footprint", footprint, Footprint)
         self._lidars = tuple(
             instance(f"lidars[{index}]", lidar, Lidar)
             for index, lidar in enumerate(sequence("lidars", "be a sequence of lidars", lidars))
@@ -223,7 +217,7 @@ class ScanController:
         self._goal = pair("goal", goal)
         self._native = _hrsafety.ScanController(
             rollouts._native,
-            outline_of(body, footprint)._native,
+            outline_of(body)._native,
             twist_limits(body),
             positive("control_period", control_period),
             [(lidar._lidar, pose) for lidar, pose in zip(self._lidars, self._poses(mountings), strict=True)],

@@ -10,7 +10,6 @@ from hrsafety import _hrsafety
 from hrsafety.navigation.laws.arc_rollouts import ArcRollouts
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot
-from hrsafety.navigation.robots.footprint import Footprint
 from hrsafety.navigation.scan_controller import outline_of, twist_limits
 
 __all__ = ["unknown_trial"]
@@ -24,7 +23,6 @@ def unknown_trial(
     start: Sequence[float],
     heading: float,
     goal: Sequence[float],
-    footprint: Footprint | None = None,
     control_period: float = 0.05,
     arrival_tolerance: float = 1.0,
     time_limit: float = 100.0,
@@ -45,13 +43,11 @@ def unknown_trial(
     rollouts : ArcRollouts
         How the robot finds its way.
     robot : DifferentialDriveRobot
-        Its speeds and accelerations.
+        Its speeds, accelerations and footprint.
     place : StaticMap
         What is there, of which the robot knows what its lidar shows.
     start, heading, goal : (float, float), float, (float, float)
         In m and rad; the goal in the frame of the odometry.
-    footprint : Footprint or None
-        Outline; ``None``: that of the robot, or a polygon around its disc.
     control_period, arrival_tolerance, time_limit : float
         In s, m and s.
     beams, field_of_view, range_max, range_noise : int and float
@@ -73,7 +69,7 @@ def unknown_trial(
     """
     return _hrsafety.unknown_trial(
         rollouts._native,
-        outline_of(robot, footprint)._native,
+        outline_of(robot)._native,
         twist_limits(robot),
         control_period,
         place._native,

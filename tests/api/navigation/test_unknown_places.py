@@ -15,8 +15,9 @@ from hrsafety.benchmarks import benchmark
 from hrsafety.benchmarks.unknown import dead_end, rollout_entry, trial
 from hrsafety.errors import InvalidParameterError, ShapeError
 
-ROBOT = nav.DifferentialDriveRobot(max_speed=1.0, max_turn_rate=3.0, max_acceleration=2.0, max_turn_acceleration=6.0)
 OUTLINE = nav.robots.Footprint.rectangle(0.5, 0.4)
+LIMITS = {"max_speed": 1.0, "max_turn_rate": 3.0, "max_acceleration": 2.0, "max_turn_acceleration": 6.0}
+ROBOT = nav.DifferentialDriveRobot(**LIMITS, footprint=OUTLINE)
 ROOM = nav.StaticMap(
     walls=[([(-1, -2), (7, -2), (7, 2), (-1, 2), (-1, -2)], 0.02), ([(3, -2), (3, 0.3)], 0.05)],
     discs=[(5.0, 0.5, 0.3)],
@@ -25,7 +26,7 @@ PERIOD = 0.05
 
 
 def controller(**changed: Any) -> nav.ScanController:
-    given: dict[str, Any] = {"footprint": OUTLINE, "lidars": [nav.Lidar(map=ROOM, beams=360)], **changed}
+    given: dict[str, Any] = {"lidars": [nav.Lidar(map=ROOM, beams=360)], **changed}
     return nav.ScanController(nav.ArcRollouts(), ROBOT, (6.0, -1.0), **given)
 
 
