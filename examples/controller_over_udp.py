@@ -32,13 +32,13 @@ def robot(port: int) -> None:
     wire = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     wire.settimeout(PERIOD)
     begin = time.perf_counter()
-    place, plan, told = (0.0, 0.0), [(0.0, 0.0)], 0.0
+    place, velocity, plan, told = (0.0, 0.0), (0.0, 0.0), [(0.0, 0.0)], 0.0
     nearest, packets = math.inf, 0
     while math.dist(place, GOAL) > 0.12 and time.perf_counter() - begin < LIMIT:
         now = time.perf_counter() - begin
-        # Without a new command the velocity is the next one of the last plan.
-        velocity = plan[min(round((now - told) / PERIOD), len(plan) - 1)]
-        place = (place[0] + velocity[0] * PERIOD, place[1] + velocity[1] * PERIOD)
+        # A plan begins a period after it was asked for; without a new one the velocity is the next one of the last.
+        before, velocity = velocity, plan[min(max(round((now - told) / PERIOD) - 1, 0), len(plan) - 1)]
+        place = tuple(x + 0.5 * (v + w) * PERIOD for x, v, w in zip(place, before, velocity, strict=True))
         x, y, vx, vy = person_at(now)
         nearest = min(nearest, math.dist(place, (x, y)) - 0.6)
         packets += 1
@@ -53,7 +53,7 @@ def robot(port: int) -> None:
         time.sleep(max(0.0, begin + packets * PERIOD - time.perf_counter()))
     arrived = math.dist(place, GOAL) <= 0.12
     print(f"arrived: {arrived}, {packets} periods, never touched: {nearest > 0.0}")
-    wire.sendto(b"{}", ("127.0.0.1", port))
+    wire.sendto(json.dumps({"arrived": arrived}).encode(), ("127.0.0.1", port))
 
 
 def main() -> None:
@@ -70,7 +70,7 @@ def main() -> None:
     while True:
         packet, sender = wire.recvfrom(65_536)
         seen = json.loads(packet)
-        if not seen:
+        if "arrived" in seen:
             break
         begin = time.perf_counter()
         command = controller.update(seen["time"], seen["position"], seen["velocity"], people=seen["people"])
@@ -79,6 +79,8 @@ def main() -> None:
         wire.sendto(json.dumps({"plan": plan}).encode(), sender)
     process.join()
     print(f"{len(took)} updates, the slowest took {1e3 * max(took):.2f} ms")
+    if not seen["arrived"]:
+        raise SystemExit("the robot did not arrive")
 
 
 if __name__ == "__main__":
