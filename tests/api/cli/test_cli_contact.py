@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import html
+import importlib.util
 import json
 import math
 import re
+import shutil
 from collections.abc import Callable
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
@@ -18,9 +23,11 @@ pytest.importorskip("jinja2")
 from hrsafety import arms, contact, standards
 from hrsafety.cli import main
 from hrsafety.cli.cell import report as cell_report
+from hrsafety.cli.cell.page import rounded
 from hrsafety.cli.file_kinds import starter
 from hrsafety.cli.verdict import OF_VERDICTS
 from hrsafety.contact import load_cell
+from hrsafety.pages import pdf
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 ARM, BASE = EXAMPLES / "contact_arm.toml", EXAMPLES / "contact_base.toml"
@@ -136,6 +143,7 @@ def test_every_number_of_the_page_is_that_of_its_path(judged: Any) -> None:
                 scale = 1e-4 if "pressure" in path and "speed" not in path else 1.0
                 scale = 1e-3 if path.endswith("spring_constant") else scale
                 scale = 1e3 if path.endswith("least_thickness") else scale
+                scale = 1e4 if path.endswith("contact_area") else scale
                 assert float(text) == pytest.approx(scale * held, rel=2e-2, abs=6e-3), path
         named = re.findall(r'<span class="path">([a-z_.\[\]\d]+)</span></figcaption>', page)
         assert len(named) >= 6
@@ -152,8 +160,75 @@ def test_a_page_needs_nothing_from_elsewhere(judged: Any) -> None:
     names = re.findall(r'\bid="([^"]+)"', page)
     assert len(names) == len(set(names))
     assert "@page { size: A4" in page
-    for number in range(1, 11):
+    for number in range(1, 13):
         assert re.search(rf"<h2>{number} ", page)
+
+
+def test_the_first_page_says_how_fast_the_robot_may_run_at_each_region(judged: Any) -> None:
+    report, page = judged(SMALL)
+    hand, face = report["regions"]
+    rows = [row for row in report["verdicts"] if row["region"] == "hand_finger"]
+    assert hand["allowed_speed"] == min(row["allowed_speed"] for row in rows)
+    assert report["verdicts"][hand["row"]]["allowed_speed"] == hand["allowed_speed"]
+    assert (face["allowed_speed"], face["verdict"]) == (None, "not_permitted")
+    first = page.partition("</section>")[0]
+    # Rounded to nearest, 0.36831 would be 0.368, too; no more than what is allowed is ever shown.
+    shown = re.search(r'data-path="regions\[0\].allowed_speed"[^>]*>([\d.]+)<', first)
+    assert shown is not None
+    assert hand["allowed_speed"] - 1e-3 < float(shown[1]) <= hand["allowed_speed"]
+    assert "no speed" in first
+    assert "Scanner field: none asked for" in first
+    with_field = judged(SMALL + "[separation]\nmax_speed = 1.5\nreaction_time = 0.1\ndeceleration = 3.0\n")
+    found = re.search(r'data-path="distances.stop"[^>]*>([\d.]+)<', with_field[1].partition("</section>")[0])
+    assert found is not None
+    assert with_field[0]["distances"]["stop"] <= float(found[1]) < with_field[0]["distances"]["stop"] + 1e-3
+
+
+@given(allowed=st.floats(0.0, 20.0) | st.sampled_from([0.3, 0.1 + 0.2, 0.123, 1.1]), thousandths=st.integers(0, 20_000))
+def test_speeds_are_rounded_down_and_distances_up(allowed: float, thousandths: int) -> None:
+    down, up = (rounded({"speed": allowed}, each)("speed") for each in (math.floor, math.ceil))
+    low, high = (float(str(each).partition(">")[2].partition("<")[0]) for each in (down, up))
+    assert allowed - 1.001e-3 < low <= allowed + 1e-9
+    assert allowed - 1e-9 <= high < allowed + 1.001e-3
+    whole = rounded({"speed": thousandths / 1e3}, math.floor)("speed")
+    assert f">{thousandths / 1e3:.3f}<" in whole
+
+
+def test_each_doubt_stands_once_and_rows_name_it_by_number(judged: Any) -> None:
+    report, page = judged(ARM)
+    for reason in {reason for row in report["verdicts"] for reason in row["reasons"]}:
+        assert page.count(f"<li>{html.escape(reason, quote=False)}</li>") == 1
+    assert "doubts 1, 2" in page
+    assert "[1] [2]" in re.sub(r"\s+", " ", page)
+    assert report["limits"]["sources"]["docstring"] in page
+
+
+def test_a_chart_holds_the_coverings_of_one_class_of_contact(judged: Any) -> None:
+    _, page = judged(ARM)
+    for kind in ("clamped", "free"):
+        assert f"Hand finger, {kind}: force over time at the planned speed" in page
+        assert f"Hand finger, {kind}: peak force over the closing speed" in page
+
+
+def test_a_pdf_is_the_same_each_time_or_says_what_is_missing(
+    judged: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if shutil.which("chromium") is None:
+        pytest.skip("no Chromium")
+    judged(SMALL, "--pdf")
+    first = Path("report/report.pdf").read_bytes()
+    assert first.startswith(b"%PDF-")
+    judged(SMALL, "--pdf")
+    assert Path("report/report.pdf").read_bytes() == first
+    shutil.rmtree("report")
+    monkeypatch.setattr(pdf, "BROWSERS", ())
+    found = importlib.util.find_spec
+    monkeypatch.setattr(
+        importlib.util, "find_spec", lambda each, *more: None if each == "weasyprint" else found(each, *more)
+    )
+    assert main(["contact", "cell.toml", "--out", "report", "--pdf"]) == 2
+    assert "pip install weasyprint" in capsys.readouterr().err
+    assert not Path("report").exists()
 
 
 def test_the_same_cell_gives_the_same_bytes(judged: Any, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
     from hrsafety.pages.report import Report
 
-__all__ = ["CONTACT_WORDS", "LOOKS", "html", "numbers_in", "paths_of"]
+__all__ = ["CONTACT_WORDS", "LOOKS", "html", "numbers_in", "paths_of", "rounded"]
 
 STATUS_WORDS = {
     "closed_form": "exact from stored energy",
@@ -59,6 +60,7 @@ def html(
     from markupsafe import Markup
 
     values = {**report.values, "warnings": report.messages}
+    annex = [each for each in annex if each[0] != "Limits"]  # part 2 has them, with room for the assessor
     by_part: dict[str, list[Drawing]] = {part: [] for part in PARTS}
     for each in drawings:
         by_part[each.part].append(each)
@@ -66,6 +68,10 @@ def html(
         "cell.html",
         values=values,
         n=numbers_in(values),
+        down=rounded(values, math.floor),
+        up=rounded(values, math.ceil),
+        numbered=_doubts(values),
+        sources=_sources(values["limits"]["rows"]),
         drawn=by_part,
         svg=Markup,
         verdict_words=VERDICT_WORDS,
@@ -78,18 +84,44 @@ def html(
     )
 
 
+def _doubts(values: Mapping[str, Any]) -> list[str]:
+    """Return every reason why a limit does not count as kept once, then the warnings that say something else."""
+    found = list(dict.fromkeys(reason for row in values["verdicts"] for reason in row["reasons"]))
+    return [*found, *(each for each in values["warnings"] if not any(each.endswith(reason) for reason in found))]
+
+
+def _sources(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return the short names of all sources of limits in the order of their use."""
+    tags = (row[name] or () for row in rows for name in row if name.endswith("_sources"))
+    return list(dict.fromkeys(tag for each in tags for tag in each))
+
+
+def rounded(values: Mapping[str, Any], careful: Callable[[float], int]) -> Callable[[str], Markup]:
+    """Return how a page shows a speed or distance in whole thousandths on its careful side."""
+    number = numbers_in(values)
+
+    def shown_on(path: str) -> Markup:
+        # Far below a thousandth, so that 0.3 is not shown as 0.299.
+        return number(path, ".3f", rounding=lambda value: careful(round(1e3 * value, 6)) / 1e3)
+
+    return shown_on
+
+
 def numbers_in(values: Mapping[str, Any]) -> Callable[..., Markup]:
     """Return how a page shows a number of a report: with its path, words as they are."""
     from markupsafe import Markup, escape
 
-    def number(path: str, spec: str = ".4g", scale: float = 1.0) -> Markup:
+    def number(
+        path: str, spec: str = ".4g", scale: float = 1.0, rounding: Callable[[float], float] | None = None
+    ) -> Markup:
         value = at_path(values, path)
         if value is None:
             words = DASH
         elif isinstance(value, (str, bool)):
             words = str(value).replace("_", " ") if spec else str(value)
         else:
-            words = shown(scale * value, spec) if spec else repr(value)
+            told = scale * value if rounding is None else rounding(value)
+            words = shown(told, spec) if spec else repr(value)
         held = "" if value is None else value
         template = Markup('<data value="{}" data-path="{}" title="{}">{}</data>')
         return template.format(escape(held), escape(path), escape(path), escape(words))

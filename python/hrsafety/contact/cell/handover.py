@@ -18,6 +18,7 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.standards.contact_limits import ContactLimit
 from hrsafety.standards.fields import FieldDistances, field_distances
 from hrsafety.standards.limit_sets import LimitSet
+from hrsafety.standards.verdicts import strictest
 
 __all__ = [
     "HUMAN_SPEED",
@@ -30,9 +31,44 @@ __all__ = [
     "limit_words",
     "payload_assumed",
     "plan_of",
+    "regions_of",
 ]
 
 CLASSES = {"quasi_static": "clamped", "transient": "free"}
+
+
+def regions_of(judged: Sequence[Judged]) -> list[dict[str, Any]]:
+    """Return one row for each region: its slowest allowed speed over all contacts with it, and what governs that.
+
+    Parameters
+    ----------
+    judged : sequence of Judged
+        Contacts in their order.
+
+    Returns
+    -------
+    list of dict
+        ``allowed_speed`` and ``planned_speed`` in m/s, the strictest verdict, the contact that governs with its
+        ``row`` among the verdicts. Of a region with a contact that has no allowed speed it is ``None``.
+    """
+    rows: dict[str, list[tuple[int, dict[str, Any]]]] = {}
+    for index, each in enumerate(judged):
+        rows.setdefault(each.planned.limit.region, []).append((index, each.verdict))
+    found = []
+    for region, held in rows.items():
+        index, slowest = min(held, key=lambda one: -1.0 if one[1]["allowed_speed"] is None else one[1]["allowed_speed"])
+        names = ("area_name", "contact", "covering", "governs", "status", "allowed_speed")
+        found.append(
+            {
+                "region": region,
+                "row": index,
+                **{name: slowest[name] for name in names},
+                "with_drive": (slowest["drive"] or {}).get("status") == slowest["status"],
+                "planned_speed": max(row["planned_speed"] for _, row in held),
+                "verdict": strictest(row["verdict"] for _, row in held),
+            }
+        )
+    return found
 
 
 def plan_of(cell: Cell, judged: Sequence[Judged], loads: Sequence[dict[str | None, ContactImpact]]) -> MeasurementPlan:

@@ -17,7 +17,7 @@ from hrsafety.contact.cell.cell import Cell, PlannedContact, contact_of
 from hrsafety.contact.cell.chances import chance_doubts, chance_of
 from hrsafety.contact.cell.driven import drive_doubts, driven_of, driven_row
 from hrsafety.contact.cell.file import load_cell
-from hrsafety.contact.cell.handover import annex_of_cell, distances_fields, distances_of, plan_of
+from hrsafety.contact.cell.handover import annex_of_cell, distances_fields, distances_of, plan_of, regions_of
 from hrsafety.contact.cell.judgement import (
     FASTEST,
     Judged,
@@ -38,7 +38,7 @@ from hrsafety.standards.separation import SpeedCurve
 from hrsafety.standards.verdicts import strictest
 from hrsafety.tables import Columns, Table, unit_suffix
 
-__all__ = ["ContactStudy", "Curve", "numbers_of", "study", "verdicts_of"]
+__all__ = ["ContactStudy", "Curve", "label_of", "numbers_of", "study", "verdicts_of"]
 
 SPEEDS = 41
 MAP_POINTS = 25
@@ -168,6 +168,7 @@ def study(cell: Cell | str | PathLike[str], *, progress: Callable[[int, int], ob
     verdict = strictest(each["verdict"] for each in verdicts)
     fields: dict[str, Any] = {
         "verdict": verdict,
+        "regions": regions_of(judged),
         "verdicts": verdicts,
         "doubts": _counts(judged),
         "confirmed": dict(cell.confirmed),
@@ -293,7 +294,8 @@ def _limits(cell: Cell) -> dict[str, Any]:
 # ---- loads --------------------------------------------------------------------------------------
 
 
-def _label(planned: PlannedContact, covering: str | None) -> str:
+def label_of(planned: PlannedContact, covering: str | None) -> str:
+    """Return the label of a contact with a covering among those of its region."""
     kind = "clamped" if planned.limit.contact == "quasi_static" else "free"
     area = "" if planned.limit.area is None else f"{planned.limit.area}, "
     return f"{area}{kind}, {covering or 'bare'}"
@@ -328,7 +330,7 @@ def _by_region(
     found: dict[str, dict[str, ContactImpact]] = {}
     for each, impacts in zip(judged, loads, strict=True):
         for covering, impact in impacts.items():
-            found.setdefault(each.planned.limit.region, {})[_label(each.planned, covering)] = impact
+            found.setdefault(each.planned.limit.region, {})[label_of(each.planned, covering)] = impact
     return found
 
 
@@ -341,7 +343,7 @@ def _over_speed(cell: Cell, judged: list[Judged]) -> dict[str, list[Curve]]:
         speeds = np.linspace(min(most, FASTEST) / SPEEDS, min(most, FASTEST), SPEEDS)
         for covering in dict.fromkeys((None, each.planned.covering)):
             rows = contact_of(cell, each.planned, covering).simulate_many(speeds)
-            label = _label(each.planned, covering)
+            label = label_of(each.planned, covering)
             found.setdefault(each.planned.limit.region, []).append(Curve(label, speeds, rows.peak_force))
     return found
 

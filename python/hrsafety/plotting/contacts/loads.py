@@ -148,6 +148,7 @@ def _draw_limits(axes: Axes, limits: Mapping[str, float] | None) -> None:
                 va="bottom",
                 fontsize=style.SMALL_FONT_SIZE,
                 color=style.CONTACT_COLOR,
+                bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
             )
 
 

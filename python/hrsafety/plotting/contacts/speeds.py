@@ -92,9 +92,10 @@ def speed_map(
     axes.grid(visible=False)
     axes.set_xlabel(quantity)
     axes.set_ylabel("thickness (mm)")
-    ticks, words = style.log_ticks(MILLI * float(rows[0]), MILLI * float(rows[-1]))
-    axes.set_yticks(ticks, labels=words)
-    axes.yaxis.set_minor_formatter("")
+    for axis, shown in ((axes.xaxis, columns), (axes.yaxis, MILLI * rows)):
+        ticks, words = style.log_ticks(float(shown[0]), float(shown[-1]))
+        axis.set_ticks(ticks, labels=words)
+        axis.set_minor_formatter("")
     return figure
 
 
