@@ -52,11 +52,12 @@ def show_arm(options: argparse.Namespace) -> None:
         sections=[Section("Masses", [_table(masses, list(directions))])],
         warnings=masses.warnings,
         source=options.robot,
+        made="",
     )
     print(terminal.told(report))
     folder = output.folder(options.out)
     tables = [_csv(arm, poses, masses, list(directions), folder)]
-    written = output.write_report(report, folder, _draw(arm, poses, masses, place), tables)
+    written = output.write_report(report, folder, _draw(arm, poses, masses, place), tables, options=options)
     output.say_written(written, report, options)
     output.report_warnings(masses.warnings, options.strict)
 

@@ -160,7 +160,7 @@ with the worst mass, and summary.html with both.
 
 CONTACT = """examples:
   hrsafety contact --init cell.toml
-  hrsafety contact examples/contact_arm.toml --out report --date 2026-03-31
+  hrsafety contact examples/contact_arm.toml --out report --date 2026-03-31 --pdf
 
 The file names a robot (an arm from URDF, a mobile base or a mass), coverings, the regions of the body
 that may be touched and the planned speeds. The folder receives report.html, a page that prints on A4,

@@ -25,6 +25,7 @@ from hrsafety.cli.progress import live
 from hrsafety.cli.terminal import styled
 from hrsafety.errors import InvalidParameterError, MissingExtraError, Shown
 from hrsafety.pages import Picture, require_jinja
+from hrsafety.pages.pdf import pdf_of, require_pdf
 from hrsafety.pages.report import Report, Section
 from hrsafety.plausibility import ResultWarning
 
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
 __all__ = [
     "animation",
     "check_json",
+    "check_pdf",
     "check_targets",
     "decided",
     "decimal",
@@ -58,6 +60,7 @@ __all__ = [
     "warnings_of",
     "with_options",
     "write_csv",
+    "write_page",
     "write_report",
     "write_text",
 ]
@@ -253,6 +256,15 @@ def check_targets(options: argparse.Namespace) -> None:
         if importlib.util.find_spec("foxglove") is None:
             raise MissingExtraError("--mcap needs foxglove-sdk: pip install foxglove-sdk")
     check_json(options)
+    check_pdf(options)
+
+
+def check_pdf(options: argparse.Namespace) -> None:
+    """Refuse before the work a PDF that nothing could print after it, or that has no folder."""
+    if getattr(options, "pdf", False):
+        if options.out is None:
+            raise InvalidParameterError("--pdf", "come with --out", Shown("no --out"))
+        require_pdf("--pdf")
 
 
 def check_json(options: argparse.Namespace) -> None:
@@ -307,6 +319,7 @@ def write_report(
     files: Sequence[Path],
     name: str = "summary",
     plays: Iterable[PlayerPage] = (),
+    options: argparse.Namespace | None = None,
 ) -> list[Path]:
     """Write the pictures of a report and its page, and return all files.
 
@@ -324,6 +337,8 @@ def write_report(
         Name of the page without ending.
     plays : iterable of PlayerPage
         Players of runs, which stand before the pictures, and in files of their own.
+    options : argparse.Namespace or None
+        Of a command with ``--pdf``.
     """
     made, players = pictures(place, drawn), list(plays)
     names = ["player.html", *(f"player_{index}.html" for index in range(2, len(players) + 1))]
@@ -332,7 +347,15 @@ def write_report(
     sections = [*report.sections, *([Section("Player", players)] if players else [])]
     sections += [Section("Pictures", made)] if made else []
     whole = replace(report, sections=sections, files=[*report.files, *(path.name for path in written)])
-    return [*written, write_text(place / f"{name}.html", whole.page())]
+    return [*written, *write_page(place / f"{name}.html", whole.page(), options or argparse.Namespace())]
+
+
+def write_page(place: Path, page: str, options: argparse.Namespace) -> list[Path]:
+    """Write a page and, with ``--pdf``, its PDF beside it."""
+    written = [write_text(place, page)]
+    if getattr(options, "pdf", False):
+        written.append(write_file(place.with_suffix(".pdf"), pdf_of(page)))
+    return written
 
 
 def say_written(paths: Sequence[Path], report: Report, options: argparse.Namespace) -> None:

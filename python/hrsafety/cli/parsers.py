@@ -298,6 +298,11 @@ def _add_foam(commands: Any) -> None:
     _add_shared(parser)
 
 
+def _add_pdf(parser: argparse.ArgumentParser) -> None:
+    """Add the option of commands whose page is handed over on paper."""
+    parser.add_argument("--pdf", action="store_true", help="write the page as PDF, too, by Chromium or WeasyPrint")
+
+
 def _add_record(commands: Any) -> None:
     parser = _add_command(
         commands,
@@ -308,6 +313,7 @@ def _add_record(commands: Any) -> None:
     parser.add_argument("files", nargs="+", metavar="FILE", help="records of one load; several are repetitions")
     parser.add_argument("--kind", required=True, choices=("head", "force", "pressure"), help="what was measured")
     parser.add_argument("--out", metavar="DIR", help="folder for a page and pictures")
+    _add_pdf(parser)
     _add_shared(parser)
     files = parser.add_argument_group("what a file may not say")
     files.add_argument("--time", metavar="COLUMN", help="column of times in s [found]")
@@ -395,6 +401,7 @@ def _add_arm(commands: Any) -> None:
     )
     parser.add_argument("robot", metavar="ROBOT.urdf", help="URDF of the arm, macros expanded")
     parser.add_argument("--out", metavar="DIR", default="arm", help="folder to write into [%(default)s]")
+    _add_pdf(parser)
     _add_shared(parser)
     place = parser.add_argument_group("point")
     place.add_argument("--link", metavar="NAME", help="link that the point is fixed to [the last one that moves]")
@@ -434,6 +441,7 @@ def _add_contact(commands: Any) -> None:
     parser.add_argument("cell", nargs="?", default="cell.toml", metavar="CELL.toml", help="cell file [%(default)s]")
     parser.add_argument("--init", action="store_true", help="write a commented cell file to start from")
     parser.add_argument("--out", metavar="DIR", default="report", help="folder to write into [%(default)s]")
+    _add_pdf(parser)
     parser.add_argument("--date", metavar="YYYY-MM-DD", help="date that the page prints [SOURCE_DATE_EPOCH, else none]")
     _add_shared(parser)
 
@@ -449,6 +457,7 @@ def _add_program(commands: Any) -> None:
         "file", nargs="?", default="robot_program.toml", metavar="FILE.toml", help="program [%(default)s]"
     )
     parser.add_argument("--out", metavar="DIR", default="program", help="folder to write into [%(default)s]")
+    _add_pdf(parser)
     parser.add_argument("--date", metavar="YYYY-MM-DD", help="date that the page prints [SOURCE_DATE_EPOCH, else none]")
     _add_shared(parser)
 

@@ -63,7 +63,7 @@ def judge_records(options: argparse.Namespace) -> None:
     written: list[Path] = []
     if options.out is not None:
         place = output.folder(options.out)
-        written = output.write_report(report, place, _draw(judged, options, limits), [])
+        written = output.write_report(report, place, _draw(judged, options, limits), [], options=options)
         if plan is not None:
             written.append(plan.to_csv(place / "plan.csv"))
     output.say_written(written, report, options)

@@ -37,6 +37,7 @@ def report_cell(options: argparse.Namespace) -> None:
     output.planned_folder(options.out)
     output.require_page("contact")
     output.check_json(options)
+    output.check_pdf(options)
     with output.located(options.cell), progress.live() as shown:
         cell = contact.load_cell(options.cell)
         told = None if shown is None else lambda done, total: shown("map of allowed speeds", done, total, None)
@@ -48,8 +49,8 @@ def report_cell(options: argparse.Namespace) -> None:
     print("\n".join(f"clamped contacts hold for {words}" for words in dict.fromkeys(held)))
     page = cell_page.html(report, cell_pictures.drawings(cell, study), study.annex.tables())
     place = output.folder(options.out)
-    texts = {"report.json": report.json(sort=True), "report.html": page}
-    files = [output.write_text(place / name, text) for name, text in texts.items()]
+    files = [output.write_text(place / "report.json", report.json(sort=True))]
+    files += output.write_page(place / "report.html", page, options)
     output.say_written([*files, study.plan.to_csv(place / "plan.csv")], report, options)
     output.report_warnings(study.warnings, strict=False)
     verdict.leave(study.verdict, _said(study))

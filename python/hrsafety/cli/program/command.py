@@ -47,7 +47,7 @@ def report_program(options: argparse.Namespace) -> None:
     place = output.folder(options.out)
     written = [
         output.write_text(place / "report.json", report.json(sort=True)),
-        output.write_text(place / "report.html", page),
+        *output.write_page(place / "report.html", page, options),
         *(_table(place / f"{name}.csv", columns) for name, columns in tables.items()),
     ]
     output.say_written(written, report, options)
