@@ -22,6 +22,8 @@ VIEWS = {"side view": (0, 2), "top view": (0, 1)}
 AXES = ("x", "y", "z")
 ELLIPSE_SHARE = 0.28  # of the width of the arm that the circle of the ISO mass has as its radius
 MOST_RADII = 2.0  # radii of that circle at which an outline is cut off
+LEAST_GAP = 0.27  # of the largest radius in view that circles of the scale are apart
+SCALE_COLOR = "#A0A0A0"
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 721)
 
 
@@ -29,8 +31,8 @@ ANGLES = np.linspace(0.0, 2.0 * np.pi, 721)
 def mass_ellipse(skeleton: object, masses: PointMasses, *, title: str | None = None) -> Figure:
     """Draw an arm from the side and from above with the mass of a point by direction.
 
-    The radius of the ellipse along a direction is proportional to the square root of the effective mass along it;
-    the dashed circle is the mass of ISO/TS 15066 at the same scale.
+    The radius of the ellipse along a direction is proportional to the square root of the effective mass along it, as
+    the grey circles show in kg; the dashed circle is the mass of ISO/TS 15066 at the same scale.
 
     Parameters
     ----------
@@ -68,7 +70,7 @@ def mass_ellipse(skeleton: object, masses: PointMasses, *, title: str | None = N
     instance("masses", masses, PointMasses)
     if masses.mobility.shape != (3, 3):
         raise ShapeError("masses.mobility", "(3, 3)", masses.mobility.shape)
-    figure = style.new_figure(5.2, title=title)
+    figure = style.new_figure(5.6, title=title)
     panels = figure.subplots(1, len(VIEWS))
     places = np.concatenate([lines.reshape(-1, 3), masses.position[np.newaxis]])
     width = max(float(np.ptp(places, axis=0).max()), 1e-3)
@@ -77,6 +79,25 @@ def mass_ellipse(skeleton: object, masses: PointMasses, *, title: str | None = N
         _draw_view(axes, lines, masses, plane, scale)
         axes.set_title(name)
     return figure
+
+
+def _add_scale(axes: Axes, center: Array, scale: float, most: float) -> None:
+    """Draw circles of round masses around a point, whose numbers in kg stand in the legend."""
+    from matplotlib.patches import Circle
+
+    largest = (most / scale) ** 2
+    decade = 10.0 ** np.floor(np.log10(largest))
+    rounds = [step * size for size in (0.01 * decade, 0.1 * decade, decade) for step in (1.0, 2.0, 5.0)]
+    shown: list[str] = []
+    outside = (1.0 + LEAST_GAP) * most
+    look: style.Properties = {"fill": False, "edgecolor": SCALE_COLOR, "linewidth": 0.7, "zorder": 1.2}
+    for mass in reversed(rounds):
+        radius = scale * np.sqrt(mass)
+        if LEAST_GAP * most <= radius <= outside - LEAST_GAP * most:
+            axes.add_patch(Circle((center[0], center[1]), radius, **look))
+            outside = radius
+            shown.insert(0, f"{mass:g}")
+    axes.plot([], [], color=SCALE_COLOR, linewidth=0.7, label=f"scale: {', '.join(shown)} kg")
 
 
 def _draw_view(axes: Axes, lines: Array, masses: PointMasses, plane: tuple[int, int], scale: float) -> None:
@@ -97,6 +118,7 @@ def _draw_view(axes: Axes, lines: Array, masses: PointMasses, plane: tuple[int, 
     largest = "unbounded" if np.isinf(mass).any() or mass.max() > 1e4 else f"{mass.max():.3g} kg"
     label = f"{mass.min():.3g} kg to {largest}"
     axes.plot(outline[:, 0], outline[:, 1], color=style.RUN_COLORS[0], label=label)
+    _add_scale(axes, center, scale, most)
     circle = center + along * scale * np.sqrt(masses.iso_mass)
     look: style.Properties = {"color": style.CONTACT_COLOR, "ls": (0, (5, 2)), "lw": 1.3}
     axes.plot(circle[:, 0], circle[:, 1], label=f"ISO mass {masses.iso_mass:.3g} kg", **look)
