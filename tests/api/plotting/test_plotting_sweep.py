@@ -110,3 +110,14 @@ def test_what_cannot_be_drawn_is_refused(draw: Any, result: Any, column: Any, wo
 def test_number_of_points_must_be_one() -> None:
     with pytest.raises(InvalidParameterError, match="most must be an integer"):
         plotting.sweep_scatter(RUNS, "energy", most=0)
+
+
+def test_many_values_of_one_case_are_a_density() -> None:
+    design = sweep.LatinHypercube([sweep.Axis(name="foam_stiffness", low=5e3, high=60e3)], 3000)
+    study = sweep.ImpactStudy(
+        manipulator=impact.MANIPULATOR_1, head=impact.Head.minimum(), fixed={"closing_speed": 1.25, "foam_damping": 80}
+    )
+    panel, bar = plotting.sweep_scatter(sweep.run(design, study), "hic15").axes
+    (cells,) = panel.collections
+    assert cells.get_array().sum() == 3000
+    assert bar.get_ylabel() == "values"

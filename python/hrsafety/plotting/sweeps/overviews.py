@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,17 +24,23 @@ from hrsafety.plotting.sweeps.lines import (
 from hrsafety.sweep import Axis, SweepResult
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 __all__ = ["sweep_parallel", "sweep_scatter"]
 
 MOST_POINTS = 20_000
 MOST_LINES = 400
+DENSE = 2_000
+"""More values of one case than this are shown as a density."""
+HEXAGONS = 40
 
 
 @notes.picture
 def sweep_scatter(result: SweepResult, column: str, *, most: int = MOST_POINTS, title: str | None = None) -> Figure:
     """Draw a column of a sweep over each of its axes as points, a panel for each axis.
+
+    Of one case with more than 2,000 values the panels show how many lie in each hexagon.
 
     Parameters
     ----------
@@ -81,12 +87,16 @@ def sweep_scatter(result: SweepResult, column: str, *, most: int = MOST_POINTS, 
     grid = figure.subplots(rows, columns, squeeze=False, sharey=True)
     for axes in grid.flat[len(varying) :]:
         axes.set_visible(False)
+    dense = len(cases) == 1 and np.count_nonzero(np.isfinite(points[column])) > DENSE
     size = 14.0 if points[column].size < 500 else 4.0
     for place, (axes, axis) in enumerate(zip(grid.flat, varying, strict=False)):
         for index, (name, values) in enumerate(cases):
             color = style.run_look(index)["color"]
             along = points[axis.name][:, 0]
-            axes.scatter(along, values, s=size, alpha=0.5, linewidths=0, color=color, label=name)
+            if dense:
+                _draw_density(figure, axes, along, values, log=axis.scale == "log")
+            else:
+                axes.scatter(along, values, s=size, alpha=0.5, linewidths=0, color=color, label=name)
         label_axis(axes, axis, "x")
         if place % columns == 0:
             axes.set_ylabel(drawn.label)
@@ -94,6 +104,15 @@ def sweep_scatter(result: SweepResult, column: str, *, most: int = MOST_POINTS, 
         handles, labels = grid[0, 0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=MOST_CASES, markerscale=18.0 / size)
     return figure
+
+
+def _draw_density(figure: Figure, axes: Axes, along: Array, values: Array, *, log: bool) -> None:
+    """Draw how many values lie in each hexagon of a panel."""
+    known = np.isfinite(values)
+    scale: Any = {"xscale": "log"} if log else {}
+    look: style.Properties = {"gridsize": (HEXAGONS, HEXAGONS // 2), "bins": "log", "mincnt": 1, "linewidths": 0.1}
+    drawn = axes.hexbin(along[known], values[known], cmap="viridis", **scale, **look)
+    figure.colorbar(drawn, ax=axes, label="values")
 
 
 @notes.picture
