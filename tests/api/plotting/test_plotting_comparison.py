@@ -182,7 +182,7 @@ def test_sequence_shows_every_robot_at_the_instant_or_at_its_end(runs):
 
 def test_standings_are_the_shares_and_their_intervals():
     result = three_episodes([["arrived", "arrived", "collided"], ["collided"] * 3], [[0, 0, 0], [1, 0, 1]])
-    left, right = plotting.comparison_standings(result).axes
+    left, right, places = plotting.comparison_standings(result).axes
     success, contact, moving = [
         [line.get_xdata().tolist() for line in axes.get_lines() if line.get_marker() == "o"]
         for axes in (left, right, right)
@@ -193,6 +193,8 @@ def test_standings_are_the_shares_and_their_intervals():
     standing = result.standing("first").success
     assert np.allclose([end[0] for end in ends[0]], [standing.low, standing.high])
     assert [label.get_text() for label in left.get_yticklabels()] == ["first", "second"]
+    ranks = next(line for line in places.get_lines() if line.get_marker() == "D")
+    assert ranks.get_xdata().tolist() == [1.0, 2.0]
 
 
 @pytest.mark.parametrize("draw", [plotting.comparison_paths, plotting.comparison_distances])
