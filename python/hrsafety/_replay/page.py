@@ -22,7 +22,7 @@ from hrsafety import __version__
 from hrsafety._atomic import write_file
 from hrsafety._replay.ground import ground_of
 from hrsafety._replay.packing import Block, Scale, block, counted
-from hrsafety._replay.record import VERDICTS, Decisions, Event, PlayedRobot, Replay
+from hrsafety._replay.record import VERDICTS, Decisions, Event, PlayedLidar, PlayedRobot, Replay
 
 __all__ = ["LIMIT", "PlayerPage", "digest", "frame_rows", "least_since", "player_page", "verdicts_of"]
 
@@ -39,6 +39,9 @@ TICK = 1e-3
 MOST_TICKS = 65_535
 MOST_PLAN = 24
 """Most places of a plan that are shown."""
+MOST_RANGES = 60_000
+"""Most ranges of scans that a page holds; of more beams some are shown."""
+RANGES = 2e-3
 MARGIN = 1.0
 CLEARANCES = 1e-3
 ANGLES = 1e-4
@@ -245,14 +248,26 @@ class _Content:
             self.blocks.append(block(f"clearance{index}", counted(least, CLEARANCES)))
         if robot.decisions is not None and len(robot.decisions.time):
             self._decisions(index, robot.decisions)
+        beams = [] if robot.scan is None else self._scans(index, robot.scan)
         return {
             "name": robot.name,
             "radius": float(robot.radius),
             "footprint": [list(map(float, corner)) for corner in robot.footprint],
             "goal": None if robot.goal is None else [float(part) for part in robot.goal],
             "tolerance": float(robot.tolerance),
+            "beams": beams,
             "decided": robot.decisions is not None and len(robot.decisions.time) > 0,
         }
+
+    def _scans(self, index: int, scan: PlayedLidar) -> list[float]:
+        """Pack the scans of a robot, of many beams some, and return the angles of those beams from its heading."""
+        found = [np.asarray(scan.ranges(int(row)), dtype=np.float64) for row in self.rows]
+        beams = len(found[0])
+        shown = np.unique(np.linspace(0, beams - 1, min(beams, MOST_RANGES // len(found) + 1)).astype(int))
+        ranges = np.stack(found)[:, shown]
+        self.blocks.append(block(f"scan{index}", counted(np.where(ranges < scan.range_max, ranges, np.nan), RANGES)))
+        angles = np.linspace(scan.start_angle, scan.end_angle, beams)[shown]
+        return [round(float(each), 4) for each in angles]
 
     def _decisions(self, index: int, made: Decisions) -> None:
         """Pack verdict and margin of each frame, the worst since the frame before, and the plans in force."""

@@ -6,7 +6,7 @@
   const KINDS = ["#D55E00", "#E69F00", "#CC79A7", "#6B3E00", "#882255", "#6A8030"];
   const VERDICT = ["#8c959f", "#1a7f37", "#d9a800", "#0757a8", "#b42318"];
   const SHAPES = ["M3 9h14v2H3z", "M10 2a8 8 0 100 16 8 8 0 000-16z", "M10 2l9 16H1z", "M10 1l9 9-9 9-9-9z", "M6 1h8l5 5v8l-5 5H6l-5-5V6z"];
-  const WALL = "#3a3f46", GOAL = "#00795C", EXPECTED = "#6a3d9a", CONTACT = "#c00000", INK = "#1b1f24";
+  const WALL = "#3a3f46", GOAL = "#00795C", EXPECTED = "#6a3d9a", CONTACT = "#c00000", SCAN = "rgba(0,90,160,.75)", INK = "#1b1f24";
   const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
   const head = JSON.parse($("head").textContent);
   const data = {}, body = document.body;
@@ -337,6 +337,18 @@
     }
   }
 
+  function scans() {
+    head.robots.forEach((robot, k) => {
+      const here = place("robots", k), turned = at("heading" + k, frame, 0);
+      if (!here || !robot.beams.length) return;
+      pen.fillStyle = SCAN;
+      robot.beams.forEach((angle, beam) => {
+        const range = at("scan" + k, frame, beam), toward = angle + (turned === ABSENT ? 0 : turned / 1e4);
+        if (range !== ABSENT) pen.fillRect(sx(here[0] + (range / 500) * Math.cos(toward)) - 1.5, sy(here[1] + (range / 500) * Math.sin(toward)) - 1.5, 3, 3);
+      });
+    });
+  }
+
   function robots() {
     head.robots.forEach((robot, k) => {
       const color = ROBOTS[k % ROBOTS.length], here = place("robots", k);
@@ -353,7 +365,7 @@
       pen.strokeStyle = "#fff";
       pen.stroke();
       const look = angle === null ? direction("robots", k) : angle;
-      if (look !== null) nose(x, y, robot.radius, look, "#fff");
+      if (look !== null) nose(x, y, (robot.footprint.length ? 0.45 : 1) * robot.radius, look, "#fff");
       if (robot.decided) {
         disc(x, y, robot.radius + 5 / view.scale, 8);
         pen.lineWidth = 3;
@@ -429,6 +441,7 @@
     goals();
     head.robots.forEach((robot, k) => { if (robot.decided) decided(k); });
     solids();
+    scans();
     people();
     robots();
     contacts();
@@ -737,6 +750,7 @@
     if (ground.walls.length || ground.polygons.length || ground.discs.length || ground.grids.length) entry("what stands", line(WALL, [], 5));
     if (ground.grids.length) entry("not seen by anybody", (ink) => { ink.fillStyle = hatch; ink.fillRect(2, 1, 22, 16); });
     if (head.robots.some((robot) => robot.goal)) entry("goal", (ink) => { ink.translate(13, 9); ink.fillStyle = GOAL; ink.beginPath(); for (let k = 0; k < 10; k++) { const far = k % 2 ? 3.5 : 8, a = -Math.PI / 2 + (k * Math.PI) / 5; ink.lineTo(far * Math.cos(a), far * Math.sin(a)); } ink.fill(); });
+    if (some("scan")) entry("scan", (ink) => { ink.fillStyle = SCAN; for (const [x, y] of [[4, 12], [9, 9], [14, 7], [19, 6]]) ink.fillRect(x, y, 3, 3); });
     if (some("plan")) entry("verified area", (ink) => { ink.globalAlpha = 0.35; line(VERDICT[1], [], 12)(ink); ink.globalAlpha = 1; line(VERDICT[1], [], 1.5)(ink); });
     if (some("reach")) entry("where people can be", (ink) => { ink.setLineDash([3, 3]); ink.beginPath(); ink.arc(13, 9, 7.5, 0, 7); ink.fillStyle = "rgba(213,94,0,.12)"; ink.fill(); ink.strokeStyle = "#aa4600"; ink.stroke(); });
     if (some("way")) entry("way that is expected", line(EXPECTED, [2, 4]));

@@ -98,12 +98,15 @@ class PlayedLidar(NamedTuple):
     ----------
     start_angle, end_angle : float
         Of the first and the last beam, in rad from the heading.
+    range_max : float
+        Range in m from which on a beam has hit nothing.
     ranges : callable
         Returns the ranges at a row of the run in m.
     """
 
     start_angle: float
     end_angle: float
+    range_max: float
     ranges: Callable[[int], Array]
 
 

@@ -21,6 +21,7 @@ from hrsafety.navigation.obstacles.moving_rectangle import Box, Mobile
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.robots.bodies import HolonomicRobot
+from hrsafety.navigation.robots.footprint import Footprint
 from hrsafety.navigation.sensing.lidar import Lidar
 
 __all__ = ["replay_of_record", "replay_of_run", "walls_of"]
@@ -211,10 +212,10 @@ def _robot(
         name=f"robot {index}" if of_world and len(scene.robots) > 1 else "robot",
         position=run.position,
         radius=radius,
-        heading=None if body is None or isinstance(body, HolonomicRobot) else run.heading,
-        footprint=outline if isinstance(outline, tuple) else (),
+        heading=None if body is None or (isinstance(body, HolonomicRobot) and outline is None) else run.heading,
+        footprint=() if outline is None else outline.corners,
         speed=np.hypot(*run.velocity.T),
-        clearance=None if scene is None else _clearance(run, maps, bodies, radius),
+        clearance=None if scene is None else _clearance(run, maps, bodies, radius, outline),
         goal=None if scene is None else own.goal,
         tolerance=0.0 if scene is None else own.arrival_tolerance,
         decisions=decisions,
@@ -236,10 +237,12 @@ def _scanner(run: Run, bodies: Bodies) -> PlayedLidar | None:
         there = [each for each in discs if math.isfinite(each[0])] if lidar.sees_obstacles else []
         return np.asarray(exact.scan(run.position[row], float(run.heading[row]), people=there))
 
-    return PlayedLidar(-half, last, ranges)
+    return PlayedLidar(-half, last, lidar.range_max, ranges)
 
 
-def _clearance(run: Run, maps: Iterable[StaticMap], bodies: Bodies, radius: float) -> Array | None:
+def _clearance(
+    run: Run, maps: Iterable[StaticMap], bodies: Bodies, radius: float, outline: Footprint | None
+) -> Array | None:
     """Return how far the robot is from what is nearest, in m, NaN where unknown; ``None`` without distances."""
     if run.distance is None:
         return None
@@ -248,7 +251,11 @@ def _clearance(run: Run, maps: Iterable[StaticMap], bodies: Bodies, radius: floa
     found[~here] = np.nan
     for each in maps:
         if each.bounds is not None:
-            found[here] = np.minimum(found[here], np.asarray(each.clearance(run.position[here])) - radius)
+            if outline is None:
+                away = np.asarray(each.clearance(run.position[here])) - radius
+            else:
+                away = outline.clearance(each, run.position[here], run.heading[here])
+            found[here] = np.minimum(found[here], away)
     for column, _, _, size, box in bodies:
         away = run.distance[:, column] - radius - (0.0 if box is not None else size)
         found = np.minimum(found, np.where(np.isnan(away), np.inf, away))

@@ -24,7 +24,19 @@ if TYPE_CHECKING:
 
     from hrsafety.navigation.trajectory import Trajectory
 
-__all__ = ["CONTACT", "disc", "events", "finish", "handle", "line", "obstacle_velocity", "panels", "velocity"]
+__all__ = [
+    "CONTACT",
+    "FLASH",
+    "FLASH_TIME",
+    "disc",
+    "events",
+    "finish",
+    "handle",
+    "line",
+    "obstacle_velocity",
+    "panels",
+    "velocity",
+]
 
 LEGEND_COLUMNS = 4
 LEAST_SPEED = 0.02  # m/s, below which an arrow or a marker of direction would point anywhere
@@ -36,6 +48,12 @@ CONTACT: style.Properties = {
     "markeredgecolor": "white",
     "linestyle": "none",
 }
+
+FLASH: style.Properties = {
+    **{"marker": "o", "markersize": 34, "markerfacecolor": "none", "linestyle": "none"},
+    **{"markeredgecolor": style.CONTACT_COLOR, "markeredgewidth": 2.5},
+}
+FLASH_TIME = 0.6  # s for which an animation rings a contact
 
 
 def panels(

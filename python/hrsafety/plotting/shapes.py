@@ -13,7 +13,9 @@ from hrsafety.navigation.obstacles.base import Obstacle
 from hrsafety.navigation.obstacles.moving import Human, MovingDisc
 from hrsafety.navigation.obstacles.moving_rectangle import Box, Mobile, MovingRectangle
 from hrsafety.navigation.obstacles.standing import Rectangle
+from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.scenario import Scenario
+from hrsafety.navigation.trajectory import Trajectory
 from hrsafety.plotting import style
 
 if TYPE_CHECKING:
@@ -22,8 +24,11 @@ if TYPE_CHECKING:
     from matplotlib.patches import Patch
 
 Array = npt.NDArray[np.float64]
+Robot = HolonomicRobot | DifferentialDriveRobot
 
+LEAST_SPEED = 0.02  # m/s, below which a robot that can move to any side points anywhere
 MOST_COLORS = 6  # more obstacles than this cannot be told apart by color
+NOTE = "region-note"
 _ARC_POINTS = 17
 
 
@@ -120,8 +125,8 @@ def least_half_width(obstacle: Obstacle) -> float:
     return radius
 
 
-def move(patch: Patch, position: npt.ArrayLike) -> None:
-    """Put a patch on axes that was made at the origin at a position in m."""
+def move(patch: Patch, position: npt.ArrayLike, angle: float = 0.0) -> None:
+    """Put a patch on axes that was made at the origin at a position in m, turned by an angle in rad."""
     from matplotlib.patches import Circle
     from matplotlib.transforms import Affine2D
 
@@ -129,7 +134,7 @@ def move(patch: Patch, position: npt.ArrayLike) -> None:
     if isinstance(patch, Circle):
         patch.set_center((x, y))
     elif patch.axes is not None:
-        patch.set_transform(Affine2D().translate(x, y) + patch.axes.transData)
+        patch.set_transform(Affine2D().rotate(angle).translate(x, y) + patch.axes.transData)
 
 
 def region(obstacle: Obstacle, position: npt.ArrayLike, radius: float, **look: Any) -> Patch:
@@ -140,6 +145,33 @@ def region(obstacle: Obstacle, position: npt.ArrayLike, radius: float, **look: A
         return Polygon(rectangle_outline(obstacle, position, radius), closed=True, **look)
     x, y = np.asarray(position, dtype=np.float64)
     return Circle((x, y), radius, **look)
+
+
+def robot(body: Robot, position: npt.ArrayLike, heading: float = 0.0, **look: Any) -> Patch:
+    """Return the patch of a robot at a position in m and a heading in rad: its footprint, or its disc."""
+    from matplotlib.patches import Circle, Polygon
+
+    place = np.asarray(position, dtype=np.float64)
+    if body.footprint is None:
+        return Circle((place[0], place[1]), body.radius, **look)
+    return Polygon(turned(body.footprint.corners, heading) + place, closed=True, **look)
+
+
+def turned(points: npt.ArrayLike, angle: float) -> Array:
+    """Return points, shape (n, 2), turned about the origin by an angle in rad."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    found: Array = np.asarray(points, dtype=np.float64) @ np.array([[cosine, sine], [-sine, cosine]])
+    return found
+
+
+def look_angle(run: Trajectory, row: int, robot: int = 0) -> float:
+    """Return where a robot points at a row of a run, in rad; NaN for a disc that stands and can move to any side."""
+    scene: Any = run.scenario
+    body = scene.robots[robot].body if hasattr(scene, "robots") else scene.robot
+    if isinstance(body, HolonomicRobot) and body.footprint is None:
+        x, y = run.robots[robot].velocity[row]
+        return float(np.arctan2(y, x)) if np.hypot(x, y) > LEAST_SPEED else float("nan")
+    return float(run.robot_heading[row, robot])
 
 
 def scene_points(obstacles: Iterable[Obstacle]) -> list[Array]:
@@ -168,6 +200,30 @@ def region_patches(obstacle: Obstacle, position: npt.ArrayLike, color: str, *, f
     return patches
 
 
+def add_regions(axes: Axes, obstacle: Obstacle, position: npt.ArrayLike, color: str, *, filled: bool = True) -> None:
+    """Draw the regions of an obstacle; of one that covers all of the view a note takes the place."""
+    patches = region_patches(obstacle, position, color, filled=filled)
+    parts = len(patches) // 2
+    corners = np.array([(x, y) for x in axes.get_xlim() for y in axes.get_ylim()]) - np.asarray(position)
+    if isinstance(obstacle, Box):
+        sides = 0.5 * np.array([obstacle.length, obstacle.width])
+        corners = np.maximum(np.abs(turned(corners, -obstacle.heading)) - sides, 0.0)
+    farthest = float(np.hypot(*corners.T).max())
+    covering = []
+    for name, each, radius in zip(
+        ("active", "critical"), (patches[:parts], patches[parts:]), region_radii(obstacle), strict=True
+    ):
+        if farthest < radius:
+            covering.append(name)
+        else:
+            add(axes, each)
+    if covering and not any(each.get_gid() == NOTE for each in axes.texts):
+        words = f"all of this is in the {' and '.join(covering)} region of a {kind(obstacle)}"
+        look: style.Properties = {"ha": "right", "va": "top", "fontsize": style.SMALL_FONT_SIZE, "zorder": 8.0}
+        back = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.5}
+        axes.text(0.99, 0.99, words, transform=axes.transAxes, color=style.NEUTRAL, bbox=back, gid=NOTE, **look)
+
+
 def add(axes: Axes, patches: Iterable[Patch]) -> None:
     """Add patches without changing the view."""
     for patch in patches:
@@ -181,7 +237,7 @@ def add_obstacle(
     if not np.all(np.isfinite(np.asarray(position, dtype=np.float64))):
         return
     if regions:
-        add(axes, region_patches(obstacle, position, color))
+        add_regions(axes, obstacle, position, color)
     zorder = 3.2 if is_mobile(obstacle) else 3.0
     look: style.Properties = {
         "facecolor": color,
@@ -192,11 +248,17 @@ def add_obstacle(
     add(axes, [body(obstacle, position, **look)])
 
 
-def add_robot(axes: Axes, scenario: Scenario, position: npt.ArrayLike, color: str, *, filled: bool = True) -> None:
-    """Draw the disc of the robot at a position in m."""
-    from matplotlib.patches import Circle
-
-    x, y = np.asarray(position, dtype=np.float64)
+def add_robot(
+    axes: Axes,
+    scenario: Scenario,
+    position: npt.ArrayLike,
+    color: str,
+    *,
+    heading: float = 0.0,
+    filled: bool = True,
+    **more: Any,
+) -> None:
+    """Draw the robot at a position in m and a heading in rad."""
     face = color if filled else "none"
     look: style.Properties = {
         "facecolor": face,
@@ -204,7 +266,7 @@ def add_robot(axes: Axes, scenario: Scenario, position: npt.ArrayLike, color: st
         "linewidth": 1.0,
         "zorder": 4.0,
     }
-    axes.add_patch(Circle((x, y), scenario.robot.radius, **look))
+    axes.add_patch(robot(scenario.robot, position, heading, **(look | more)))
 
 
 def add_start_and_goal(axes: Axes, scenario: Scenario, starts: Iterable[tuple[float, float]] | None = None) -> None:

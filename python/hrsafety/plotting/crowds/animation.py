@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hrsafety._arguments import callback, positive
-from hrsafety.plotting import floor, movies, notes, style
+from hrsafety.plotting import floor, movies, notes, shapes, style
 from hrsafety.plotting.crowds import world_scenes
 
 if TYPE_CHECKING:
@@ -24,8 +24,8 @@ __all__ = ["animate_crowd"]
 
 DPI = 85
 TRAIL_TIME = 2.0  # s of the ways of people that fade behind them
+BODY: style.Properties = {"edgecolor": "white", "linewidth": 1.0, "animated": True}
 LONGEST_STEP = 1.0  # m between two rows, beyond which a person has not walked
-FLASH_TIME = 0.6  # s for which a contact is ringed
 
 
 @notes.picture
@@ -114,16 +114,14 @@ class _Stage:
         looks = [str(look["color"]) for look in world_scenes.robot_looks(len(run.scenario.robots))]
         self.trails = [axes.plot([], [], color=color, linewidth=2.0, zorder=4.0, animated=True)[0] for color in looks]
         self.robots = [
-            _circle(axes, robot.body.radius, color, 5.0)
+            axes.add_patch(shapes.robot(robot.body, (0.0, 0.0), facecolor=color, zorder=5.0, **BODY))
             for robot, color in zip(run.scenario.robots, looks, strict=True)
         ]
         arrow: style.Properties = {"color": "white", "linewidth": 1.6, "zorder": 5.5, "animated": True}
         self.headings = [axes.plot([], [], **arrow)[0] for _ in run.scenario.robots]
         self.touched = world_scenes.contacts(run)
         self.contacts = axes.plot([], [], zorder=7.0, animated=True, **floor.CONTACT)[0]
-        ring: style.Properties = {"linestyle": "", "marker": "o", "markersize": 34, "markerfacecolor": "none"}
-        color = style.CONTACT_COLOR
-        self.flash = axes.plot([], [], zorder=7.0, animated=True, markeredgecolor=color, markeredgewidth=2.5, **ring)[0]
+        self.flash = axes.plot([], [], zorder=7.0, animated=True, **floor.FLASH)[0]
         where: style.Properties = {"x": 1.0, "y": 1.01, "transform": axes.transAxes, "ha": "right", "va": "bottom"}
         self.clock = axes.text(s="", **where, fontsize=style.FONT_SIZE + 1, zorder=9.0, animated=True)
 
@@ -143,14 +141,14 @@ class _Stage:
         self.ways.show(row)
         for index, (body, trail) in enumerate(zip(self.robots, self.trails, strict=True)):
             center = run.robot_position[row, index]
-            body.set_center(center)
+            shapes.move(body, center, float(run.robot_heading[row, index]))
             trail.set_data(*run.robot_position[: row + 1, index].T)
-            angle, radius = run.robot_heading[row, index], body.get_radius()
+            angle, radius = shapes.look_angle(run, row, index), run.scenario.robots[index].body.radius
             ahead = center + radius * np.array([np.cos(angle), np.sin(angle)])
             self.headings[index].set_data(*np.stack([center, ahead]).T)
         places = [run.robot_position[instant, robot] for instant, robot in self.touched if instant <= row]
         self.contacts.set_data(*np.array(places).reshape(-1, 2).T)
-        since = run.time[row] - FLASH_TIME
+        since = run.time[row] - floor.FLASH_TIME
         now = [
             run.robot_position[row, robot]
             for instant, robot in self.touched
@@ -190,8 +188,7 @@ def _circle(axes: Axes, radius: float, color: str, zorder: float) -> Any:
     """Add a circle at the origin that will be moved."""
     from matplotlib.patches import Circle
 
-    look: style.Properties = {"facecolor": color, "edgecolor": "white", "linewidth": 1.0, "animated": True}
-    return axes.add_patch(Circle((0.0, 0.0), radius, zorder=zorder, **look))
+    return axes.add_patch(Circle((0.0, 0.0), radius, facecolor=color, zorder=zorder, **BODY))
 
 
 def _background(

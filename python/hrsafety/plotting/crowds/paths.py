@@ -9,7 +9,7 @@ import numpy as np
 
 from hrsafety._arguments import number
 from hrsafety.errors import InvalidParameterError
-from hrsafety.plotting import floor, inputs, notes, style
+from hrsafety.plotting import floor, inputs, notes, shapes, style
 from hrsafety.plotting.crowds import world_scenes
 
 if TYPE_CHECKING:
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 __all__ = ["crowd_paths"]
 
 FEW = 12  # people whose paths are drawn as strong as those of robots
+FAINT = 0.3  # strength of the oldest part of a path
+MOST_PIECES = 80  # of a path that fades
 SO_FAR, TO_COME = "-", (0, (1.0, 1.6))
 
 
@@ -34,7 +36,7 @@ def crowd_paths(
     labels: Sequence[str] | None = None,
     title: str | None = None,
 ) -> Figure:
-    """Draw everybody in a world at one instant, with the paths so far and to come.
+    """Draw everybody in a world at one instant, with the paths so far, which fade, and to come.
 
     Where the floor repeats itself, one cell of it is shown between dashed edges.
 
@@ -110,16 +112,29 @@ def _draw_people(axes: Axes, run: Trajectory, row: int, place: world_scenes.Floo
     strength = 0.9 if len(kinds) <= FEW else 0.35
     for person, kind in enumerate(kinds):
         color = colors[kind]
-        for part, dashes in (
-            (run.obstacle_position[: row + 1, person], SO_FAR),
-            (run.obstacle_position[row:, person], TO_COME),
-        ):
-            look: style.Properties = {"color": color, "linewidth": 1.1, "alpha": strength, "linestyle": dashes}
-            floor.line(axes, place.path(part), zorder=2.5, **look)
+        coming = place.path(run.obstacle_position[row:, person])
+        look: style.Properties = {"color": color, "linewidth": 1.1, "alpha": 0.6 * strength, "linestyle": TO_COME}
+        floor.line(axes, coming, zorder=2.5, **look)
+        _fading(axes, place.path(run.obstacle_position[: row + 1, person]), color, strength)
         body: style.Properties = {"facecolor": color, "edgecolor": "white", "linewidth": 0.8, "zorder": 3.2}
         world_scenes.draw_body(
             axes, place, run.obstacle_position[row, person], float(run.obstacle_radius[person]), alpha=0.85, **body
         )
+
+
+def _fading(axes: Axes, path: inputs.Array, color: str, strength: float) -> None:
+    """Draw the path so far, fainter the longer ago."""
+    from matplotlib.collections import LineCollection
+    from matplotlib.colors import to_rgb
+
+    rows = np.unique(np.linspace(0, len(path) - 1, MOST_PIECES).astype(int))
+    kept = np.unique(np.concatenate([rows, np.flatnonzero(np.isnan(path[:, 0]))]))
+    ends = path[kept]
+    pieces = np.stack([ends[:-1], ends[1:]], axis=1)
+    fade = FAINT + (1.0 - FAINT) * np.linspace(0.0, 1.0, len(pieces))
+    known = np.isfinite(pieces).all(axis=(1, 2))
+    colors = np.column_stack([np.tile(to_rgb(color), (len(pieces), 1)), strength * fade])
+    axes.add_collection(LineCollection(list(pieces[known]), colors=colors[known], linewidths=1.6, zorder=2.6))
 
 
 def _draw_robots(axes: Axes, run: Trajectory, row: int, place: world_scenes.Floor) -> None:
@@ -130,7 +145,9 @@ def _draw_robots(axes: Axes, run: Trajectory, row: int, place: world_scenes.Floo
         floor.line(axes, path[: row + 1], zorder=5.0, color=color, linewidth=2.0)
         floor.line(axes, path[row:], zorder=4.9, color=color, linewidth=1.6, linestyle=TO_COME)
         body: style.Properties = {"facecolor": color, "edgecolor": "white", "linewidth": 0.8, "zorder": 4.5}
-        world_scenes.draw_body(axes, place, path[row], robot.body.radius, **body)
+        angle = float(run.robot_heading[row, index])
+        for copy in place.copies(path[row], robot.body.radius) if np.isfinite(path[row]).all() else ():
+            axes.add_patch(shapes.robot(robot.body, copy, angle, **body))
 
 
 def _handles(run: Trajectory, names: Sequence[str], kinds: Sequence[str], *, touched: bool) -> list[Artist]:

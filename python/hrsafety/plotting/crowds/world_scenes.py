@@ -271,7 +271,11 @@ def gaps(run: Trajectory, robot: int) -> Array:
 def contacts(run: Trajectory) -> list[tuple[int, int]]:
     """Return row and robot of the first contact of each robot with each person, in order of time."""
     found = []
-    for robot in range(len(run.scenario.robots)):
+    for robot, own in enumerate(run.scenario.robots):
+        if own.body.footprint is not None:
+            instants = run.robots[robot].contact_time
+            found += [(int(np.abs(run.time - when).argmin()), robot) for when in instants[np.isfinite(instants)]]
+            continue
         touching = gaps(run, robot) < -TOUCH
         found += [(int(touching[:, person].argmax()), robot) for person in np.flatnonzero(touching.any(axis=0))]
     return sorted(found)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hrsafety._arguments import callback
-from hrsafety.plotting import inputs, movies, notes, shapes, style, walls
+from hrsafety.plotting import floor, inputs, movies, notes, shapes, style, walls
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -41,10 +41,10 @@ def animate(
 ) -> Path:
     """Write an animation of a run to a GIF or MP4 file.
 
-    Shown are the robot with its trail, its goal, every obstacle that is present, with an id in
+    Shown are the robot with its trail and heading, its goal, every obstacle that is present, with an id in
     each moving one, and a clock. Stationary obstacles show their regions all the time, moving
     ones while the robot is inside their active region; of more than six obstacles only
-    the border of the active one. A contact leaves a red cross. The view holds the whole path
+    the border of the active one. A contact is ringed and leaves a red cross. The view holds the whole path
     of the robot with a margin; whoever walks outside is out of view. The file appears under
     its name only when it is complete.
 
@@ -129,7 +129,10 @@ class _Stage:
             "markeredgecolor": "white",
         }
         self.contacts = axes.plot([], [], linestyle="none", zorder=7.0, animated=True, **contact)[0]
-        self.robot = _add_circle(axes, run.scenario.robot.radius, facecolor=ROBOT_COLOR, edgecolor="white", zorder=5.0)
+        own: style.Properties = {"facecolor": ROBOT_COLOR, "edgecolor": "white", "linewidth": 1.0, "animated": True}
+        self.robot = axes.add_patch(shapes.robot(run.scenario.robot, (0.0, 0.0), zorder=5.0, **own))
+        self.heading = axes.plot([], [], color="white", linewidth=1.6, zorder=5.5, animated=True)[0]
+        self.flash = axes.plot([], [], zorder=7.0, animated=True, **floor.FLASH)[0]
         box: style.Properties = {"boxstyle": "round,pad=0.25", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
         place: style.Properties = {"x": 0.015, "y": 0.975, "transform": axes.transAxes, "ha": "left", "va": "top"}
         self.clock = axes.text(s="", **place, bbox=box, fontsize=style.FONT_SIZE + 1, zorder=9.0, animated=True)
@@ -150,16 +153,18 @@ class _Stage:
         text = axes.text(0.0, 0.0, shown_name, fontweight="bold", zorder=4.5, animated=True, **letters)
         rings = []
         if self.regions:
-            rings = self._rings(obstacle, color)
+            rings = self._rings(axes, obstacle, color)
             for ring in rings:
                 ring.set_animated(True)
             shapes.add(axes, rings)
         return index, body, text, rings
 
-    def _rings(self, obstacle: Any, color: str) -> list[Any]:
+    def _rings(self, axes: Axes, obstacle: Any, color: str) -> list[Any]:
         """Return the regions of a moving obstacle; of many obstacles only a border of the active one."""
         if len(self.run.scenario.obstacles) <= shapes.MOST_COLORS:
-            return list(shapes.region_patches(obstacle, (0.0, 0.0), color))
+            patches = list(shapes.region_patches(obstacle, (0.0, 0.0), color))
+            wide = 2.0 * shapes.region_radii(obstacle)[0] > max(np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim()))
+            return patches[1:] if wide else patches  # a face that covers the picture tells nothing, its border does
         active, _ = shapes.region_radii(obstacle)
         border: style.Properties = {"fill": False, "linewidth": 0.5, "antialiased": False}  # small in a file
         border |= {"edgecolor": _tint(color), "zorder": 1.1}
@@ -168,7 +173,7 @@ class _Stage:
     def artists(self) -> list[Artist]:
         """Return everything that moves, from back to front."""
         moving = [artist for _, body, text, rings in self.bodies for artist in (body, text, *rings)]
-        every = [*self.fixed, *moving, self.trail, self.contacts, self.robot, self.clock]
+        every = [*self.fixed, *moving, self.trail, self.contacts, self.flash, self.robot, self.heading, self.clock]
         return sorted(every, key=lambda artist: float(artist.get_zorder()))
 
     def show(self, row: int) -> None:
@@ -190,10 +195,14 @@ class _Stage:
                 for patch in (body, *rings):
                     shapes.move(patch, place)
         self.trail.set_data(run.position[: row + 1, 0], run.position[: row + 1, 1])
-        self.robot.set_center(run.position[row])
+        shapes.move(self.robot, run.position[row], float(run.heading[row]))
+        angle, ahead = shapes.look_angle(run, row), run.scenario.robot.radius
+        self.heading.set_data(*(run.position[row] + np.outer([0.0, ahead], [np.cos(angle), np.sin(angle)])).T)
         touched = run.contact_time[run.contact_time <= run.time[row]]
         rows = [inputs.row_at(run, float(instant)) for instant in touched]
         self.contacts.set_data(run.position[rows, 0], run.position[rows, 1])
+        fresh = bool((touched > run.time[row] - floor.FLASH_TIME).any())
+        self.flash.set_data(*(run.position[[row] if fresh else []].T))
         self.clock.set_text(f"{run.time[row]:5.2f} s")
 
 
@@ -202,13 +211,6 @@ def _tint(color: str) -> tuple[float, ...]:
     from matplotlib.colors import to_rgb
 
     return tuple((1.0 + part) / 2.0 for part in to_rgb(color))
-
-
-def _add_circle(axes: Axes, radius: float, **look: Any) -> Any:
-    """Add a circle at the origin that will be moved."""
-    from matplotlib.patches import Circle
-
-    return axes.add_patch(Circle((0.0, 0.0), radius, linewidth=1.0, animated=True, **look))
 
 
 def _background(run: Trajectory, *, regions: bool, title: str | None) -> tuple[Figure, Axes]:
@@ -221,7 +223,7 @@ def _background(run: Trajectory, *, regions: bool, title: str | None) -> tuple[F
     walls.add_maps(axes, walls.maps_of([run]))
     for obstacle, look in zip(scenario.obstacles, shapes.looks(scenario.obstacles), strict=True):
         if regions and not shapes.is_mobile(obstacle):
-            shapes.add(axes, shapes.region_patches(obstacle, shapes.center(obstacle), look.color))
+            shapes.add_regions(axes, obstacle, shapes.center(obstacle), look.color)
     shapes.add_start_and_goal(axes, scenario)
     notes.add_warnings(figure, run)
     return figure, axes

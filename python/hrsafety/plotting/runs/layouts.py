@@ -77,7 +77,7 @@ def layout(scenario: Scenario | World, *, regions: bool = True, title: str | Non
             shapes.add_obstacle(axes, obstacle, place, look.color, regions=shown)
         if isinstance(obstacle, Mobile):
             _draw_motion(axes, obstacle, look.color)
-    shapes.add_robot(axes, scenario, scenario.start, style.RUN_COLORS[0])
+    shapes.add_robot(axes, scenario, scenario.start, style.RUN_COLORS[0], heading=scenario.heading)
     shapes.add_start_and_goal(axes, scenario)
     return floor.finish(figure, handles, runs=[given])
 
@@ -117,6 +117,8 @@ def _arrow(obstacle: Mobile) -> list[tuple[float, float]]:
 def _limits_of_layout(scenario: Scenario, *, regions: bool) -> style.Limits:
     """Return limits that hold start, goal, obstacles and, of few obstacles, their ways."""
     points: list[Any] = [scenario.start, scenario.goal, *walls.points_of(_maps(scenario))]
+    if scenario.robot.footprint is not None:
+        points.append(shapes.robot(scenario.robot, scenario.start, scenario.heading).get_extents().get_points())
     for obstacle in scenario.obstacles:
         place = shapes.first_position(obstacle)
         active, critical = shapes.region_radii(obstacle)

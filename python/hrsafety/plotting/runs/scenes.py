@@ -151,8 +151,6 @@ def _draw_encounters(
     axes: Axes, runs: Sequence[Trajectory], index: int, look: shapes.Look, *, regions: bool
 ) -> list[Annotation]:
     """Draw a moving obstacle's path, and where it was at the closest approach of each run; return labels."""
-    from matplotlib.patches import Circle
-
     longest = max((run for run in runs if run.scenario.obstacles), key=lambda run: float(run.time[-1]))
     several, many = len(runs) > 1, len(longest.scenario.obstacles) > shapes.MOST_COLORS
     met = list(_encounters(runs, index))
@@ -168,7 +166,7 @@ def _draw_encounters(
         if all(np.hypot(*(place - other)) > SAME_PLACE * radius for other in drawn):
             edge = str(color) if several else None
             if regions and not many:
-                shapes.add(axes, shapes.region_patches(obstacle, place, edge or look.color, filled=not several))
+                shapes.add_regions(axes, obstacle, place, edge or look.color, filled=not several)
             ring: style.Properties = {"facecolor": look.color, "alpha": 0.55 if several else 0.9}
             ring |= {"edgecolor": edge or "white", "linewidth": 1.6, "zorder": 3.2}
             if many:  # faint, so that paths and other people can be seen through it
@@ -179,7 +177,8 @@ def _draw_encounters(
                 back: style.Properties = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}
                 words = placing.label(axes, look.name.split()[-1], tuple(place), color=NUMBER_COLOR, bbox=back)
                 named.append(words)
-        axes.add_patch(Circle((robot[0], robot[1]), run.scenario.robot.radius, fill=False, color=color, zorder=3.5))
+        body, ring = run.scenario.robot, {"fill": False, "color": color, "zorder": 3.5}
+        axes.add_patch(shapes.robot(body, robot, float(run.heading[row]), **ring))
         axes.plot([place[0], robot[0]], [place[1], robot[1]], color=color, linewidth=0.8, zorder=3.4)
     return named
 

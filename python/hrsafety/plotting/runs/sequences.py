@@ -137,7 +137,7 @@ def _draw_instant(axes: Axes, run: Trajectory, row: int, *, regions: bool) -> No
         if shapes.is_mobile(obstacle):
             floor.velocity(axes, place, floor.obstacle_velocity(run, row, index))
     floor.line(axes, run.position[: row + 1], zorder=3.8, color=ROBOT_COLOR, linewidth=1.5)
-    shapes.add_robot(axes, scenario, run.position[row], ROBOT_COLOR)
+    shapes.add_robot(axes, scenario, run.position[row], ROBOT_COLOR, heading=float(run.heading[row]))
     floor.velocity(axes, run.position[row], run.velocity[row])
     shapes.add_start_and_goal(axes, scenario)
 
