@@ -196,6 +196,19 @@ class Comparison(PairedRuns):
         """
         return self.runs.columns()
 
+    def _shown(self) -> tuple[list[str], list[list[str]], str]:
+        """Return header, cells and title of the shares, a law a row."""
+        header = ["law", "arrived, no contact", "contact", "contact at fault", "arrival_time_s"]
+        counted = (self.outcome == "arrived", self._touched(), self._by_law(self.runs.contacts_at_fault > 0))
+        rows = []
+        for row, law in enumerate(self.laws):
+            shares = [wilson(int(flags[row].sum()), len(self.seed)) for flags in counted]
+            times = self.arrival_time[row][counted[0][row]]
+            words = [f"{each.value:.1%} ({each.low:.1%} to {each.high:.1%})" for each in shares]
+            rows.append([law, *words, f"{times.mean():.2f}" if len(times) else ""])
+        title = f"Comparison: {len(self.laws)} laws in {len(self.seed)} episodes, shares with 95 % intervals"
+        return header, rows, title
+
     def standing(self, law: str) -> Standing:
         """Return what one law did over all episodes.
 

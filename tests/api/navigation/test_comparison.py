@@ -141,6 +141,17 @@ def test_standings_are_in_the_order_of_the_laws(result: nav.Comparison) -> None:
     assert result.standings() == [result.standing(law) for law in LAWS]
 
 
+def test_printed_comparison_shows_the_shares_of_each_law(result: nav.Comparison) -> None:
+    title, header, *rows = repr(result).splitlines()[: 2 + len(LAWS)]
+    assert f"{len(LAWS)} laws in {len(result.seed)} episodes" in title
+    assert header.split()[:3] == ["law", "arrived,", "no"]
+    for row, standing in zip(rows, result.standings(), strict=True):
+        assert row.split()[0] == standing.law
+        for share in (standing.success, standing.contact, standing.at_fault):
+            assert f"{share.value:.1%} ({share.low:.1%} to {share.high:.1%})" in row
+        assert (f"{standing.arrival_time.value:.2f}" == row.split()[-1]) == (standing.success.count > 0)
+
+
 def test_laws_do_differ_here(result: nav.Comparison) -> None:
     standings = {standing.law: standing for standing in result.standings()}
     assert standings["borenstein_koren"].contact.count > standings["reciprocal"].contact.count
