@@ -6,7 +6,7 @@ pub use plan::{TwistLimits, TwistState};
 
 use crate::foresight::{Driven, Target};
 use crate::shield::person::Person;
-use crate::shield::walls::{ROUNDING, StaticObstacles};
+use crate::shield::walls::StaticObstacles;
 use crate::shield::{Shield, ShieldLimits, Status};
 use navigation_world::robots::differential::{DifferentialLimits, Twist};
 use numeric::error::Result;
@@ -161,9 +161,8 @@ impl TwistGuard {
         if walls.is_empty() || plan.speed < STILL {
             return true;
         }
-        let kept = self.limits.radius - self.shield.around() + self.shield.wall_margin;
-        let least = walls.clearance_up_to(plan.ramp[0].position, kept) - ROUNDING;
-        plan.keeps(walls, least)
+        let touching = self.limits.radius - self.shield.around();
+        plan.keeps(walls, touching, touching + self.shield.wall_margin)
     }
 
     /// The verified twist nearest to a wanted one, or the rest of the last plan.
@@ -234,6 +233,7 @@ impl TwistGuard {
 mod tests {
     use super::*;
     use crate::shield::TrackingError;
+    use navigation_world::world::shape::PlacedShape;
 
     /// For a robot that does exactly what is planned.
     const EXACT: Shield = Shield {
@@ -300,6 +300,48 @@ mod tests {
         let mut behind = Person::disc([-0.2, 0.505], 0.3);
         behind.max_speed = 0.0;
         assert!(guard.verified(&view(robot, &[behind]), twist(-12.0)));
+    }
+
+    #[test]
+    fn who_stands_within_the_margin_of_a_wall_leaves_on_a_curve_and_comes_no_nearer() {
+        let guard = guard();
+        let kept = guard.limits.radius - EXACT.margin + EXACT.wall_margin;
+        for short in [-2e-5, 2e-5, 4e-3] {
+            let pillar = [PlacedShape::disc([0.0, -0.1 - kept + short], 0.1)];
+            let walls = StaticObstacles {
+                shapes: &pillar,
+                map: None,
+            };
+            for direction in -8..=8 {
+                for turn in -4..=4 {
+                    let heading = f64::from(direction) * 0.19;
+                    let twist = Twist {
+                        speed: 0.5,
+                        turn_rate: f64::from(turn),
+                    };
+                    let robot = TwistState {
+                        heading,
+                        twist,
+                        ..state(0.5)
+                    };
+                    let view = TwistView {
+                        walls,
+                        ..view(robot, &[])
+                    };
+                    let plan = TwistPlan::new(&robot, twist, &guard.limits, TrackingError::EXACT);
+                    let start = walls.clearance_up_to(robot.position, 9.0);
+                    let nearest = plan.ramp.iter().map(|node| node.position);
+                    let nearest = nearest.map(|place| walls.clearance_up_to(place, 9.0));
+                    let nearest = nearest.fold(f64::INFINITY, f64::min);
+                    if guard.verified(&view, twist) {
+                        assert!(nearest >= start.min(kept) - 2e-9);
+                    }
+                    if heading > 0.4 && turn >= 0 && heading < 1.0 {
+                        assert!(guard.verified(&view, twist), "{short} {heading} {turn}");
+                    }
+                }
+            }
+        }
     }
 
     #[test]

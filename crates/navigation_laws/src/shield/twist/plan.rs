@@ -3,7 +3,7 @@
 use crate::shield::TrackingError;
 use crate::shield::half_disc::Look;
 use crate::shield::person::Person;
-use crate::shield::walls::StaticObstacles;
+use crate::shield::walls::{ROUNDING, StaticObstacles};
 use navigation_world::robots::differential::{DifferentialLimits, Twist};
 use numeric::lanes::Vector2;
 
@@ -211,20 +211,27 @@ impl TwistPlan {
         grown == 0.0 || ahead.clearance(person, last.position, radius + grown, end) > 0.0
     }
 
-    /// Whether the whole way keeps a distance from walls, with the sagitta of each part to spare.
-    pub(super) fn keeps(&self, walls: &StaticObstacles<'_>, least: f64) -> bool {
-        let mut pairs = self
-            .parts()
-            .into_iter()
-            .flat_map(|(nodes, _)| nodes.windows(2));
-        pairs.all(|pair| {
-            let way = pair[1].position - pair[0].position;
-            let turn = (pair[1].heading - pair[0].heading).abs();
-            walls.segment_keeps(
-                pair[0].position,
-                pair[1].position,
-                least + way.norm() * turn / 8.0,
-            )
+    /// Whether the whole way keeps `least` m from walls, with the sagitta of each part to spare. Where the robot
+    /// starts nearer, no node comes nearer: the arc between two is off its chord by the sagitta, which must not touch.
+    pub(super) fn keeps(&self, walls: &StaticObstacles<'_>, touching: f64, least: f64) -> bool {
+        let pairs = || {
+            let parts = self.parts().into_iter();
+            parts.flat_map(|(nodes, _)| nodes.windows(2)).map(|pair| {
+                let way = (pair[1].position - pair[0].position).norm();
+                let turn = (pair[1].heading - pair[0].heading).abs();
+                (pair, way * turn / 8.0)
+            })
+        };
+        let deepest = pairs().map(|(_, sagitta)| sagitta).fold(0.0, f64::max);
+        let start = walls.clearance_up_to(self.ramp[0].position, least + deepest) - ROUNDING;
+        pairs().all(|(pair, sagitta)| {
+            let off_margin = least + sagitta;
+            let kept = if start < touching + sagitta {
+                start + sagitta
+            } else {
+                off_margin.min(start)
+            };
+            walls.segment_keeps(pair[0].position, pair[1].position, kept)
         })
     }
 }
