@@ -119,13 +119,7 @@ impl Trajectories {
         filled(&self.person_position, &self.counts)
     }
 
-    /// Their velocities in m/s, likewise.
-    #[must_use]
-    pub fn person_velocities(&self) -> Vec<f64> {
-        filled(&self.person_velocity, &self.counts)
-    }
-
-    /// Both of them, moved where the people are the same from the start to the end.
+    /// Positions and velocities of the people, moved where the people are the same from the start to the end.
     #[must_use]
     pub fn into_people(self) -> [Vec<f64>; 2] {
         let Self {

@@ -73,15 +73,6 @@ impl State {
             Self::Diverged => 4,
         }
     }
-
-    /// Whether the episode has ended by itself.
-    #[must_use]
-    pub fn is_terminal(self) -> bool {
-        match self {
-            Self::Arrived | Self::Collided | Self::Diverged => true,
-            Self::Running | Self::TimedOut => false,
-        }
-    }
 }
 
 /// Result of a step.
