@@ -10,7 +10,7 @@ from sphinx.util.nodes import make_refnode
 
 import hrsafety
 
-sys.path.insert(0, str(Path(__file__).parent))  # for mathml_equations, source_links
+sys.path.insert(0, str(Path(__file__).parent))  # for mathml_equations, scene_players, source_links
 
 project = "hrsafety"
 author = copyright = "hrsafety developers"
@@ -20,6 +20,7 @@ extensions = [
     "mathml_equations",
     "myst_parser",
     "numpydoc",
+    "scene_players",
     "source_links",
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
