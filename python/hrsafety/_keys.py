@@ -28,6 +28,7 @@ __all__ = [
     "number",
     "numbers",
     "one_of",
+    "outline",
     "pair",
     "pairs",
     "parsed",
@@ -253,6 +254,13 @@ def pairs(path: str, value: Any) -> list[tuple[float, float]]:
 
 
 _SEGMENT: Keys = MappingProxyType({"duration": number, "velocity": pair, "acceleration": pair})
+
+
+def outline(path: str, value: Any) -> list[tuple[float, float]] | str | float:
+    """Return the footprint of a robot: pairs, a text as Nav2 writes it, or a radius."""
+    if isinstance(value, str):
+        return value
+    return number(path, value) if _is_number(value) else pairs(path, value)
 
 
 def segments(path: str, value: Any) -> list[tuple[float, tuple[float, float], tuple[float, float]]]:

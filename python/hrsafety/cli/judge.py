@@ -120,10 +120,11 @@ def _robot(options: argparse.Namespace) -> tuple[dict[str, Any], tuple[ResultWar
         with output.located(options.params):
             settings = io.read_nav2(options.params)
         told = settings.warnings
-        if settings.circumscribed_radius is not None:
-            given["robot_radius"] = settings.circumscribed_radius
         with suppress(InvalidParameterError):  # it may not give all limits; the radius is enough
             given["robot"] = settings.robot()
+        outlined = "robot" in given and given["robot"].footprint is not None and options.robot is None
+        if settings.circumscribed_radius is not None and not outlined:
+            given["robot_radius"] = settings.circumscribed_radius
     if options.robot is not None:
         with output.located(options.robot):
             described = scenarios.load(options.robot)
@@ -134,7 +135,7 @@ def _robot(options: argparse.Namespace) -> tuple[dict[str, Any], tuple[ResultWar
     if options.radius is not None:
         given["robot_radius"] = options.radius
     if not given.keys() & {"robot", "robot_radius"}:
-        remedy = "give --radius M (of a footprint the radius of the circle around it), --robot or --params"
+        remedy = "give --radius M, or --robot or --params with a radius or footprint"
         raise InvalidParameterError("--radius", "be known", None, remedy)
     return given, told
 

@@ -59,6 +59,7 @@ _ROBOT: dict[str, kind.Kind] = {
     "type": kind.word,
     "mass": kind.number,
     "radius": kind.number,
+    "footprint": kind.outline,
     "max_speed": kind.number,
     "max_acceleration": kind.number,
     "max_deceleration": kind.number,
@@ -114,7 +115,8 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
     ``seed`` of `Scenario`. Tables, all optional:
 
     - ``[robot]`` with ``type``, ``"holonomic"`` when left out or ``"differential_drive"``, and the
-      fields of `HolonomicRobot` or `DifferentialDriveRobot`;
+      fields of `HolonomicRobot` or `DifferentialDriveRobot`; ``footprint`` is an array of corners [x, y] in m, a text
+      as Nav2 writes it, or a radius in m;
     - ``[[obstacles]]``, each with ``type`` and the fields of its class: ``"disc"``,
       ``"rectangle"``, ``"moving_disc"``, ``"moving_rectangle"``, ``"human"``. The motion of the last
       three is either ``velocity`` with ``stop`` (not a person: or ``acceleration``), or ``segments``, an array

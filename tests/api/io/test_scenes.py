@@ -230,7 +230,7 @@ def test_limits_of_every_controller(
         return
     robot = found.robot(max_acceleration=1.0)
     assert isinstance(robot, nav.HolonomicRobot if drive == "holonomic" else nav.DifferentialDriveRobot)
-    assert robot.radius == found.circumscribed_radius
+    assert robot.radius == pytest.approx(found.circumscribed_radius)
     assert robot.max_speed >= speed
     if up is None:
         with pytest.raises(InvalidParameterError, match="give max_acceleration="):

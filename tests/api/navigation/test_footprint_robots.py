@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +13,7 @@ import pytest
 import shapely
 from shapely import affinity
 
+from hrsafety import io, scenarios
 from hrsafety import navigation as nav
 from hrsafety.errors import InvalidParameterError
 
@@ -220,3 +223,51 @@ def test_a_record_of_decisions_refuses_a_footprint() -> None:
     law = nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield())
     with pytest.raises(InvalidParameterError, match=r"scenario\.robot\.footprint must be None"):
         nav.metrics.record_safety(nav.Scenario(robot=robot, start=(0, 0), goal=(2, 0)), law)
+
+
+@pytest.mark.parametrize(
+    ("written", "corners"),
+    [
+        ("[[0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2], [0.3, -0.2]]", 4),
+        ('"[[0.36, 0.01], [-0.3, 0.2], [-0.3, -0.2]]"', 3),
+        ("0.25", 0),
+    ],
+)
+def test_a_scenario_file_has_a_footprint(written: str, corners: int, tmp_path: Path) -> None:
+    file = tmp_path / "scene.toml"
+    file.write_text(f'start = [0, 0]\ngoal = [3, 0]\n[robot]\ntype = "differential_drive"\nfootprint = {written}\n')
+    body = scenarios.load(file).scenario.robot
+    assert (0 if body.footprint is None else len(body.footprint.corners)) == corners
+    assert body.radius == pytest.approx(math.hypot(0.3, 0.2) if corners else 0.25, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("written", "words"),
+    [
+        ("[[0.3, 0.2], [-0.3]]", "robot.footprint[1]"),
+        ("[[0.3, 0.2], [0.5, 0.2], [0.4, -0.2]]", "footprint"),
+        ("[[0.3, 0.0], [-0.3, 0.2], [-0.3, -0.2]]\nradius = 0.2", "radius"),
+        ("true", "robot.footprint"),
+    ],
+)
+def test_a_footprint_of_a_scenario_file_that_is_refused(written: str, words: str, tmp_path: Path) -> None:
+    file = tmp_path / "scene.toml"
+    file.write_text(f"start = [0, 0]\ngoal = [3, 0]\n[robot]\nfootprint = {written}\n")
+    with pytest.raises(InvalidParameterError, match=re.escape(words)):
+        scenarios.load(file)
+
+
+def test_a_robot_of_nav2_settings_has_the_padded_footprint(tmp_path: Path) -> None:
+    file = tmp_path / "nav2_params.yaml"
+    corners = "[[0.3, 0.2], [0.3, -0.2], [-0.3, -0.2], [-0.3, 0.2]]"
+    file.write_text(
+        f'local_costmap: {{local_costmap: {{ros__parameters: {{footprint: "{corners}", footprint_padding: 0.05}}}}}}\n'
+        "velocity_smoother: {ros__parameters: {max_velocity: [0.5, 0.0, 2.0], max_accel: [2.5, 0.0, 3.2]}}\n"
+    )
+    settings = io.read_nav2(file)
+    body = settings.robot(mass=20.0)
+    assert body.footprint is not None
+    assert np.abs(np.array(body.footprint.corners)).max(axis=0) == pytest.approx([0.35, 0.25])
+    assert body.radius == pytest.approx(settings.circumscribed_radius)
+    disc = settings.robot(mass=20.0, radius=0.5)
+    assert (disc.footprint, disc.radius) == (None, 0.5)

@@ -14,7 +14,7 @@ from hrsafety._yaml.documents import YamlDocument, YamlSection
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.io.reader import Document, Provenance
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
-from hrsafety.navigation.robots.footprint import corners_of
+from hrsafety.navigation.robots.footprint import Footprint, corners_of
 from hrsafety.plausibility import ResultWarning, implausible
 
 __all__ = ["Nav2Settings", "costmap_footprint", "read_nav2"]
@@ -112,13 +112,13 @@ class Nav2Settings:
     source: Provenance
 
     def robot(self, **given: Any) -> DifferentialDriveRobot | HolonomicRobot:
-        r"""Return the robot, a disc of the circumscribed radius.
+        r"""Return the robot with the padded footprint of the file, or the disc of the circumscribed radius.
 
         Parameters
         ----------
         **given
             Arguments of `DifferentialDriveRobot` or `HolonomicRobot` that the file does not give, such as ``mass``, or
-            that are to be others.
+            that are to be others; with a ``radius`` the robot is a disc.
 
         Returns
         -------
@@ -148,7 +148,7 @@ class Nav2Settings:
         if self.drive == "car":
             shown = Shown("the motion model Ackermann")
             raise InvalidParameterError("drive", "be two wheels or holonomic", shown, "make the robot by hand")
-        named = {
+        named: dict[str, Any] = {
             "radius": self.circumscribed_radius,
             "max_speed": None if self.drive == "holonomic" else self.max_speed,
             "max_acceleration": self.max_acceleration,
@@ -156,13 +156,17 @@ class Nav2Settings:
         }
         if self.drive == "two wheels":
             named |= {"max_turn_rate": self.max_turn_rate, "max_turn_acceleration": self.max_turn_acceleration}
+        if self.footprint is not None and self.padded is not None and not {"radius", "footprint"} & set(given):
+            named["footprint"] = Footprint.around(self.padded)
         found = {name: value for name, value in named.items() if value is not None} | given
         if self.drive == "holonomic" and self.max_speed is not None:  # forward and sideways at once
             found.setdefault(
                 "max_speed",
                 math.hypot(self.max_speed, self.max_speed if (side := self.max_lateral_speed) is None else side),
             )
-        for name in ("radius", "max_speed", "max_acceleration"):
+        if "footprint" in found:
+            found.pop("radius", None)
+        for name in ("footprint" if "footprint" in found else "radius", "max_speed", "max_acceleration"):
             if name not in found:
                 raise InvalidParameterError(name, "stand in the file or the call", Shown("neither"), f"give {name}=")
         return (DifferentialDriveRobot if self.drive == "two wheels" else HolonomicRobot)(**found)

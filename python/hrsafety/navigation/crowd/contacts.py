@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array
-from hrsafety.navigation.metrics.between import ALONG, PASSED, distances_of, paths_of, until_arrival
+from hrsafety.navigation.metrics.between import ALONG, PASSED, Outlined, distances_of, paths_of, until_arrival
 from hrsafety.navigation.metrics.episode import Episode
 from hrsafety.navigation.trajectory import CONTACT_SPEED, DECIDED_OVERLAP
 
@@ -21,6 +21,7 @@ __all__ = [
     "appears_until",
     "contacts_of",
     "touch_of",
+    "touch_of_outline",
     "touches_of",
     "touching_share",
 ]
@@ -126,7 +127,7 @@ def touches_of(episode: Episode, arrival_time: float) -> Touches:
             if episode.footprint is None:
                 found[person] = touch_of(steps, paths, velocity, float(radii[person]), appears, episode.step)
             else:
-                found[person] = _touch_of_outline(episode, (steps, person), paths, velocity, appears)
+                found[person] = touch_of_outline(episode, (steps, person), paths, velocity, appears)
         # Whoever is there at single instants only has appeared.
         for person in np.flatnonzero(touching.any(axis=0) & ~near.any(axis=0)).tolist():
             found[person] = FirstTouch(apart=True)
@@ -210,8 +211,8 @@ def touch_of(
     return touch
 
 
-def _touch_of_outline(
-    episode: Episode,
+def touch_of_outline(
+    episode: Episode | Outlined,
     who: tuple[npt.NDArray[np.intp], int],
     paths: tuple[Array, Array],
     velocity: Array,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
@@ -23,11 +23,13 @@ from hrsafety.navigation.judging.touches import Touch, clearances, people_touche
 from hrsafety.navigation.judging.unjudged import NotJudged, judged_share, nearest_unseen, not_judged
 from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.maps.static_map import StaticMap
+from hrsafety.navigation.metrics.between import Outlined
 from hrsafety.navigation.metrics.declared import METRICS, OF_GOAL
 from hrsafety.navigation.metrics.episode import Episode
 from hrsafety.navigation.metrics.scores import EpisodeMetrics, evaluate
 from hrsafety.navigation.metrics.sights import unseen_instants
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
+from hrsafety.navigation.robots.footprint import Footprint
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Judgement", "Moment", "judge"]
@@ -123,7 +125,9 @@ class Judgement(Played):
     bandwidth : tuple of float
         Frequencies in Hz up to which motions of robot and people are kept (-3 dB).
     robot_radius, person_radius : float
-        In m.
+        In m; of a robot with a footprint that of the circle around it.
+    footprint : Footprint or None
+        Outline by which contacts are judged; ``None``: the disc.
     walls : StaticMap or None
         The map.
     shielded : bool
@@ -155,6 +159,7 @@ class Judgement(Played):
     bandwidth: tuple[float, float]
     robot_radius: Annotated[float, "m"]
     person_radius: Annotated[float, "m"]
+    footprint: Footprint | None = None
     walls: StaticMap | None = None
     shielded: bool = False
     warnings: tuple[ResultWarning, ...] = ()
@@ -211,9 +216,10 @@ def judge(
     map : StaticMap or None
         Walls.
     robot : HolonomicRobot, DifferentialDriveRobot or None
-        Radius, greatest speed and deceleration.
+        Radius or footprint, greatest speed and deceleration. Contacts, clearances and metrics are those of the
+        footprint at the heading of the log; rules of passing and what is not judged take the circle around it.
     robot_radius : float or None
-        Radius in m of a disc that covers the robot, if it differs from that of ``robot`` or there is none.
+        Radius in m of a disc that covers the robot, if it differs from ``robot`` or there is none.
     person_radius : float
         Of everybody in m.
     shield : Shield or None
@@ -270,23 +276,30 @@ def judge(
     rules = PermitRules() if rules is None else instance("rules", rules, PermitRules)
     _check_log(log)
     both = synchronized(log, step=step, window=window)
+    outline = None
+    if robot is not None and robot.footprint is not None and robot_radius is None:
+        outline = Outlined(robot.footprint, both.heading, radius, reach - radius, both.step)
     own = _error("pose_error", pose_error, 2.0 * both.noise.position)
+    if outline is not None:
+        own += 2.0 * both.heading_noise.position * radius  # a corner that is turned
     between = 0.0 if np.isnan(both.person_period) else PERSON_ACCELERATION * both.person_period**2 / 8.0
     error = own + _error("person_error", person_error, 2.0 * both.person_noise.position + between)
-    gaps = clearances(both, reach)
-    sure, possible = people_touched(both, gaps, reach, error)
+    gaps = clearances(both, reach, outline)
+    sure, possible = people_touched(both, gaps, reach, error, outline)
     away = np.full(len(both.time), np.nan)
     if walls is not None:
         # A wall is anywhere within a cell.
         cell = max((0.5 * grid.resolution for grid in walls.grids), default=0.0)
-        away, touched = walls_touched(both, walls, radius, own + cell)
+        away, touched = walls_touched(both, walls, radius, own + cell, outline)
         sure += [each for each in touched if each.kind == "wall"]
         possible += [each for each in touched if each.kind != "wall"]
     bound = nearest_unseen(both, PERSON_SPEED)
     parts = not_judged(both, log, bound=bound, reach=reach, walls=walls, view=view)
     share = judged_share(both, parts)
     scored_walls = (away, [each for each in sure if each.kind == "wall"])
-    metrics, scored = _metrics(both, scored_walls, goal=target, radius=radius, person_radius=person_radius, robot=robot)
+    metrics, scored = _metrics(
+        both, scored_walls, goal=target, radius=radius, person_radius=person_radius, robot=robot, outline=outline
+    )
     doubtful = "clock" if any(each.reason == "clock" for each in parts) else ""
     passed = passings(
         both, reach=reach, rules=rules, bound=bound, jumps=getattr(log, "pose_jumps", ()), doubtful=doubtful
@@ -298,6 +311,7 @@ def judge(
         *getattr(walls, "warnings", ()),
         *metrics.warnings,
         *_doubts(parts, share, possible),
+        *_circled(outline),
     )
     return Judgement(
         time=both.time,
@@ -323,6 +337,7 @@ def judge(
         bandwidth=both.bandwidth,
         robot_radius=radius,
         person_radius=person_radius,
+        footprint=None if outline is None else outline.footprint,
         walls=walls,
         shielded=given_shield,
         warnings=tuple(dict.fromkeys(told)),
@@ -335,7 +350,7 @@ def _radius(robot: Any, radius: float | None) -> float:
     if radius is not None:
         return positive("robot_radius", radius)
     if robot is None:
-        remedy = "give robot_radius=, or robot=; of a footprint the radius of the circle around it"
+        remedy = "give robot_radius=, or robot= with its radius or footprint"
         raise InvalidParameterError("robot_radius", "be known", None, remedy)
     return float(robot.radius)
 
@@ -365,6 +380,7 @@ def _metrics(
     radius: float,
     person_radius: float,
     robot: Any,
+    outline: Outlined | None,
 ) -> tuple[EpisodeMetrics, tuple[float, float]]:
     """Return the metrics of the longest part in which the robot is followed from instant to instant.
 
@@ -380,6 +396,9 @@ def _metrics(
     speed = float(np.hypot(*np.diff(place, axis=0).T).max(initial=0.0)) / both.step
     # Without a goal the run must not end where it happens to pass its last place.
     target = (float(place[-1, 0]) + 1e5, float(place[-1, 1])) if goal is None else goal
+    more: dict[str, Any] = {}
+    if outline is not None:
+        more = {"footprint": outline.footprint, "heading": both.heading[rows]}
     unseen = unseen_instants(both.people)[rows][:, there] if there.any() else None
     episode = Episode(
         position=place,
@@ -390,6 +409,7 @@ def _metrics(
         person_radius=person_radius,
         max_speed=max(robot.max_speed if robot is not None else 0.0, speed, 0.01),
         unseen=unseen,
+        **more,
     )
     episode._set(_resampled=True)
     found, scored = evaluate(episode), (float(both.time[begin]), float(both.time[end]))
@@ -430,6 +450,19 @@ def _doubts(parts: Sequence[NotJudged], share: float, possible: Sequence[Touch])
         )
         told.append(ResultWarning("possible_contact", "people", message))
     return told
+
+
+def _circled(outline: Outlined | None) -> Iterator[ResultWarning]:
+    """Yield where the circle around a footprint stands for it."""
+    if outline is not None:
+        yield ResultWarning(
+            "circle_around_footprint",
+            "robot.footprint",
+            f"rules of passing, times to collision and what is not judged take the circle of "
+            f"{outline.robot_radius:.4g} m around the footprint for the robot; contacts, clearances and metrics are "
+            "those of the footprint itself",
+            safe_side=True,  # the circle is nearer to everybody
+        )
 
 
 def _some(number: int, one: str, many: str = "") -> str:

@@ -24,6 +24,7 @@ def replay_of(judgement: Any) -> Replay:
         position=judgement.position,
         radius=judgement.robot_radius,
         heading=judgement.heading,
+        footprint=() if judgement.footprint is None else judgement.footprint.corners,
         speed=np.hypot(*judgement.velocity.T),
         clearance=np.where(np.isfinite(judgement.position[:, 0]), least, np.nan),
     )

@@ -16,6 +16,7 @@ from hrsafety._arguments import Array
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.metrics.episode import Episode, Wall
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
+from hrsafety.navigation.robots.footprint import Footprint
 from hrsafety.navigation.trajectory import CONTACT_SPEED
 from hrsafety.plausibility import ResultWarning
 
@@ -24,9 +25,11 @@ __all__ = [
     "CONTACT_BETWEEN",
     "PASSED",
     "Between",
+    "Outlined",
     "distances_of",
     "doubts_between",
     "first_wall_contact",
+    "least_of_outline",
     "moves_toward",
     "paths_of",
     "touched_between",
@@ -56,6 +59,30 @@ class Between(NamedTuple):
 
     people: int
     gap: float
+
+
+class Outlined(NamedTuple):
+    """Robot with a footprint over equal instants, of which only part may be known.
+
+    Attributes
+    ----------
+    footprint : Footprint
+        Its outline.
+    heading : ndarray, shape (n,)
+        In rad.
+    robot_radius : float
+        Of the circle around the outline in m.
+    person_radius : float
+        Of the people in m.
+    step : float
+        Time between two instants in s.
+    """
+
+    footprint: Footprint
+    heading: Array
+    robot_radius: float
+    person_radius: float
+    step: float
 
 
 def wrapped(offset: Array, period: tuple[float, float]) -> Array:
@@ -99,16 +126,16 @@ def paths_of(episode: Episode, own: Array, people: Array) -> tuple[Array, Array,
     share = np.divide(-_dots(start[:-1], way), square, out=np.zeros_like(square), where=square > 0.0)
     nearest = start[:-1] + np.clip(share, 0.0, 1.0)[..., None] * way
     least = np.sqrt(_dots(nearest, nearest))
-    return start, way, least if episode.footprint is None else _least_of_outline(episode, start, way, least)
+    return start, way, least if episode.footprint is None else least_of_outline(episode, start, way, least)
 
 
-def _turns(episode: Episode, steps: int) -> Array:
+def _turns(episode: Episode | Outlined, steps: int) -> Array:
     """Return the headings of the robot at both ends of the first steps in rad, shape (steps, 2)."""
     heading = np.asarray(episode.heading, dtype=np.float64)[: steps + 1]
     return np.column_stack([heading[:-1], heading[1:]])
 
 
-def _least_of_outline(episode: Episode, start: Array, way: Array, least: Array) -> Array:
+def least_of_outline(episode: Episode | Outlined, start: Array, way: Array, least: Array) -> Array:
     """Return least distances in steps as `paths_of` does, of a robot with a footprint."""
     assert episode.footprint is not None
     found = np.where(np.isfinite(way).all(axis=2), least, np.nan)
@@ -123,7 +150,7 @@ def _least_of_outline(episode: Episode, start: Array, way: Array, least: Array) 
     return found
 
 
-def distances_of(episode: Episode, offset: Array) -> Array:
+def distances_of(episode: Episode | Outlined, offset: Array) -> Array:
     """Return distances of people from the robot at every instant.
 
     Parameters

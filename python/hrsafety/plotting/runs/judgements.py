@@ -9,7 +9,7 @@ import numpy as np
 from hrsafety._arguments import instance
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.judging.judgement import Judgement, Moment
-from hrsafety.plotting import floor, notes, style, walls
+from hrsafety.plotting import floor, notes, shapes, style, walls
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -131,7 +131,11 @@ def _add_moment(axes: Axes, judgement: Judgement, moment: Moment) -> None:
     origin = judgement.position[row]
     rows = np.abs(judgement.time - moment.time) <= AROUND + 1e-9
     floor.line(axes, judgement.position[rows] - origin, zorder=5.0, color=style.RUN_COLORS[0], linewidth=1.5)
-    floor.disc(axes, (0.0, 0.0), judgement.robot_radius, style.RUN_COLORS[0], face=0.4)
+    if judgement.footprint is None:
+        floor.disc(axes, (0.0, 0.0), judgement.robot_radius, style.RUN_COLORS[0], face=0.4)
+    else:
+        corners = shapes.turned(judgement.footprint.corners, float(judgement.heading[row]))
+        axes.fill(*corners.T, facecolor=(style.RUN_COLORS[0], 0.4), edgecolor=style.RUN_COLORS[0], zorder=4.0)
     floor.velocity(axes, np.zeros(2), judgement.velocity[row])
     for column in np.flatnonzero(np.isfinite(judgement.clearance[row])).tolist():
         place = judgement.obstacle_position[:, column] - origin
