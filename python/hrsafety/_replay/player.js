@@ -6,7 +6,7 @@
   const KINDS = ["#D55E00", "#E69F00", "#CC79A7", "#6B3E00", "#882255", "#6A8030"];
   const VERDICT = ["#8c959f", "#1a7f37", "#d9a800", "#0757a8", "#b42318"];
   const SHAPES = ["M3 9h14v2H3z", "M10 2a8 8 0 100 16 8 8 0 000-16z", "M10 2l9 16H1z", "M10 1l9 9-9 9-9-9z", "M6 1h8l5 5v8l-5 5H6l-5-5V6z"];
-  const WALL = "#3a3f46", GOAL = "#00795C", EXPECTED = "#6a3d9a", CONTACT = "#c00000", SCAN = "rgba(0,90,160,.75)", INK = "#1b1f24";
+  const WALL = "#3a3f46", GOAL = "#00795C", EXPECTED = "#6a3d9a", CONTACT = "#c00000", SCAN = "#1aa7ff", INK = "#1b1f24";
   const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
   const head = JSON.parse($("head").textContent);
   const data = {}, body = document.body;
@@ -344,7 +344,7 @@
       pen.fillStyle = SCAN;
       robot.beams.forEach((angle, beam) => {
         const range = at("scan" + k, frame, beam), toward = angle + (turned === ABSENT ? 0 : turned / 1e4);
-        if (range !== ABSENT) pen.fillRect(sx(here[0] + (range / 500) * Math.cos(toward)) - 1.5, sy(here[1] + (range / 500) * Math.sin(toward)) - 1.5, 3, 3);
+        if (range !== ABSENT) pen.fillRect(sx(here[0] + (range / 500) * Math.cos(toward)) - 2, sy(here[1] + (range / 500) * Math.sin(toward)) - 2, 4, 4);
       });
     });
   }

@@ -130,7 +130,12 @@
       pen.stroke();
       if (chosen === number || state.held.includes(number)) ring(u, v, radius);
     }
-    disc(x, y, scene.radius, 4);
+    if (scene.footprint.length) {
+      const c = Math.cos(angle), s = Math.sin(angle);
+      pen.beginPath();
+      scene.footprint.forEach(([a, b], k) => (k ? pen.lineTo(sx(x + c * a - s * b), sy(y + s * a + c * b)) : pen.moveTo(sx(x + c * a - s * b), sy(y + s * a + c * b))));
+      pen.closePath();
+    } else disc(x, y, scene.radius, 4);
     pen.fillStyle = ROBOT;
     pen.fill();
     pen.lineWidth = 2;

@@ -404,12 +404,9 @@ class LiveWorld:
 
     def _contact(self, time: float) -> None:
         """Notice who touches the robot."""
-        here, radius = self._before.position, self._robot.body.radius
-        touching = set()
-        for number, (place, _, size) in self._seen.items():
-            if float(np.hypot(*(place - here))) < radius + size:
-                touching.add(number)
-        if self.walls.bounds is not None and float(self.walls.clearance(here)) < radius:
+        here = self._before.position
+        touching = {number for number, (place, _, size) in self._seen.items() if self._away(place) < size}
+        if self._wall_gap() < 0.0:
             touching.add(-1)
         for number in touching - self._touching:
             self._contacts += 1
@@ -420,11 +417,27 @@ class LiveWorld:
     # ---- telling --------------------------------------------------------------------------------
 
     def _gap(self) -> float:
-        here, radius = self._before.position, self._robot.body.radius
-        gaps = [float(np.hypot(*(place - here))) - radius - size for place, _, size in self._seen.values()]
-        if self.walls.bounds is not None:
-            gaps.append(float(self.walls.clearance(here)) - radius)
-        return min(gaps, default=math.inf)
+        gaps = [self._away(place) - size for place, _, size in self._seen.values()]
+        return min([*gaps, self._wall_gap()])
+
+    def _away(self, place: Array) -> float:
+        """Return how far a place is from the surface of the robot, in m."""
+        body, offset = self._robot.body, place - self._before.position
+        if body.footprint is None:
+            return float(np.hypot(*offset)) - body.radius
+        cosine, sine = math.cos(self._before.heading), math.sin(self._before.heading)
+        own = [cosine * offset[0] + sine * offset[1], cosine * offset[1] - sine * offset[0]]
+        return float(body.footprint.distance([own])[0])
+
+    def _wall_gap(self) -> float:
+        """Return how far walls are from the surface of the robot, in m; below 0 in a contact."""
+        body, here = self._robot.body, self._before
+        if self.walls.bounds is None:
+            return math.inf
+        if body.footprint is None:
+            return float(self.walls.clearance(here.position)) - body.radius
+        gap = float(body.footprint.clearance(self.walls, here.position[None], np.array([here.heading]))[0])
+        return gap if gap > 0.0 else -1e-9  # an outline that overlaps a wall is at a distance of 0
 
     def _tell(self) -> None:
         if self._instant % self._parts and not self.paused:
@@ -459,6 +472,7 @@ class LiveWorld:
         body = self._robot.body
         return {
             "radius": body.radius,
+            "footprint": [] if body.footprint is None else [list(corner) for corner in body.footprint.corners],
             "tolerance": self._robot.arrival_tolerance,
             "differential": isinstance(body, DifferentialDriveRobot),
             "walls": self.walls.segments.tolist(),
@@ -494,12 +508,14 @@ class LiveWorld:
             for number, place in row[4].items():
                 people[index, column[number]] = place
         position = np.array([row[1] for row in rows]).reshape(-1, 2)
-        two = isinstance(self._robot.body, DifferentialDriveRobot)
+        body = self._robot.body
+        turned = isinstance(body, DifferentialDriveRobot) or body.footprint is not None
         robot = PlayedRobot(
             name="robot",
             position=position,
-            radius=self._robot.body.radius,
-            heading=np.array([row[2] for row in rows]) if two else None,
+            radius=body.radius,
+            heading=np.array([row[2] for row in rows]) if turned else None,
+            footprint=() if body.footprint is None else body.footprint.corners,
             clearance=np.array([row[3] for row in rows]),
             goal=self._goal,
             tolerance=self._robot.arrival_tolerance,

@@ -234,6 +234,27 @@ def test_fifty_people_are_told_twenty_times_a_second() -> None:
     assert took < 10.0  # as fast as it can, on a busy machine
 
 
+def test_an_outline_is_told_and_touches_by_itself() -> None:
+    outline = nav.robots.Footprint.rectangle(0.8, 0.3)
+    body = nav.DifferentialDriveRobot(footprint=outline)
+    # Beside the robot, within the circle around it.
+    person = nav.Person(start=(0.0, 0.4), radius=0.2)
+    wall = [(-5.0, -0.3), (5.0, -0.3)]
+    world = nav.World(
+        people=[person], robots=[nav.Robot(body, start=(0.0, 0.0), goal=(4.0, 0.0), law=SAFE)], walls=[wall]
+    )
+    live = LiveWorld(world)
+    assert [tuple(each) for each in live.scene()["footprint"]] == list(outline.corners)
+    assert live._away(np.array([0.0, 0.4])) == pytest.approx(0.25)
+    assert live._wall_gap() == pytest.approx(0.15)
+    with running(world) as moving:
+        until(moving, lambda state: state["time"] > 0.2)
+        assert moving._contacts == 0
+        played = moving.replay().robots[0]
+    assert tuple(played.footprint) == outline.corners
+    assert played.heading is not None
+
+
 def test_what_happened_can_be_kept() -> None:
     with running(nav.World(people=walkers(3), robots=[robot()]), pace=8.0) as live:
         until(live, lambda state: state["time"] > 1.0)
