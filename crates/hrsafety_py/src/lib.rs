@@ -184,7 +184,8 @@ mod _hrsafety {
     };
     #[pymodule_export]
     use crate::safe::{
-        Foresight, Shield, Yielding, blind_corner_speeds, guarded_law, shield_speed_bound,
+        Foresight, SafetyFilter, Shield, Yielding, blind_corner_speeds, guarded_law,
+        shield_speed_bound,
     };
     #[pymodule_export]
     use crate::scenes::Scenarios;

@@ -3,6 +3,7 @@
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 use vff_core::lanes::Vector2;
+use vff_core::laws::filters;
 use vff_core::laws::foresight;
 use vff_core::laws::guide::TakeoverOptions;
 use vff_core::laws::safe::SafeNavigation;
@@ -30,6 +31,66 @@ parameter_class! {
     Foresight(foresight::Foresight) {
         stages, step, clearance, risk_weight, comfort, comfort_weight, change_weight, speed_weight, spread,
         acceleration,
+    }
+}
+
+/// A filter in the place of a shield.
+#[pyclass(frozen, module = "hrsafety._hrsafety")]
+pub struct SafetyFilter(filters::Filter);
+
+/// Position, velocity and heading of a robot.
+type PosedState = ([f64; 2], [f64; 2], f64);
+
+/// Radius, largest speed, largest acceleration, largest turn rate, control period of a robot.
+type FilterLimits = (f64, f64, Option<f64>, f64, f64);
+
+#[pymethods]
+impl SafetyFilter {
+    #[new]
+    #[pyo3(signature = (name, **given))]
+    fn new(name: &str, given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let filter = filters::Filter::named(name, &given).map_err(CoreError::from)?;
+        given.done()?;
+        Ok(Self(filter))
+    }
+
+    /// Velocity, status, slack and share for a wanted velocity, among people (position, radius, velocity) and points that
+    /// stand.
+    fn decide(
+        &self,
+        limits: FilterLimits,
+        state: PosedState,
+        asked: ([f64; 2], f64),
+        people: Vec<PersonState>,
+        points: Vec<[f64; 2]>,
+    ) -> ([f64; 2], &'static str, [f64; 2]) {
+        let near = |(position, radius, velocity): PersonState| filters::Near {
+            position: position.into(),
+            velocity: velocity.into(),
+            radius,
+        };
+        let people: Vec<_> = people.into_iter().map(near).collect();
+        let points: Vec<_> = points.into_iter().map(Vector2::from).collect();
+        let (radius, max_speed, max_acceleration, max_turn_rate, period) = limits;
+        let seen = filters::Sighted {
+            position: state.0.into(),
+            velocity: state.1.into(),
+            heading: state.2,
+            radius,
+            max_speed,
+            max_acceleration,
+            max_turn_rate,
+            period,
+            people: &people,
+            points: &points,
+        };
+        let found = self.0.decide(&seen, asked.0.into(), asked.1);
+        (
+            found.velocity.into(),
+            found.status.word(),
+            [found.slack, found.share],
+        )
     }
 }
 
@@ -169,6 +230,7 @@ pub fn blind_corner_speeds<'py>(
 pub fn guarded_law(law: &Law, given: Option<Keywords<'_>>) -> PyResult<Law> {
     let given = given.unwrap_or_default();
     let shield: Option<PyRef<'_, Shield>> = given.take("shield")?;
+    let filter: Option<PyRef<'_, SafetyFilter>> = given.take("filter")?;
     let yielding: Option<PyRef<'_, Yielding>> = given.take("yielding")?;
     let foresight: Option<PyRef<'_, Foresight>> = given.take("foresight")?;
     let map: Option<PyRef<'_, StaticMap>> = given.take("map")?;
@@ -177,7 +239,8 @@ pub fn guarded_law(law: &Law, given: Option<Keywords<'_>>) -> PyResult<Law> {
     let family = taken!(given: SafeNavigation {
         map = map.map(|map| map.0.clone()), guide = guide.map(|guide| guide.0),
         rule = TakeoverOptions { progress, window }, shield = shield.map(|shield| shield.0),
-        yielding = yielding.map(|yielding| yielding.0), foresight = foresight.map(|foresight| foresight.0), takeover, preferred_speed,
+        filter = filter.map(|filter| filter.0), yielding = yielding.map(|yielding| yielding.0),
+        foresight = foresight.map(|foresight| foresight.0), takeover, preferred_speed,
         critical_distance, ..SafeNavigation::bare(law.any.clone()),
     });
     given.done()?;

@@ -1,5 +1,6 @@
 //! Safe navigation at work on one robot.
 
+use crate::filters::{Filter, FilterStatus, Filtered, Sighted};
 use crate::foresight::Foreseer;
 use crate::guide::{Detour, Guidance, LocalGoal, Takeover};
 use crate::safe::settings::SafeNavigation;
@@ -27,6 +28,8 @@ const PARTS_OF_PLAN: u32 = 24;
 /// A law with its parts.
 pub struct SafeLaw {
     law: Box<dyn Law<f64>>,
+    filter: Option<Filter>,
+    max_turn_rate: f64,
     pub(super) guard: Option<Guard>,
     /// The shield of a robot with two wheels.
     twist_guard: Option<TwistGuard>,
@@ -112,6 +115,9 @@ impl SafeLaw {
             outline,
             twist_guard: twist_guard.transpose()?,
             course: None,
+            filter: family.filter_for(scenario)?,
+            max_turn_rate: wheels
+                .map_or(0.0, |wheels| DifferentialLimits::from(wheels).max_turn_rate),
             guard: family
                 .shield
                 .map(|shield| Guard::new(shield, limits))
@@ -200,6 +206,7 @@ impl Law<f64> for SafeLaw {
             None => self.decide(situation, &now, &mut wanted, to_goal, foreseer.as_mut()),
         };
         self.foreseer = foreseer;
+        let decision = self.filtered(situation, wanted, decision);
         self.trace = Trace {
             wanted,
             command: decision.velocity,
@@ -209,7 +216,8 @@ impl Law<f64> for SafeLaw {
             off_plan: now.off,
             ..self.trace
         };
-        let turned = self.twist_guard.is_some();
+        let turned =
+            self.twist_guard.is_some() || (self.filter.is_some() && decision.velocity != asked);
         let own = turned || self.foreseer.is_some();
         let kept = decision.status == Status::Kept && wanted == asked && !own;
         if kept || self.lets_through(&heading) {
@@ -264,9 +272,69 @@ impl SafeLaw {
     /// Whether no part has a say in what the law commands: the robot itself keeps to its limits, and does what it does
     /// under the law alone.
     fn lets_through(&self, heading: &Destination) -> bool {
-        let parts = self.guard.is_some() || self.yielder.is_some() || self.foreseer.is_some();
+        let parts = self.guard.is_some()
+            || self.yielder.is_some()
+            || self.foreseer.is_some()
+            || self.filter.is_some();
         let law_heads = heading.local.is_some() && !heading.taken_over;
         !parts && law_heads && self.preferred >= self.limits.max_speed
+    }
+
+    /// Filtered velocity, of the wanted one or of the one that gives way.
+    fn filtered(
+        &self,
+        situation: &Situation<'_, f64>,
+        wanted: Vector2<f64>,
+        given_way: Decision,
+    ) -> Decision {
+        let Some(filter) = self.filter else {
+            return given_way;
+        };
+        let gives_way = self.yielder.is_some() || self.foreseer.is_some();
+        let wanted = if gives_way {
+            given_way.velocity
+        } else {
+            wanted
+        };
+        let RobotState { position, velocity } = situation.robot;
+        let seen = Sighted {
+            position,
+            velocity,
+            heading: situation.heading,
+            radius: self.limits.radius,
+            max_speed: self.limits.max_speed,
+            max_acceleration: Some(self.limits.max_acceleration),
+            max_turn_rate: self.max_turn_rate,
+            period: situation.interval,
+            people: &self.around.near,
+            points: &self.around.nearest_points,
+        };
+        let found = if let Filter::BarrierUnicycle(rule) = filter {
+            let (sin, cos) = situation.heading.sin_cos();
+            let speed = wanted.dot(&Vector2::new(cos, sin));
+            let turn_rate = wanted.dot(&Vector2::new(-sin, cos)) / rule.ahead;
+            let found = rule.filter(&seen, [speed, turn_rate]);
+            let twist = Twist {
+                speed: found.velocity.x,
+                turn_rate: found.velocity.y,
+            };
+            let velocity = velocity_of(twist, situation.heading, situation.interval);
+            Filtered { velocity, ..found }
+        } else {
+            filter.decide(&seen, wanted, 0.0)
+        };
+        let status = match found.status {
+            FilterStatus::Kept if gives_way => given_way.status,
+            FilterStatus::Kept => Status::Kept,
+            FilterStatus::Changed => Status::Changed,
+            FilterStatus::Infeasible | FilterStatus::Touching | FilterStatus::Stopped => {
+                Status::Infeasible
+            }
+        };
+        Decision {
+            velocity: found.velocity,
+            status,
+        }
     }
 
     /// Where the force is not held, it acts for a motion step only.

@@ -51,7 +51,7 @@ impl LawFamily for SafeNavigation {
     }
 
     fn steers_by_velocity(&self) -> bool {
-        self.shield.is_some()
+        self.shield.is_some() || self.filter.is_some_and(|filter| filter.is_for_wheels())
     }
 
     fn check_gains(&self, gains: &[f64]) -> Result<()> {

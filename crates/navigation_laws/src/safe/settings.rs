@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::LawFamily;
+use crate::filters::Filter;
 use crate::foresight::Foresight;
 use crate::guide::{Guidance, Guide, RobotRoom, TakeoverOptions};
 use crate::safe::boundary::boundary_obstacle;
@@ -26,6 +27,8 @@ pub struct SafeNavigation {
     pub plans: Plans,
     /// The shield, if there is one.
     pub shield: Option<Shield>,
+    /// Filter in the place of a shield, if there is one.
+    pub filter: Option<Filter>,
     /// How the robot gives way, if it does.
     pub yielding: Option<Yielding>,
     /// Search ahead, in place of the law and of yielding.
@@ -51,6 +54,7 @@ impl SafeNavigation {
             guide: None,
             plans: Plans::default(),
             shield: None,
+            filter: None,
             yielding: None,
             foresight: None,
             takeover: false,
@@ -67,6 +71,11 @@ impl SafeNavigation {
     pub fn checked(self) -> Result<Self> {
         if let Some(shield) = self.shield {
             shield.checked()?;
+        }
+        if self.filter.is_some() && self.shield.is_some() {
+            let rule = "be None beside a shield";
+            let given = Given::Found("a filter".into());
+            return Err(Failure::invalid("filter", rule, given).mended_by("leave one of them out"));
         }
         if let Some(yielding) = self.yielding {
             yielding.checked()?;
@@ -103,6 +112,28 @@ impl SafeNavigation {
                 .extend(std::iter::repeat_n(point, MOST_POINTS));
         }
         Ok(inner)
+    }
+
+    /// The filter, if it is for the robot of a scenario.
+    pub(super) fn filter_for(&self, scenario: &Scenario) -> Result<Option<Filter>> {
+        let wheels = scenario.differential.is_some();
+        match self.filter {
+            Some(filter) if filter.is_for_wheels() != wheels => {
+                let (rule, found) = if wheels {
+                    (
+                        "be BarrierUnicycle for a robot with two wheels",
+                        "a filter for robots that move in any direction",
+                    )
+                } else {
+                    (
+                        "be another filter for a robot that moves in any direction",
+                        "BarrierUnicycle",
+                    )
+                };
+                Err(Failure::invalid("filter", rule, Given::Found(found.into())))
+            }
+            filter => Ok(filter),
+        }
     }
 
     /// The guide at work in a scenario.

@@ -1,6 +1,7 @@
 //! Surroundings of the robot in the terms of the law, of the shield and of yielding.
 
 use crate::Situation;
+use crate::filters::Near;
 use crate::foresight::Sighting;
 use crate::safe::boundary::boundary_obstacle;
 use crate::safe::settings::SafeNavigation;
@@ -55,6 +56,10 @@ pub(super) struct Surroundings {
     pub bodies: Vec<Body>,
     /// For the shield.
     pub people: Vec<Person>,
+    /// For filters: people, and the nearest points of what stands.
+    pub near: Vec<Near>,
+    pub nearest_points: Vec<Vector2<f64>>,
+    filtered: bool,
     /// For yielding.
     pub passersby: Vec<Passerby>,
     /// For foresight.
@@ -83,6 +88,9 @@ impl Surroundings {
             points: Vec::new(),
             bodies: Vec::new(),
             people: Vec::new(),
+            near: Vec::new(),
+            nearest_points: Vec::new(),
+            filtered: family.filter.is_some(),
             passersby: Vec::new(),
             sightings: Vec::new(),
             shapes: Vec::new(),
@@ -136,6 +144,8 @@ impl Surroundings {
         let reach = yielder.map(|yielder| yielder.settings().reach);
         self.bodies.clear();
         self.people.clear();
+        self.near.clear();
+        self.nearest_points.clear();
         self.passersby.clear();
         self.sightings.clear();
         self.shapes.clear();
@@ -159,8 +169,26 @@ impl Surroundings {
                 shape: body.shape,
             };
             if known.kind == ObstacleKind::Wall {
+                if self.filtered {
+                    let away = placed.shape.offset(robot - placed.center);
+                    self.nearest_points.push(robot - away);
+                }
                 self.shapes.push(placed);
                 continue;
+            }
+            if self.filtered {
+                self.near.push(Near {
+                    position: placed.center,
+                    velocity: body.state.velocity.into(),
+                    radius: match body.shape {
+                        Shape::Disc { radius } => radius,
+                        Shape::Rectangle {
+                            half_length,
+                            half_width,
+                            ..
+                        } => half_length.hypot(half_width),
+                    },
+                });
             }
             if let Some(guard) = guard {
                 self.people.push(known.person(placed, body, guard, age));
@@ -184,6 +212,10 @@ impl Surroundings {
             }
         }
         self.show_boundary(robot);
+        if self.filtered {
+            let known = self.points.iter().map(|point| Vector2::from(*point));
+            self.nearest_points.extend(known);
+        }
     }
 
     /// Boundary points of the map as bodies for the law; the others of them are absent.

@@ -255,6 +255,8 @@ pub enum Status {
     Changed,
     /// Nothing is verified: the rest of the last plan is executed.
     Braking,
+    /// Nothing obeys the rule of a filter, which a velocity violates as little as possible, or the robot brakes.
+    Infeasible,
 }
 
 impl Status {
@@ -265,6 +267,7 @@ impl Status {
             Self::Kept => "kept",
             Self::Changed => "changed",
             Self::Braking => "braking",
+            Self::Infeasible => "infeasible",
         }
     }
 }

@@ -180,6 +180,7 @@ fn the_search_is_nearly_as_near_as_a_fine_grid() {
                 let found = (decision.velocity - reached).norm();
                 assert!(found <= least + 0.007 * limits.max_speed, "{found} {least}");
             }
+            Status::Infeasible => panic!("a status of filters"),
         }
     }
     assert!(changed > 30 && missed <= 1, "{changed} {missed}");
