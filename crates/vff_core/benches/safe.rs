@@ -1,5 +1,5 @@
 //! Safe navigation: episodes of twelve drifting discs on one thread, and single decisions of shield and
-//! yielding among twelve people.
+//! yielding among twelve people, and of filters among three.
 
 mod scenes;
 
@@ -9,6 +9,10 @@ use std::hint::black_box;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use numeric::random::Stream;
 use vff_core::lanes::Vector2;
+use vff_core::laws::filters::{
+    ApproachMonitor, Barrier, BarrierUnicycle, CollisionCone, Filter, Near, ResponsibilityRule,
+    Sighted, VelocityClamp,
+};
 use vff_core::laws::safe::SafeNavigation;
 use vff_core::laws::shield::{Guard, Person, Shield, ShieldLimits, StaticObstacles, Status, View};
 use vff_core::laws::yielding::{Outlook, Passerby, Yielder, Yielding};
@@ -171,5 +175,91 @@ fn decisions(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, episodes, decisions);
+/// Filters among three people and two walls.
+fn filtering(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("safe/filter among three");
+    group.throughput(Throughput::Elements(1));
+    let people = [
+        [1.5, 0.4, -0.8, 0.0],
+        [0.9, -1.2, 0.0, 0.9],
+        [2.5, 1.0, -0.3, -0.7],
+    ]
+    .map(|row| Near {
+        position: Vector2::new(row[0], row[1]),
+        velocity: Vector2::new(row[2], row[3]),
+        radius: 0.25,
+    });
+    let points = [Vector2::new(0.2, 0.8), Vector2::new(0.2, -0.7)];
+    let seen = Sighted {
+        position: Vector2::zeros(),
+        velocity: Vector2::new(0.8, 0.0),
+        heading: 0.0,
+        radius: 0.25,
+        max_speed: 1.0,
+        max_acceleration: Some(3.0),
+        max_turn_rate: 1.5,
+        period: 0.1,
+        people: &people,
+        points: &points,
+    };
+    for (name, filter) in [
+        (
+            "barrier",
+            Filter::Barrier(Barrier {
+                rate: 1.0,
+                margin: 0.0,
+            }),
+        ),
+        (
+            "barrier of wheels",
+            Filter::BarrierUnicycle(BarrierUnicycle {
+                rate: 1.0,
+                ahead: 0.1,
+                margin: 0.0,
+            }),
+        ),
+        (
+            "collision cone",
+            Filter::CollisionCone(CollisionCone {
+                rate: 1.0,
+                margin: 0.0,
+            }),
+        ),
+        (
+            "velocity clamp",
+            Filter::VelocityClamp(VelocityClamp {
+                horizon: 3.0,
+                margin: 0.0,
+            }),
+        ),
+        (
+            "responsibility rule",
+            Filter::ResponsibilityRule(ResponsibilityRule {
+                reaction_time: 0.2,
+                acceleration: 1.0,
+                braking: 2.0,
+                person_acceleration: 0.0,
+                person_braking: 1.5,
+                margin: 0.0,
+            }),
+        ),
+        (
+            "approach monitor",
+            Filter::ApproachMonitor(ApproachMonitor {
+                time_before_collision: 1.2,
+                simulation_time_step: 0.1,
+                margin: 0.0,
+            }),
+        ),
+    ] {
+        let wanted = Vector2::new(1.0, 0.1);
+        println!("{name}: {:?}", filter.decide(&seen, wanted, 0.0));
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| filter.decide(black_box(&seen), black_box(wanted), 0.0));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, episodes, decisions, filtering);
 criterion_main!(benches);
