@@ -45,6 +45,8 @@ NO_CONSTRUCTORS: dict[type, str] = {
     **dict.fromkeys((nav.metrics.SafetyDecision, nav.metrics.SafetyRecord), "made by record_safety"),
     nav.laws.ShieldDecision: "made by a shield",
     **dict.fromkeys((arena.Certificate, arena.Ranks), "made by functions of the arena"),
+    nav.laws.FilterDecision: "made by a filter",
+    nav.laws.SafetyFilter: "the base of filters",
     nav.maps.Plan: "made by a map",
     **dict.fromkeys((standards.ContactLimit, standards.SpeedCurve), "made by functions of standards"),
     plausibility.ResultWarning: "made by the package",

@@ -25,6 +25,7 @@ NO_RESULTS = {
     impact.ConstrainedHead: "a parameter object without parameters",
     nav.laws.Law: "the base of laws",
     nav.LidarScan: "what a controller is told",
+    nav.laws.SafetyFilter: "the base of filters",
     nav.laws.Situation: "what a law in Python is given",
     nav.sensing.RobotSensor: "the base of sensors",
     sweep.Design: "the base of designs",

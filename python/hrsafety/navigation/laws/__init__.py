@@ -6,6 +6,16 @@ from hrsafety._namespace import names_of
 
 if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.navigation.laws.blind_corners import blind_corner_speed as blind_corner_speed
+    from hrsafety.navigation.laws.filters import (
+        ApproachMonitor as ApproachMonitor,
+        Barrier as Barrier,
+        BarrierUnicycle as BarrierUnicycle,
+        CollisionCone as CollisionCone,
+        FilterDecision as FilterDecision,
+        ResponsibilityRule as ResponsibilityRule,
+        SafetyFilter as SafetyFilter,
+        VelocityClamp as VelocityClamp,
+    )
     from hrsafety.navigation.laws.force_laws import (
         BorensteinKoren as BorensteinKoren,
         GeCui as GeCui,

@@ -11,6 +11,7 @@ from hrsafety._arguments import Pair, instance, number
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.laws.filters import SafetyFilter
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.laws.foresight import Foresight
 from hrsafety.navigation.laws.python_law import as_law
@@ -37,7 +38,7 @@ class SafetyTrace(NamedTuple):
     taken_over : bool
         Whether the law was taken over from.
     status : str
-        ``"kept"``, ``"changed"`` or ``"braking"``.
+        ``"kept"``, ``"changed"`` or ``"braking"``; ``"infeasible"`` where no velocity obeys the rule of a filter.
     """
 
     wanted: Annotated[Pair, "m/s"]
@@ -68,6 +69,9 @@ class SafeNavigation(Law):
         one it leads around those who stand, where the robot is stuck behind them.
     shield : Shield or None
         The shield.
+    filter : SafetyFilter or None
+        One of the filters of the field in the place of a shield, not beside one: what each assumes stands with it.
+        `BarrierUnicycle` is for robots with two wheels, the others are for those that move in any direction.
     yielding : Yielding or None
         How the robot gives way.
     foresight : Foresight or None
@@ -103,6 +107,7 @@ class SafeNavigation(Law):
     map: StaticMap | None = field(default=None, kw_only=True)
     guide: Guide | None = field(default=None, kw_only=True)
     shield: Shield | None = field(default=None, kw_only=True)
+    filter: SafetyFilter | None = field(default=None, kw_only=True)
     yielding: Yielding | None = field(default=None, kw_only=True)
     foresight: Foresight | None = field(default=None, kw_only=True)
     preferred_speed: float | None = field(default=None, kw_only=True)
@@ -119,6 +124,8 @@ class SafeNavigation(Law):
             instance("guide", self.guide, Guide)
         if self.shield is not None:
             instance("shield", self.shield, Shield)
+        if self.filter is not None:
+            instance("filter", self.filter, SafetyFilter)
         if self.yielding is not None:
             instance("yielding", self.yielding, Yielding)
         if self.foresight is not None:
@@ -137,6 +144,7 @@ class SafeNavigation(Law):
         native = _hrsafety.guarded_law(
             self.law._native,
             shield=None if self.shield is None else self.shield._native,
+            filter=None if self.filter is None else self.filter._native,
             yielding=None if self.yielding is None else self.yielding._native,
             foresight=None if self.foresight is None else self.foresight._native,
             map=None if self.map is None else self.map._native,
@@ -179,6 +187,7 @@ class SafeNavigation(Law):
                 ("map", self.map),
                 ("guide", self.guide),
                 ("shield", self.shield),
+                (f"filter {'' if self.filter is None else self.filter.NAME}", self.filter),
                 ("yielding", self.yielding),
                 ("foresight", self.foresight),
             )
@@ -236,4 +245,6 @@ class SafeNavigation(Law):
         return replace(self, **own)  # type: ignore[arg-type]  # checked at construction
 
 
-_FIELDS = frozenset({"law", "map", "guide", "shield", "yielding", "preferred_speed", "takeover", "critical_distance"})
+_FIELDS = frozenset(
+    {"law", "map", "guide", "shield", "filter", "yielding", "preferred_speed", "takeover", "critical_distance"}
+)
