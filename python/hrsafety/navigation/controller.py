@@ -26,7 +26,8 @@ from hrsafety.navigation.robot_command import Command, Sighting
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
-from hrsafety.navigation.warnings.shields import of_controller, of_order, shield_of
+from hrsafety.navigation.warnings.filters import of_filter
+from hrsafety.navigation.warnings.shields import maps_of, of_controller, of_order, shield_of
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Command", "Controller", "Sighting"]
@@ -153,10 +154,11 @@ class Controller:
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """Gaps in the cover of the law's shield; empty without a shield."""
+        """Gaps in the cover of the law's shield, and what its filter assumes; empty without either."""
         shield = _shield(self._law)
         if shield is None:
-            return ()
+            stands = len(self._rules["obstacles"]) > self._capacity or any(maps_of(self._law))
+            return tuple(of_filter(self._law, measured=True, walls=stands or self._lidar is not None))
         lidar, speed = self._lidar is not None, self._person_speed
         found = of_controller(shield, self._rules["robot"], person_speed=speed, lidar=lidar)
         return (*of_order(self._law), *found)
@@ -314,6 +316,8 @@ class Controller:
         """Return a component of a velocity; who is not known to move may not be taken to stand."""
         if value is not None:
             return number(name, value)
+        if isinstance(self._law, SafeNavigation) and self._law.filter is not None:
+            raise InvalidParameterError(name, "have a velocity, as the filter of the law takes it for known", None)
         shield = _shield(self._law)
         if shield is not None and shield.velocity_error is not None:
             rule = "have a velocity, as the shield assumes one to be known to velocity_error"

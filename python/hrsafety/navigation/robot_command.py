@@ -47,11 +47,11 @@ class Command:
         To have a control period from now, within the limits, in m/s.
     speed, turn_rate : float or None
         The same for a robot with two wheels, in m/s and rad/s.
-    status : {"kept", "changed", "braking", "not_guaranteed"} or None
+    status : {"kept", "changed", "braking", "not_guaranteed", "infeasible"} or None
         What the shield has done with the wanted velocity: commanded it, commanded the nearest verified one, or let
         the robot brake as its last plan ends; ``None`` without parts around the law. ``"not_guaranteed"`` stands
         for the first two where `doubts` is not empty: what is commanded is the best that is known, and a person may be
-        moved into.
+        moved into. ``"infeasible"``: nothing obeys the rule of the filter in the place of a shield.
     taken_over : bool
         Whether the robot heads for its (local) goal by itself.
     timing : {"regular", "late", "out_of_order", "lost"}
@@ -114,7 +114,7 @@ class Command:
     velocity: Pair
     speed: float | None
     turn_rate: float | None
-    status: Literal["kept", "changed", "braking", "not_guaranteed"] | None
+    status: Literal["kept", "changed", "braking", "not_guaranteed", "infeasible"] | None
     taken_over: bool
     timing: Literal["regular", "late", "out_of_order", "lost"]
     arrived: bool

@@ -15,6 +15,7 @@ from hrsafety._records import dataclass
 from hrsafety._replay.played import Played
 from hrsafety._replay.record import Replay
 from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.laws.filters import FILTER_INFEASIBLE
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation, SafetyTrace
 from hrsafety.navigation.laws.situation import Situation
 from hrsafety.navigation.maps.guide import LocalGoal, Plan
@@ -22,6 +23,7 @@ from hrsafety.navigation.robots.bodies import HolonomicRobot
 from hrsafety.navigation.run import Run
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import Trajectory
+from hrsafety.plausibility import ResultWarning
 
 if TYPE_CHECKING:
     from hrsafety.navigation.crowd.world import World
@@ -46,7 +48,7 @@ class SafetyDecision:
     wanted, command : ndarray, shape (2,)
         Velocity that the law wanted, or the takeover in its place, and the one that is commanded, in m/s.
     status : str
-        ``"kept"``, ``"changed"`` or ``"braking"``.
+        ``"kept"``, ``"changed"`` or ``"braking"``; ``"infeasible"`` where nothing obeyed the rule of a filter.
     taken_over : bool
         Whether the law was taken over from.
     margin : float
@@ -124,7 +126,20 @@ class SafetyRecord(Played):
     def shares(self) -> dict[str, float]:
         """Share of the decisions by status."""
         found = Counter(each.status for each in self.decisions)
-        return {status: found[status] / len(self.decisions) for status in ("kept", "changed", "braking")}
+        last = () if self.law.filter is None else ("infeasible",)
+        return {status: found[status] / len(self.decisions) for status in ("kept", "changed", "braking", *last)}
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Those of the run, and ``"filter_infeasible"`` where the rule of a filter was not obeyed."""
+        times = [each.time for each in self.decisions if each.status == "infeasible"]
+        if not times:
+            return self.trajectory.warnings
+        message = (
+            f"in {len(times)} of {len(self.decisions)} control periods, first at {times[0]:g} s, nothing obeyed the "
+            "rule of the filter: it promises nothing there"
+        )
+        return (ResultWarning(FILTER_INFEASIBLE, "decisions", message), *self.trajectory.warnings)
 
     def at(self, time: float) -> SafetyDecision:
         """Return the decision in force at a time.

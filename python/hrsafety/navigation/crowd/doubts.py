@@ -19,6 +19,7 @@ from hrsafety.navigation.obstacles.moving import MovingDisc
 from hrsafety.navigation.robots.bodies import NUMBERS
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
+from hrsafety.navigation.warnings.filters import of_filter
 from hrsafety.navigation.warnings.scenarios import circled, own_speed
 from hrsafety.navigation.warnings.shields import (
     SEES_LESS,
@@ -350,6 +351,8 @@ def of_robots(
     found: list[ResultWarning] = []
     for index, robot in enumerate(robots):
         shield, knows_map = shield_of(robot.law)
+        measured = robot.measurement is not None or robot.as_built() is not None
+        found += of_filter(robot.law, f"robots[{index}].law", measured=measured, walls=walls or knows_map)
         if shield is None:
             continue
         found += of_order(robot.law, f"robots[{index}].law")

@@ -12,9 +12,11 @@ from hrsafety.navigation.knowledge import late_cameras, warnings_of
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation
 from hrsafety.navigation.maps.unknown import over_unknown
+from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
+from hrsafety.navigation.warnings.filters import of_filter
 from hrsafety.navigation.warnings.scenarios import BELOW_SAFE, GOAL_IN_REGION, IN_CRITICAL_REGION
 from hrsafety.navigation.warnings.shields import ASSUMES_LESS, maps_of, of_order, of_shield, shield_of
 from hrsafety.navigation.warnings.walls import unknown_walls
@@ -59,8 +61,11 @@ def of_run(
         of_map = itertools.chain(of_map, scenario.walls.warnings, unknown_walls(scenario.walls, law, own))
     of_sensors = () if built is None else (*warnings_of(scenario, built), *_late(scenario, built, by_regions))
     shield, walls = shield_of(law)
+    measured = built is not None or scenario.measurement is not None
+    stands = any(isinstance(each, Disc | Rectangle) for each in scenario.obstacles)
+    of_rule = of_filter(law, measured=measured, walls=stands or scenario.walls is not None or any(maps_of(law)))
     if shield is None:
-        return (*of_scene, *of_sensors, *of_map)
+        return (*of_scene, *of_sensors, *of_map, *of_rule)
     return (
         *of_scene,
         *of_sensors,

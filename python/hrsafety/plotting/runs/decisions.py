@@ -29,6 +29,8 @@ PATH_COLOR = style.RUN_COLORS[0]
 PLAN_COLOR = style.RUN_COLORS[2]
 EXPECTED_COLOR = "#6a3d9a"
 VERDICTS = {"kept": style.RUN_COLORS[1], "changed": style.PERSON_COLORS[1], "braking": style.CONTACT_COLOR}
+INFEASIBLE = {"infeasible": style.CONTACT_COLOR}
+"""Of a filter in the place of a shield."""
 
 
 @notes.picture
@@ -39,7 +41,7 @@ def safety_decision(record: SafetyRecord, time: float, *, title: str | None = No
     stand the law follows another plan), the wanted and the commanded
     velocity as the ways of one second, the ground that the robot sweeps until it rests in the plan
     behind the command, and how far everybody can have come by then. Color and text give the verdict:
-    kept, changed or braking, with the margin by which the plan is verified.
+    kept, changed, braking or infeasible, with the margin by which the plan is verified.
 
     Parameters
     ----------
@@ -216,7 +218,7 @@ def _add_scene(axes: Axes, record: SafetyRecord) -> None:
 
 def _add_decision(axes: Axes, record: SafetyRecord, decision: SafetyDecision) -> None:
     """Draw what is there at one decision."""
-    run, color = record.trajectory, VERDICTS[decision.status]
+    run, color = record.trajectory, (VERDICTS | INFEASIBLE)[decision.status]
     so_far = run.position[: inputs.row_at(run, decision.time) + 1]
     floor.line(axes, so_far, zorder=3.4, color=PATH_COLOR, linewidth=1.5)
     if len(decision.path):
