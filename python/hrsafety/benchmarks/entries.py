@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from types import MappingProxyType
+from typing import TypeVar
 
 from hrsafety import navigation as nav
 from hrsafety._arguments import checked_text, meant
@@ -12,13 +13,34 @@ from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.laws.known import LAWS
 
-__all__ = ["MARGIN", "PARTS", "Entry", "entry"]
+__all__ = ["FILTERS", "MARGIN", "PARTS", "Entry", "entry"]
 
 MARGIN = 0.005
 """Error of the robot's motion that shields assume unless a protocol says otherwise, in m."""
+Whose = TypeVar("Whose", nav.Law, nav.laws.SafetyFilter)
+
 PARTS = ("guide", "shield", "yielding", "foresight")
 """Parts that a word may add to a law."""
-_OWN: Mapping[str, nav.Law] = MappingProxyType({"field": nav.VirtualForceField()})
+_OWN: Mapping[str, nav.Law] = MappingProxyType(
+    {
+        "field": nav.VirtualForceField(),
+        "straight": nav.laws.BorensteinKoren(attractive_gain=50.0, repulsive_gain=0.0),
+    }
+)
+FILTERS: Mapping[str, type[nav.laws.SafetyFilter]] = MappingProxyType(
+    {
+        kind.NAME: kind
+        for kind in (
+            nav.laws.Barrier,
+            nav.laws.BarrierUnicycle,
+            nav.laws.CollisionCone,
+            nav.laws.VelocityClamp,
+            nav.laws.ResponsibilityRule,
+            nav.laws.ApproachMonitor,
+        )
+    }
+)
+"""Filters that a word may put into the place of the shield."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -33,11 +55,14 @@ class Entry:
         The law itself.
     parts : tuple of str
         Which of ``PARTS`` are around it.
+    filter : SafetyFilter or None
+        Filter in the place of the shield.
     """
 
     name: str
     law: nav.Law
     parts: tuple[str, ...]
+    filter: nav.laws.SafetyFilter | None = None
 
     def built(
         self,
@@ -77,7 +102,7 @@ class Entry:
         Law
             The law itself without parts and map.
         """
-        if not self.parts and map is None:
+        if not self.parts and self.filter is None and map is None:
             return self.law
         shield = nav.laws.Shield(
             person_speed=person_speed,
@@ -91,6 +116,7 @@ class Entry:
             map=map,
             guide=(guide or nav.maps.Guide()) if "guide" in self.parts else None,
             shield=shield if "shield" in self.parts else None,
+            filter=self.filter,
             yielding=(yielding or nav.laws.Yielding()) if "yielding" in self.parts else None,
             foresight=(foresight or nav.laws.Foresight()) if "foresight" in self.parts else None,
             preferred_speed=preferred_speed,
@@ -105,7 +131,8 @@ def entry(word: str) -> Entry:
     ----------
     word : str
         A law by its long or short name (``field`` is the virtual force field), its gains in brackets where they
-        are others than usual, then ``+guide``, ``+shield`` and ``+yielding``, or ``+foresight`` in its place.
+        are others than usual (``straight`` heads for the goal at full speed, whoever is there), then ``+guide``,
+        ``+shield`` and ``+yielding``, or ``+foresight`` in its place; in place of the shield one of ``FILTERS``.
 
     Returns
     -------
@@ -124,27 +151,39 @@ def entry(word: str) -> Entry:
     ('shield',)
     >>> entry("field(attractive_gain=13)").law.attractive_gain
     13.0
+    >>> entry("straight+barrier(margin=0.2)").filter.margin
+    0.2
     """
     checked_text("laws", word, "hold words such as field+shield")
-    name, *parts = word.strip().lower().split("+")
+    name, *added = word.strip().lower().split("+")
+    parts = [each for each in added if each.partition("(")[0] not in FILTERS]
+    rules = [each for each in added if each not in parts]
     for part in parts:
         if part not in PARTS:
-            raise InvalidParameterError("laws", f"add {' or '.join(PARTS)} to a law", word, meant(part, PARTS))
+            known = (*PARTS, *FILTERS)
+            raise InvalidParameterError("laws", f"add {' or '.join(known)} to a law", word, meant(part, known))
+    if len(rules) > 1 or (rules and "shield" in parts):
+        raise InvalidParameterError("laws", "add one filter or a shield to a law", word)
     if {"yielding", "foresight"} <= set(parts):
         raise InvalidParameterError("laws", "add yielding or foresight to a law, not both", word)
-    return Entry(name=word, law=_with_gains(name, word), parts=tuple(each for each in PARTS if each in parts))
+    rule = None
+    for each in rules:
+        plain, gains = _gains(FILTERS[each.partition("(")[0]](), each, word)
+        rule = replace(plain, **gains)  # type: ignore[type-var]  # filters are dataclasses
+    drives, own = _gains(_law(name.partition("(")[0], word), name, word)
+    law = drives.replaced(**own) if own else drives
+    return Entry(name=word, law=law, parts=tuple(each for each in PARTS if each in parts), filter=rule)
 
 
-def _with_gains(name: str, word: str) -> nav.Law:
-    """Return the law of a word with the gains that stand in brackets."""
-    plain, bracket, rest = name.partition("(")
-    law = _law(plain, word)
+def _gains(law: Whose, name: str, word: str) -> tuple[Whose, dict[str, float]]:
+    """Return a law or a filter, and the numbers that stand in brackets after its name."""
+    _, bracket, rest = name.partition("(")
+    gains: dict[str, float] = {}
     if not bracket:
-        return law
+        return law, gains
     if not rest.endswith(")"):
         raise InvalidParameterError("laws", "close the bracket of the gains, as field(attractive_gain=13)", word)
-    names = [each.name for each in fields(law)]  # type: ignore[arg-type]  # laws are dataclasses
-    gains: dict[str, float] = {}
+    names = [each.name for each in fields(law)]  # type: ignore[arg-type]  # both are dataclasses
     for part in rest[:-1].split(","):
         gain, _, value = part.partition("=")
         known = [name for name in names if isinstance(getattr(law, name), float)]
@@ -154,7 +193,7 @@ def _with_gains(name: str, word: str) -> nav.Law:
             gains[gain] = float(value)
         except ValueError:
             raise InvalidParameterError("laws", f"give {gain} a number", word) from None
-    return law.replaced(**gains)
+    return law, gains
 
 
 def _law(name: str, word: str) -> nav.Law:
