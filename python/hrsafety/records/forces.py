@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _keys as kind
-from hrsafety._arguments import Array, columns, flag, not_negative, positive
+from hrsafety._arguments import Array, checked_text, columns, flag, not_negative, positive
 from hrsafety._display import displayed
 from hrsafety._keys import Keys, checked, parsed
 from hrsafety._records import dataclass
@@ -70,6 +70,8 @@ class ForceDevice:
                 positive(name, getattr(self, name))
         if self.uncertainty is not None:
             not_negative("uncertainty", self.uncertainty)
+        if self.calibrated is not None:
+            checked_text("calibrated", self.calibrated, "be a text or None")
 
 
 _KEYS: Keys = {
