@@ -34,7 +34,7 @@ exclude_patterns = ["_build"]
 default_role = "py:obj"
 add_module_names = False
 
-myst_enable_extensions = ["amsmath", "dollarmath"]
+myst_enable_extensions = ["amsmath", "colon_fence", "dollarmath"]
 myst_heading_anchors = 3
 
 templates_path = ["_templates"]
@@ -47,7 +47,7 @@ numpydoc_class_members_toctree = False
 
 html_math_renderer = "mathml"  # drawn by the browser, without a network
 html_static_path = ["_static"]
-html_css_files = ["equations.css"]
+html_css_files = ["equations.css", "boxes.css"]
 html_theme = "furo"
 html_title = "hrsafety"
 html_show_sphinx = False
