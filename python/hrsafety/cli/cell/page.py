@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from hrsafety.cli.cell.pictures import PARTS, Drawing
-from hrsafety.cli.cell.report import at_path
+from hrsafety.cli.cell.report import at_path, to_thousandths
 from hrsafety.contact.plan import LAYERS
 from hrsafety.pages import DASH, shown
 from hrsafety.standards.verdicts import VERDICT_WORDS
@@ -101,8 +101,7 @@ def rounded(values: Mapping[str, Any], careful: Callable[[float], int]) -> Calla
     number = numbers_in(values)
 
     def shown_on(path: str) -> Markup:
-        # Far below a thousandth, so that 0.3 is not shown as 0.299.
-        return number(path, ".3f", rounding=lambda value: careful(round(1e3 * value, 6)) / 1e3)
+        return number(path, ".3f", rounding=lambda value: to_thousandths(value, careful))
 
     return shown_on
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Callable, Iterator, Mapping
 from importlib import resources
 from typing import Any
 
@@ -18,7 +19,7 @@ from hrsafety.pages import versions
 from hrsafety.pages.report import Report, ReportTable, Section
 from hrsafety.standards.verdicts import VERDICT_WORDS
 
-__all__ = ["CONFIRM", "NOT_COVERED", "at_path", "report_of", "sha256_of"]
+__all__ = ["CONFIRM", "NOT_COVERED", "at_path", "report_of", "sha256_of", "to_thousandths"]
 
 FORMAT = 1
 CONFIRM = (
@@ -99,6 +100,7 @@ def _contacts(study: ContactStudy) -> ReportTable:
     rows = []
     for each in study.verdicts:
         numbers = [each[name] for name in ("planned_speed", "allowed_speed", "margin")]
+        numbers[1] = None if numbers[1] is None else to_thousandths(numbers[1])
         shown = ["-" if value is None else f"{value:.3f}" for value in numbers]
         place = (each["region"], each["contact"], each["covering"] or "bare")
         area = "-" if each["contact_area"] is None else f"{1e4 * each['contact_area']:.3g}"
@@ -107,6 +109,12 @@ def _contacts(study: ContactStudy) -> ReportTable:
     names = ("region", "contact", "covering", "area", "verdict", "planned", "allowed", "margin", "governs", "doubts")
     units = ("", "", "", "cm2", "", "m/s", "m/s", "m/s", "", "")
     return ReportTable(headers=(names, units), rows=rows, left=(0, 1, 2, 4, 8, 9), printed=True)
+
+
+def to_thousandths(value: float, careful: Callable[[float], int] = math.floor) -> float:
+    """Return a speed rounded down, or a distance rounded up, to whole thousandths."""
+    # Far below a thousandth first, so that 0.3 is not shown as 0.299.
+    return careful(round(1e3 * value, 6)) / 1e3
 
 
 def at_path(report: Any, path: str) -> Any:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from hrsafety.cli.cell.page import CONTACT_WORDS, LOOKS, numbers_in, paths_of
+from hrsafety.cli.cell.page import CONTACT_WORDS, LOOKS, numbers_in, paths_of, rounded
 from hrsafety.cli.cell.pictures import Drawing
 from hrsafety.contact.plan import LAYERS
 from hrsafety.standards.verdicts import VERDICT_WORDS
@@ -42,6 +43,8 @@ def html(
         "program.html",
         values=values,
         n=numbers_in(values),
+        down=rounded(values, math.floor),
+        up=rounded(values, math.ceil),
         drawings=drawings,
         layers=LAYERS,
         annex=annex,

@@ -7,7 +7,7 @@ from typing import Any
 
 from hrsafety import __version__
 from hrsafety._keys import canonical
-from hrsafety.cli.cell.report import CONFIRM, NOT_COVERED, sha256_of
+from hrsafety.cli.cell.report import CONFIRM, NOT_COVERED, sha256_of, to_thousandths
 from hrsafety.contact.cell.study import numbers_of
 from hrsafety.pages import sentence, versions
 from hrsafety.pages.report import Report, ReportTable, Section
@@ -124,7 +124,7 @@ def _answer_of_draws(study: DrawnStudy) -> Iterator[str]:
         yield "No point that may move is permitted or able to touch."
     else:
         name = f"{program.points[worst.exposure.point].name} ({_limit(worst.exposure)})"
-        speeds = f"{worst.speed:.3f} m/s where {worst.allowed_speed:.3f} m/s are allowed"
+        speeds = f"{worst.speed:.3f} m/s where {to_thousandths(worst.allowed_speed):.3f} m/s are allowed"
         yield f"The hardest drawn motion is that of {name}: {speeds}."
     near = max((each.near_singular for each in study.masses), default=0.0)
     yield f"Up to {100.0 * near:.3g} % of the motions of a point are near a singular pose."
@@ -205,7 +205,8 @@ def _as_planned(study: ProgramStudy) -> str:
         return "No point moves where somebody is within reach."
     worst = moving[0]
     place = f"{program.points[worst.exposure.point].name} in {program.segment_name(worst.exposure.segment)}"
-    speeds = f"{worst.speed:.3f} m/s where {worst.allowed_speed:.3f} m/s are allowed ({_limit(worst.exposure)})"
+    allowed = to_thousandths(worst.allowed_speed)
+    speeds = f"{worst.speed:.3f} m/s where {allowed:.3f} m/s are allowed ({_limit(worst.exposure)})"
     if worst.share > 1.0 + 1e-9:
         return f"As planned the program is too fast: {place} moves at {speeds}."
     if study.verdict == "not_checked":
