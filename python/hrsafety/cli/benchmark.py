@@ -71,7 +71,9 @@ def run_suite(options: argparse.Namespace) -> None:
 
 
 def _write(options: argparse.Namespace, result: Result, report: Report, place: Path) -> list[Path]:
-    """Write table and page beside the rows."""
+    """Write table, picture and page beside the rows."""
+    from hrsafety import plotting
+
     stem = f"{result.suite}-{'+'.join(str(len(rows)) for rows in list(result.rows.values())[:1])}"
     every = [(name, *(getattr(row, each) for each in NAMES)) for name, rows in result.rows.items() for row in rows]
     tables = [
@@ -80,7 +82,8 @@ def _write(options: argparse.Namespace, result: Result, report: Report, place: P
     ]
     failed = list(_failures(options, result))
     sections = [*report.sections, *([Section("Episodes that did not succeed", failed)] if failed else [])]
-    return output.write_report(replace(report, sections=sections), place, (), tables, stem)
+    drawn = [("standings", plotting.comparison_standings(result), "Shares with 95 % intervals, and ranks by success.")]
+    return output.write_report(replace(report, sections=sections), place, drawn, tables, stem)
 
 
 def _failures(options: argparse.Namespace, result: Result) -> Iterator[Picture | PlayerPage]:

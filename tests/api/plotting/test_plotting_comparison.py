@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from api.plotted import DISC, LAW, PERSON, RECTANGLE, crowd, made_up_run, touched
+from hrsafety import benchmarks, plotting
 from hrsafety import navigation as nav
-from hrsafety import plotting
 from hrsafety.errors import InvalidParameterError, ShapeError
 
 pytest.importorskip("matplotlib")
@@ -242,3 +242,30 @@ def test_pictures_of_laws_leave_contact_and_obstacle_colors_alone():
     used = {color.upper() for color in law_looks.LAW_COLORS.values()}
     others = {style.CONTACT_COLOR, style.GOAL_COLOR, style.PERSON_COLORS[0], style.STATIONARY_COLORS[0]}
     assert not used & {color.upper() for color in others}
+
+
+def test_the_standings_of_a_benchmark_are_drawn_like_those_of_a_comparison():
+    ends = {"first": ["arrived", "collided", "arrived"], "second": ["collided", "timed_out", "collided"]}
+    rows = {
+        name: [
+            benchmarks.Row(
+                case=case,
+                outcome=word,
+                arrival_time=1.0,
+                end_time=2.0,
+                contacts=int(word == "collided"),
+                at_fault=0,
+                apart=0,
+                clearance=0.1,
+            )
+            for case, word in enumerate(words)
+        ]
+        for name, words in ends.items()
+    }
+    result = benchmarks.Result(suite="crowd", rows=rows)
+    left, _, places = plotting.comparison_standings(result).axes
+    (success,) = [line.get_xdata().tolist() for line in left.get_lines() if line.get_marker() == "o"]
+    assert success == [2 / 3, 0.0]
+    assert [label.get_text() for label in left.get_yticklabels()] == ["first", "second"]
+    ranks = next(line for line in places.get_lines() if line.get_marker() == "D")
+    assert ranks.get_xdata().tolist() == [1.0, 2.0]

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hrsafety.arena import ranks
+from hrsafety.benchmarks import Result
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.comparison import Comparison
-from hrsafety.plotting import notes, style
+from hrsafety.plotting import inputs, notes, style
 from hrsafety.plotting.comparisons.studies import OUTCOME_COLORS
 from hrsafety.plotting.floor import handle
 
@@ -28,7 +29,7 @@ MOST_DRAWS = 100_000_000
 
 
 @notes.picture
-def comparison_standings(result: Comparison, *, title: str | None = None) -> Figure:
+def comparison_standings(result: Comparison | Result, *, title: str | None = None) -> Figure:
     """Draw the shares of success and of contact of each law with their 95 % intervals.
 
     Below the share of the episodes with a contact, a hollow circle is the share of those in which the robot moved
@@ -38,8 +39,8 @@ def comparison_standings(result: Comparison, *, title: str | None = None) -> Fig
 
     Parameters
     ----------
-    result : Comparison
-        What `hrsafety.navigation.compare` returned.
+    result : Comparison or Result
+        What `hrsafety.navigation.compare` or `hrsafety.benchmarks.benchmark` returned.
     title : str or None
         Title of the figure.
 
@@ -51,7 +52,7 @@ def comparison_standings(result: Comparison, *, title: str | None = None) -> Fig
     Raises
     ------
     InvalidParameterError
-        If the result is not a comparison.
+        If the result is neither.
     MissingExtraError
         If matplotlib is not installed.
 
@@ -64,24 +65,26 @@ def comparison_standings(result: Comparison, *, title: str | None = None) -> Fig
     >>> [tick.get_text() for tick in figure.axes[0].get_yticklabels()]
     ['field', 'Masoud']
     """
-    if not isinstance(result, Comparison):
-        raise InvalidParameterError("result", "be a Comparison", Shown(type(result).__name__))
-    standings = result.standings()
-    figure = style.new_figure(1.35 + ROW_HEIGHT * len(standings) + (0.4 if title is not None else 0.0), title=title)
+    if not isinstance(result, (Comparison, Result)):
+        raise InvalidParameterError(
+            "result", "be a Comparison or the Result of a benchmark", Shown(type(result).__name__)
+        )
+    names, shares, success = _of_comparison(result) if isinstance(result, Comparison) else _of_benchmark(result)
+    figure = style.new_figure(1.35 + ROW_HEIGHT * len(names) + (0.4 if title is not None else 0.0), title=title)
     left, right, places = figure.subplots(1, 3, sharey=True, width_ratios=(3, 3, 2))
     blue, red = OUTCOME_COLORS["arrived"], OUTCOME_COLORS["contact"]
-    _draw_shares(left, [each.success for each in standings], blue, offset=0.0)
-    _draw_shares(right, [each.contact for each in standings], red, offset=-0.2)
-    _draw_shares(right, [each.toward_contact for each in standings], red, offset=0.0, face="white")
-    _draw_shares(right, [each.away_contact for each in standings], red, offset=0.2, marker="x")
-    left.set_yticks(range(len(standings)), [each.law for each in standings])
-    left.set_ylim(len(standings) - 0.5, -0.5)
-    episodes = f"of {result.outcome.shape[1]} episodes"
+    _draw_shares(left, shares[0], blue, offset=0.0)
+    _draw_shares(right, shares[1], red, offset=-0.2)
+    _draw_shares(right, shares[2], red, offset=0.0, face="white")
+    _draw_shares(right, shares[3], red, offset=0.2, marker="x")
+    left.set_yticks(range(len(names)), names)
+    left.set_ylim(len(names) - 0.5, -0.5)
+    episodes = f"of {success.shape[1]} episodes"
     for axes, words in ((left, "arrived without contact"), (right, "with a contact")):
         axes.set_xlim(-0.03, 1.03)
         axes.set_xlabel(f"share {episodes}")
         axes.set_title(words)
-    _draw_ranks(places, result)
+    _draw_ranks(places, success)
     handles = [
         handle("arrived without contact", marker="o", markersize=7, color=blue),
         handle("with a contact", marker="o", markersize=7, color=red),
@@ -92,9 +95,29 @@ def comparison_standings(result: Comparison, *, title: str | None = None) -> Fig
     return figure
 
 
-def _draw_ranks(axes: Axes, result: Comparison) -> None:
+def _of_comparison(result: Comparison) -> tuple[list[str], list[list[Share]], inputs.Array]:
+    """Return names of laws, shares of success, contact, contact toward and away, and successes by law and episode."""
+    standings = result.standings()
+    shares = [
+        [each.success for each in standings],
+        [each.contact for each in standings],
+        [each.toward_contact for each in standings],
+        [each.away_contact for each in standings],
+    ]
+    return [each.law for each in standings], shares, (result.outcome == "arrived").astype(np.float64)
+
+
+def _of_benchmark(result: Result) -> tuple[list[str], list[list[Share]], inputs.Array]:
+    """Return the same of a benchmark; episodes that some entry has not run count for no rank."""
+    names = list(result.rows)
+    found = (result.success, result.contact, result.toward, result.away)
+    cases = set.intersection(*({row.case for row in rows} for rows in result.rows.values()))
+    success = [[row.outcome == "arrived" for row in rows if row.case in cases] for rows in result.rows.values()]
+    return names, [[share(name) for name in names] for share in found], np.array(success, dtype=np.float64)
+
+
+def _draw_ranks(axes: Axes, success: inputs.Array) -> None:
     """Draw the rank of each law by its successes, and its interval."""
-    success = (result.outcome == "arrived").astype(np.float64)
     laws, episodes = success.shape
     found = ranks(success[:, np.newaxis], replicates=int(np.clip(MOST_DRAWS // (laws * episodes), 50, 2000)))
     beyond = np.stack([found.median - found.low, found.high - found.median])
