@@ -32,11 +32,17 @@ macro_rules! other_laws {
             Planned, reciprocal::ReciprocalAvoidance, side_by_side;
             Planned, field_d_star::FieldDStar, one_by_one;
             Planned, tree::RapidlyExploringRandomTree, one_by_one;
+            Steered, dynamic_window::DynamicWindow, one_by_one;
+            Steered, dwb::DWB, one_by_one;
+            Steered, pure_pursuit::RegulatedPurePursuit, one_by_one;
+            Steered, path_integral::PathIntegral, one_by_one;
         }
     };
 }
 
 mod borenstein_koren;
+pub mod dwb;
+pub mod dynamic_window;
 pub mod escape;
 pub mod field;
 pub mod field_d_star;
@@ -46,9 +52,12 @@ mod ge_cui;
 pub mod guide;
 pub mod impedance;
 mod khatib;
+pub mod local_planning;
 mod masoud;
 pub mod pairwise;
+pub mod path_integral;
 pub mod planning;
+pub mod pure_pursuit;
 pub mod reciprocal;
 pub mod reflex;
 pub mod safe;
@@ -149,6 +158,14 @@ pub trait Law<R: Real>: Send {
     /// Heads for another goal from now on, in m: a local one on the way to that of the scenario.
     /// Laws that plan the whole way themselves keep theirs.
     fn aim(&mut self, _goal: [f64; 2]) {}
+
+    /// Whether it asks for the way that a guide plans.
+    fn follows(&self) -> bool {
+        false
+    }
+
+    /// Takes the way from the robot to the goal, in m, that a guide plans; an empty one is the straight one.
+    fn lead(&mut self, _way: &[Vector2<f64>]) {}
 
     /// Whether [`Self::aim`] changes where it heads.
     fn can_aim(&self) -> bool {

@@ -10,5 +10,6 @@ pub mod lanes;
 pub mod order;
 pub mod parallel;
 pub mod pcg64;
+pub mod philox;
 pub mod random;
 pub mod threads;

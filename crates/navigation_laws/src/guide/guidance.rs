@@ -111,4 +111,13 @@ impl Guidance {
         let view = plan.view_or_way_back(position)?;
         Some((view, plan.local_goal(position, &view)))
     }
+
+    /// Replaces a way by the whole one of the plan in use from a position to the goal, in m; empty without one.
+    pub fn lead(&self, position: Vector2<f64>, way: &mut Vec<Vector2<f64>>) {
+        way.clear();
+        let plan = self.plan();
+        if let Some(view) = plan.view_or_way_back(position) {
+            way.extend(plan.way(position, &view));
+        }
+    }
 }

@@ -328,8 +328,17 @@ impl Plan {
         let Some(view) = self.view(position) else {
             return Vec::new();
         };
-        let steps = self.steps(&view).map(|step| step.point);
-        std::iter::once(position).chain(steps).collect()
+        self.way(position, &view).collect()
+    }
+
+    /// The way from a position that looks so to the goal, in m.
+    pub(super) fn way(
+        &self,
+        position: Vector2<f64>,
+        view: &PlanView,
+    ) -> impl Iterator<Item = Vector2<f64>> {
+        let steps = self.steps(view).map(|step| step.point);
+        std::iter::once(position).chain(steps)
     }
 }
 

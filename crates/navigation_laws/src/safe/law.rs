@@ -51,6 +51,8 @@ pub struct SafeLaw {
     pub(super) goal: Vector2<f64>,
     /// Goal that moves, in place of that of the plan while it is seen.
     pub(super) moving: Option<Vector2<f64>>,
+    /// Way of the guide to the goal, for laws that ask for it.
+    way: Vec<Vector2<f64>>,
     pub(super) around: Surroundings,
     /// State of the robot as measured in the last control period.
     measured: RobotState<f64>,
@@ -138,6 +140,7 @@ impl SafeLaw {
             mass: robot.mass,
             goal: scenario.goal.into(),
             moving: None,
+            way: Vec::new(),
             around: Surroundings::new(family, &inner),
             law: family.law.at_work(gains, &inner, record)?,
             measured: RobotState {
@@ -169,8 +172,16 @@ impl Law<f64> for SafeLaw {
         let heading = self.head(situation);
         let (robot, now) = (situation.robot, self.now(situation));
         self.measured = robot;
-        if let (Some(local), true) = (heading.local, self.guidance.is_some()) {
+        if let (Some(local), Some(guidance)) = (heading.local, &self.guidance) {
             self.law.aim(local.for_law(robot.position).into());
+            if self.law.follows() {
+                // Straight where the goal itself is ahead: one that moves, or one that no plan leads to.
+                self.way.clear();
+                if !local.is_goal {
+                    guidance.lead(robot.position, &mut self.way);
+                }
+                self.law.lead(&self.way);
+            }
         }
         // Foresight has no use for what the law wants.
         let command = if self.foreseer.is_some() {

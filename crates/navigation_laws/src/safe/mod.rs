@@ -51,7 +51,8 @@ impl LawFamily for SafeNavigation {
     }
 
     fn steers_by_velocity(&self) -> bool {
-        self.shield.is_some() || self.filter.is_some_and(|filter| filter.is_for_wheels())
+        let wheeled = self.filter.is_some_and(|filter| filter.is_for_wheels());
+        self.shield.is_some() || wheeled || self.law.steers_by_velocity()
     }
 
     fn check_gains(&self, gains: &[f64]) -> Result<()> {

@@ -3,6 +3,7 @@
 
 use crate::run::any_law::AnyLaw;
 use navigation_laws::VirtualForceField;
+use navigation_laws::local_planning::Steered;
 use navigation_laws::pairwise::Pairwise;
 use navigation_laws::planning::family::Planned;
 use navigation_laws::safe::SafeNavigation;
