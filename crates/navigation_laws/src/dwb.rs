@@ -6,7 +6,6 @@ use crate::local_planning::{
     numbers,
 };
 use navigation_world::arguments::{Arguments, Named};
-use navigation_world::world::scenario::Scenario;
 use numeric::error::{Result, at_most, not_negative, positive};
 use numeric::lanes::Vector2;
 
@@ -78,7 +77,7 @@ impl Named for DWB {
 impl TwistFamily for DWB {
     type Planner = DwbPlanner;
 
-    fn planner(&self, _scenario: &Scenario) -> DwbPlanner {
+    fn planner(&self, _seed: u64) -> DwbPlanner {
         DwbPlanner::new(*self)
     }
 

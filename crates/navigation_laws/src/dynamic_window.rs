@@ -8,7 +8,6 @@ use crate::local_planning::{
     wrap,
 };
 use navigation_world::arguments::{Arguments, Named};
-use navigation_world::world::scenario::Scenario;
 use numeric::error::{Result, not_negative, positive};
 
 /// Arcs are followed for so many m, `D`.
@@ -65,7 +64,7 @@ impl Named for DynamicWindow {
 impl TwistFamily for DynamicWindow {
     type Planner = Self;
 
-    fn planner(&self, _scenario: &Scenario) -> Self {
+    fn planner(&self, _seed: u64) -> Self {
         *self
     }
 

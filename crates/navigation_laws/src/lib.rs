@@ -76,6 +76,7 @@ pub use masoud::Masoud;
 
 pub use numeric::error::Stop;
 
+use crate::local_planning::TwistPlanner;
 use crate::trace::{Examined, Trace};
 use navigation_world::world::geometry::{Body, RobotState};
 use navigation_world::world::map::StaticMap;
@@ -242,6 +243,10 @@ pub trait LawFamily: Send + Sync {
     /// their critical regions; a search then need not follow runs whose end is known.
     fn keeps_to_regions(&self) -> bool {
         false
+    }
+    /// The law as it chooses twists, for one that does, with the seed of its draws.
+    fn twist_planner(&self, _seed: u64) -> Option<Box<dyn TwistPlanner>> {
+        None
     }
     /// Returns the gains if the law allows them.
     ///

@@ -5,7 +5,6 @@ use crate::local_planning::{
     Choice, Mode, Pose, Prediction, TwistFamily, TwistPlanner, View, numbers, wrap,
 };
 use navigation_world::arguments::{Arguments, Named};
-use navigation_world::world::scenario::Scenario;
 use numeric::error::{Failure, Given, Result, not_negative, positive};
 use numeric::lanes::Vector2;
 
@@ -66,7 +65,7 @@ impl Named for RegulatedPurePursuit {
 impl TwistFamily for RegulatedPurePursuit {
     type Planner = Self;
 
-    fn planner(&self, _scenario: &Scenario) -> Self {
+    fn planner(&self, _seed: u64) -> Self {
         *self
     }
 

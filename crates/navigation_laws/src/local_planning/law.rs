@@ -67,8 +67,8 @@ pub(crate) use numbers;
 pub trait TwistFamily: Tuned + Clone + Send + Sync + 'static {
     /// The law at work.
     type Planner: TwistPlanner;
-    /// It at work in a scenario.
-    fn planner(&self, scenario: &Scenario) -> Self::Planner;
+    /// It at work, with the seed of its draws.
+    fn planner(&self, seed: u64) -> Self::Planner;
     /// Largest turn rate that it commands, in rad/s.
     fn max_turn_rate(&self) -> f64;
 }
@@ -117,6 +117,10 @@ impl<F: TwistFamily> LawFamily for Steered<F> {
         true
     }
 
+    fn twist_planner(&self, seed: u64) -> Option<Box<dyn TwistPlanner>> {
+        Some(Box::new(self.0.planner(seed)))
+    }
+
     fn check_gains(&self, gains: &[f64]) -> Result<()> {
         self.0.tuned(gains).map(|_| ())
     }
@@ -135,7 +139,7 @@ impl<F: TwistFamily> LawFamily for Steered<F> {
             return Err(Failure::invalid("control_period", rule, given));
         }
         Ok(Box::new(SteeredLaw::new(
-            family.planner(scenario),
+            family.planner(scenario.seed),
             scenario,
         )))
     }

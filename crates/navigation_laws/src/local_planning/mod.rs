@@ -96,4 +96,12 @@ impl Choice {
 pub trait TwistPlanner: Send + 'static {
     /// Twist until the next sample.
     fn choose(&mut self, view: &View<'_>) -> Choice;
+
+    /// Goes on with a plan of twists and the number of the call, if it keeps any.
+    fn resume(&mut self, _plan: &[[f64; 3]], _call: u32) {}
+
+    /// Twists that it plans after the last choice; empty for one that plans none.
+    fn planned(&self) -> &[[f64; 3]] {
+        &[]
+    }
 }

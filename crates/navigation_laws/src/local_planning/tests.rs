@@ -203,7 +203,7 @@ fn choose(kind: &str, case: &Value) -> (Choice, Vec<[f64; 3]>) {
             let plan = case["plan"].as_array().into_iter().flatten().map(control);
             planner.resume(&plan.collect::<Vec<_>>(), call);
             let choice = place.choose(&mut planner);
-            (choice, planner.decided().to_vec())
+            (choice, planner.planned().to_vec())
         }
     }
 }

@@ -10,7 +10,6 @@ use crate::local_planning::{
     Choice, Inflation, Mode, Prediction, TwistFamily, TwistPlanner, View, numbers,
 };
 use navigation_world::arguments::{Arguments, Named};
-use navigation_world::world::scenario::Scenario;
 use numeric::error::{Failure, Given, Result, at_most, not_negative, positive};
 
 /// Most samples, steps, and both together.
@@ -68,8 +67,7 @@ impl TwistFamily for PathIntegral {
     type Planner = PathIntegralPlanner;
 
     #[allow(clippy::cast_possible_truncation)] // both halves count
-    fn planner(&self, scenario: &Scenario) -> PathIntegralPlanner {
-        let seed = scenario.seed;
+    fn planner(&self, seed: u64) -> PathIntegralPlanner {
         PathIntegralPlanner::new(*self, (seed ^ (seed >> 32)) as u32)
     }
 
@@ -187,20 +185,6 @@ impl PathIntegralPlanner {
         }
     }
 
-    /// Continues with the plan and number of a call, as many steps as it has.
-    pub fn resume(&mut self, plan: &[Control], call: u32) {
-        for (own, given) in self.plan.iter_mut().zip(plan) {
-            *own = *given;
-        }
-        self.call = call;
-    }
-
-    /// The plan of the last decision.
-    #[must_use]
-    pub fn decided(&self) -> &[Control] {
-        &self.decided
-    }
-
     /// Mean of the samples by their weights, within the limits.
     fn decide(&mut self, view: &View<'_>) -> bool {
         let settings = &self.settings;
@@ -228,6 +212,17 @@ impl PathIntegralPlanner {
 }
 
 impl TwistPlanner for PathIntegralPlanner {
+    fn resume(&mut self, plan: &[Control], call: u32) {
+        for (own, given) in self.plan.iter_mut().zip(plan) {
+            *own = *given;
+        }
+        self.call = call;
+    }
+
+    fn planned(&self) -> &[Control] {
+        &self.decided
+    }
+
     fn choose(&mut self, view: &View<'_>) -> Choice {
         let draws = (self.seed, self.call);
         samples_in_lanes(&self.settings, view, &self.plan, draws, &mut self.rollouts);

@@ -1,6 +1,7 @@
 //! Laws by name, from the lists of the laws: what each is made of stands with the law. The engine knows no
 //! law by name.
 
+use crate::crowd::SocialForce;
 use crate::run::any_law::AnyLaw;
 use navigation_laws::VirtualForceField;
 use navigation_laws::local_planning::Steered;
@@ -58,6 +59,15 @@ macro_rules! others_by_name {
     };
 }
 
+impl From<SocialForce> for AnyLaw {
+    fn from(law: SocialForce) -> Self {
+        Self::one_by_one(law)
+    }
+}
+
+/// Laws that need the models of people, which stand above the others.
+const OF_PEOPLE: &[(&str, Make)] = &[entry::<SocialForce>()];
+
 navigation_laws::pairwise_laws!(pairwise_by_name);
 navigation_laws::other_laws!(others_by_name);
 
@@ -69,7 +79,7 @@ const fn entry<L: Named + Into<AnyLaw>>() -> (&'static str, Make) {
 /// The laws by name. The virtual force field, whose terms callers look at one by one, is made by
 /// [`VirtualForceField::new`].
 fn known() -> impl Iterator<Item = &'static (&'static str, Make)> {
-    PAIRWISE.iter().chain(OTHERS)
+    PAIRWISE.iter().chain(OTHERS).chain(OF_PEOPLE)
 }
 
 /// The law of a name, whose numbers are allowed.

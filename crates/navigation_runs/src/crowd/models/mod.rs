@@ -37,7 +37,7 @@ macro_rules! pedestrian_models {
             ///
             /// # Errors
             /// There is no such model, or a parameter is out of range.
-            pub fn named(name: &str, given: &impl Arguments) -> Result<Self> {
+            pub fn named(name: &str, given: &dyn Arguments) -> Result<Self> {
                 match name {
                     $($model::NAME => $model::made_of(given).map(Self::$variant),)*
                     other => {
