@@ -3,7 +3,7 @@
 
 use crate::local_planning::{
     AxisLimits, Choice, Gaps, Inflation, Mode, Pose, Prediction, TwistFamily, TwistPlanner, View,
-    numbers,
+    finite_number, numbers,
 };
 use navigation_world::arguments::{Arguments, Named};
 use numeric::error::{Result, at_most, not_negative, positive};
@@ -58,12 +58,15 @@ pub struct DWB {
 }
 
 numbers!(DWB {
-    min_vel_x, max_vel_x, min_vel_y, max_vel_y, max_vel_theta, min_speed_xy, max_speed_xy, min_speed_theta,
-    acc_lim_x, acc_lim_y, acc_lim_theta, decel_lim_x, decel_lim_y, decel_lim_theta, sim_time, linear_granularity,
-    angular_granularity, obstacle_scale, path_dist_scale, goal_dist_scale, path_align_scale, goal_align_scale,
-    forward_point_distance, cost_scaling_factor, inflation_radius,
+    max_vel_x, max_vel_theta, max_speed_xy, acc_lim_x, acc_lim_theta, sim_time, obstacle_scale,
+    path_dist_scale, goal_dist_scale, path_align_scale, goal_align_scale, forward_point_distance,
+    cost_scaling_factor, inflation_radius,
 } beside {
-    vx_samples: Arguments::count, vy_samples: Arguments::count, vtheta_samples: Arguments::count, prediction: Prediction::given,
+    min_vel_x: finite_number, min_vel_y: finite_number, max_vel_y: finite_number,
+    min_speed_xy: finite_number, min_speed_theta: finite_number, acc_lim_y: finite_number,
+    decel_lim_x: finite_number, decel_lim_y: finite_number, decel_lim_theta: finite_number,
+    linear_granularity: finite_number, angular_granularity: finite_number, vx_samples: Arguments::count,
+    vy_samples: Arguments::count, vtheta_samples: Arguments::count, prediction: Prediction::given,
 });
 
 impl Named for DWB {
@@ -79,10 +82,6 @@ impl TwistFamily for DWB {
 
     fn planner(&self, _seed: u64) -> DwbPlanner {
         DwbPlanner::new(*self)
-    }
-
-    fn max_turn_rate(&self) -> f64 {
-        self.max_vel_theta
     }
 }
 

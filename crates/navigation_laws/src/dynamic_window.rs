@@ -67,10 +67,6 @@ impl TwistFamily for DynamicWindow {
     fn planner(&self, _seed: u64) -> Self {
         *self
     }
-
-    fn max_turn_rate(&self) -> f64 {
-        self.max_turn_rate
-    }
 }
 
 impl DynamicWindow {

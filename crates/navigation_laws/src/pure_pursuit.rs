@@ -2,7 +2,7 @@
 //! Robots 47, 2023, with the names and defaults of Nav2; distances are exact, not those of cells.
 
 use crate::local_planning::{
-    Choice, Mode, Pose, Prediction, TwistFamily, TwistPlanner, View, numbers, wrap,
+    Choice, Mode, Pose, Prediction, TwistFamily, TwistPlanner, View, finite_number, numbers, wrap,
 };
 use navigation_world::arguments::{Arguments, Named};
 use numeric::error::{Failure, Given, Result, not_negative, positive};
@@ -12,6 +12,8 @@ use numeric::lanes::Vector2;
 const NEAR: f64 = 0.001;
 /// Way between two poses that are examined, in m.
 const PROJECTED: f64 = 0.05;
+/// Most of them.
+const MOST_POSES: f64 = 1e5;
 
 /// Parameters by their names in Nav2.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,13 +47,18 @@ pub struct RegulatedPurePursuit {
 }
 
 numbers!(RegulatedPurePursuit {
-    desired_linear_vel, lookahead_dist, min_lookahead_dist, max_lookahead_dist, lookahead_time,
-    curvature_lookahead_dist, rotate_to_heading_angular_vel, rotate_to_heading_min_angle, max_angular_accel,
+    desired_linear_vel, lookahead_dist, lookahead_time, curvature_lookahead_dist,
+    rotate_to_heading_angular_vel, rotate_to_heading_min_angle, max_angular_accel,
     min_approach_linear_velocity, approach_velocity_scaling_dist, regulated_linear_scaling_min_radius,
-    regulated_linear_scaling_min_speed, cost_scaling_dist, cost_scaling_gain, inflation_radius,
-    max_allowed_time_to_collision_up_to_carrot,
+    regulated_linear_scaling_min_speed, cost_scaling_dist, cost_scaling_gain,
 } beside {
-    use_velocity_scaled_lookahead_dist: Arguments::flag, use_fixed_curvature_lookahead: Arguments::flag, use_regulated_linear_velocity_scaling: Arguments::flag, use_cost_regulated_linear_velocity_scaling: Arguments::flag, use_rotate_to_heading: Arguments::flag, use_collision_detection: Arguments::flag, allow_reversing: Arguments::flag, prediction: Prediction::given,
+    min_lookahead_dist: finite_number, max_lookahead_dist: finite_number, inflation_radius: finite_number,
+    max_allowed_time_to_collision_up_to_carrot: finite_number,
+    use_velocity_scaled_lookahead_dist: Arguments::flag, use_fixed_curvature_lookahead: Arguments::flag,
+    use_regulated_linear_velocity_scaling: Arguments::flag,
+    use_cost_regulated_linear_velocity_scaling: Arguments::flag, use_rotate_to_heading: Arguments::flag,
+    use_collision_detection: Arguments::flag, allow_reversing: Arguments::flag,
+    prediction: Prediction::given,
 });
 
 impl Named for RegulatedPurePursuit {
@@ -67,10 +74,6 @@ impl TwistFamily for RegulatedPurePursuit {
 
     fn planner(&self, _seed: u64) -> Self {
         *self
-    }
-
-    fn max_turn_rate(&self) -> f64 {
-        self.rotate_to_heading_angular_vel
     }
 }
 
@@ -120,6 +123,18 @@ impl RegulatedPurePursuit {
             ("inflation_radius", self.inflation_radius),
         ] {
             not_negative(name, value)?;
+        }
+        let fastest = self
+            .desired_linear_vel
+            .max(self.regulated_linear_scaling_min_speed);
+        let poses = fastest * self.max_allowed_time_to_collision_up_to_carrot / PROJECTED;
+        if poses > MOST_POSES {
+            let rule = format!(
+                "lead over at most {MOST_POSES} poses, one every {PROJECTED} m, at the largest speed"
+            );
+            let given = Given::Number(self.max_allowed_time_to_collision_up_to_carrot);
+            let name = "max_allowed_time_to_collision_up_to_carrot";
+            return Err(Failure::invalid(name, rule, given));
         }
         if self.max_lookahead_dist < self.min_lookahead_dist {
             let rule = format!(

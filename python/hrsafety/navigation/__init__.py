@@ -39,10 +39,17 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
         lyapunov as lyapunov,
     )
     from hrsafety.navigation.laws.foresight import Foresight as Foresight
+    from hrsafety.navigation.laws.local_planners import (
+        DWB as DWB,
+        DynamicWindow as DynamicWindow,
+        PathIntegral as PathIntegral,
+        RegulatedPurePursuit as RegulatedPurePursuit,
+    )
     from hrsafety.navigation.laws.planners import (
         FieldDStar as FieldDStar,
         OptimalReciprocalCollisionAvoidance as OptimalReciprocalCollisionAvoidance,
         RapidlyExploringRandomTree as RapidlyExploringRandomTree,
+        SocialForce as SocialForce,
         VelocityObstacle as VelocityObstacle,
     )
     from hrsafety.navigation.laws.safe_navigation import SafeNavigation as SafeNavigation

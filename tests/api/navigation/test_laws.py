@@ -28,6 +28,11 @@ LAWS: dict[str, nav.Law] = {
     "OptimalReciprocalCollisionAvoidance": nav.OptimalReciprocalCollisionAvoidance(horizon=3.0, reciprocal=True),
     "RapidlyExploringRandomTree": nav.RapidlyExploringRandomTree(goal_probability=0.2, draws=500, keeps_path=False),
     "FieldDStar": nav.FieldDStar(margin=0.1),
+    "SocialForce": nav.SocialForce(people_weight=2.0, model=nav.crowd.SocialForce2000()),
+    "DynamicWindow": nav.DynamicWindow(dist=0.3, prediction="constant_velocity"),
+    "DWB": nav.DWB(max_vel_x=0.4, max_speed_xy=0.4, vx_samples=8),
+    "RegulatedPurePursuit": nav.RegulatedPurePursuit(lookahead_dist=0.8, use_collision_detection=False),
+    "PathIntegral": nav.PathIntegral(vx_max=0.8, batch_size=64, time_steps=20),
     "VirtualImpedanceLaw": nav.laws.VirtualImpedanceLaw(form="conventional", view=2.0),
 }
 C1 = scenarios.configuration("c1")

@@ -11,7 +11,7 @@ use navigation_world::world::map::{MOST_POINTS, StaticMap};
 use navigation_world::world::obstacle::Shape;
 use navigation_world::world::scenario::Scenario;
 use navigation_world::world::shape::PlacedShape;
-use numeric::error::{Failure, Given, Result};
+use numeric::error::{Result, finite};
 
 /// A heading that has turned as commanded, up to this rate in rad/s.
 const AS_TOLD: f64 = 0.05;
@@ -28,6 +28,9 @@ pub trait Tuned: Sized {
     /// Names the number that is not allowed.
     fn tuned(&self, numbers: &[f64]) -> Result<Self>;
 }
+
+/// Largest turn in a control period that a velocity tells a robot with two wheels, in rad: less than a quarter turn.
+const MOST_TURN: f64 = 1.5;
 
 /// Numbers of a law by the names of its fields, and the law made of arguments: of numbers, and of others that are read
 /// in a way of their own.
@@ -63,14 +66,17 @@ macro_rules! numbers {
 }
 pub(crate) use numbers;
 
+/// A finite argument that no search chooses.
+pub(crate) fn finite_number(given: &dyn Arguments, name: &str) -> Result<f64> {
+    finite(name, given.number(name)?)
+}
+
 /// A law whose twists depend on numbers.
 pub trait TwistFamily: Tuned + Clone + Send + Sync + 'static {
     /// The law at work.
     type Planner: TwistPlanner;
     /// It at work, with the seed of its draws.
     fn planner(&self, seed: u64) -> Self::Planner;
-    /// Largest turn rate that it commands, in rad/s.
-    fn max_turn_rate(&self) -> f64;
 }
 
 /// A family of laws that choose twists as a family of laws.
@@ -132,12 +138,6 @@ impl<F: TwistFamily> LawFamily for Steered<F> {
         _record: bool,
     ) -> Result<Box<dyn Law<f64>>> {
         let family = self.0.tuned(gains)?;
-        let turn = family.max_turn_rate() * scenario.rules.control_period;
-        if scenario.differential.is_some() && turn >= std::f64::consts::FRAC_PI_2 {
-            let rule = "let the robot turn by less than a quarter turn in a control period at the largest turn rate";
-            let given = Given::Number(scenario.rules.control_period);
-            return Err(Failure::invalid("control_period", rule, given));
-        }
         Ok(Box::new(SteeredLaw::new(
             family.planner(scenario.seed),
             scenario,
@@ -291,9 +291,10 @@ impl<P: TwistPlanner> Law<f64> for SteeredLaw<P> {
             rates: [rate, turn_rate],
         });
         let wanted = if self.wheels {
+            let most = MOST_TURN / situation.interval;
             let twist = Twist {
                 speed: ahead,
-                turn_rate,
+                turn_rate: turn_rate.clamp(-most, most),
             };
             velocity_of(twist, heading, situation.interval)
         } else {

@@ -12,8 +12,8 @@ mod tests;
 mod way;
 
 pub use gaps::{Gaps, Inflation, MovingShape, Prediction, Walls};
-pub(crate) use law::numbers;
 pub use law::{Steered, Tuned, TwistFamily};
+pub(crate) use law::{finite_number, numbers};
 pub use motion::{AxisLimits, Pose, arc, evenly, wrap};
 pub use way::Way;
 

@@ -7,7 +7,7 @@ mod rollouts;
 use rollouts::{Rollouts, samples_in_lanes};
 
 use crate::local_planning::{
-    Choice, Inflation, Mode, Prediction, TwistFamily, TwistPlanner, View, numbers,
+    Choice, Inflation, Mode, Prediction, TwistFamily, TwistPlanner, View, finite_number, numbers,
 };
 use navigation_world::arguments::{Arguments, Named};
 use numeric::error::{Failure, Given, Result, at_most, not_negative, positive};
@@ -48,11 +48,13 @@ pub struct PathIntegral {
 }
 
 numbers!(PathIntegral {
-    vx_min, vx_max, vy_max, wz_max, ax_max, ay_max, az_max, vx_std, vy_std, wz_std, model_dt, temperature, gamma,
-    cost_weight, goal_weight, path_align_weight, path_follow_weight, path_angle_weight, prefer_forward_weight,
-    cost_scaling_factor, inflation_radius,
+    vx_max, wz_max, vx_std, wz_std, temperature, gamma, cost_weight, goal_weight, path_align_weight,
+    path_follow_weight, path_angle_weight, prefer_forward_weight,
 } beside {
-    batch_size: Arguments::count, time_steps: Arguments::count, prediction: Prediction::given,
+    vx_min: finite_number, vy_max: finite_number, ax_max: finite_number, ay_max: finite_number,
+    az_max: finite_number, vy_std: finite_number, model_dt: finite_number,
+    cost_scaling_factor: finite_number, inflation_radius: finite_number, batch_size: Arguments::count,
+    time_steps: Arguments::count, prediction: Prediction::given,
 });
 
 impl Named for PathIntegral {
@@ -69,10 +71,6 @@ impl TwistFamily for PathIntegral {
     #[allow(clippy::cast_possible_truncation)] // both halves count
     fn planner(&self, seed: u64) -> PathIntegralPlanner {
         PathIntegralPlanner::new(*self, (seed ^ (seed >> 32)) as u32)
-    }
-
-    fn max_turn_rate(&self) -> f64 {
-        self.wz_max
     }
 }
 

@@ -61,14 +61,19 @@ impl Rollouts {
             let weight = fading(-more.max(Each::splat(0.0)));
             let kept = Each::from_fn(|lane| {
                 let counts = block * WIDTH + lane < samples;
-                if counts { weight.lane(lane) } else { 0.0 }
+                if counts && weight.lane(lane) >= 0.0 {
+                    weight.lane(lane)
+                } else {
+                    0.0
+                }
             });
             for lane in 0..WIDTH {
                 sum += kept.lane(lane);
             }
             self.weights.push(kept);
         }
-        Some(sum)
+        // Costs that are no numbers, of places beyond all numbers, count for nothing.
+        (sum > 0.0).then_some(sum)
     }
 
     /// Mean control of a step along an axis, by weights of a sum.

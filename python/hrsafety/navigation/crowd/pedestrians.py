@@ -38,8 +38,13 @@ class Pedestrian(Parameters):
         values |= {name: count(name, getattr(self, name), least=0, most=2**16) for name in counts}
         cutoff = None if self.cutoff is None else positive("cutoff", self.cutoff)
         self._set(**values, cutoff=cutoff)
-        reach = math.inf if cutoff is None else cutoff
-        self._set(_native=_hrsafety.CrowdModel(self.NAME, cutoff=reach, **values))
+        self._set(_native=_hrsafety.CrowdModel(self.NAME, **self.parameters))
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Its parameters by name, as the core takes them: a cutoff that is none is infinite."""
+        values = {each.name: getattr(self, each.name) for each in fields(self) if each.init}  # type: ignore[arg-type]
+        return values | {"cutoff": math.inf if self.cutoff is None else self.cutoff}
 
     @property
     def largest_step(self) -> float:

@@ -35,10 +35,17 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     )
     from hrsafety.navigation.laws.impedance import VirtualImpedanceLaw as VirtualImpedanceLaw
     from hrsafety.navigation.laws.foresight import Foresight as Foresight
+    from hrsafety.navigation.laws.local_planners import (
+        DWB as DWB,
+        DynamicWindow as DynamicWindow,
+        PathIntegral as PathIntegral,
+        RegulatedPurePursuit as RegulatedPurePursuit,
+    )
     from hrsafety.navigation.laws.planners import (
         FieldDStar as FieldDStar,
         OptimalReciprocalCollisionAvoidance as OptimalReciprocalCollisionAvoidance,
         RapidlyExploringRandomTree as RapidlyExploringRandomTree,
+        SocialForce as SocialForce,
         VelocityObstacle as VelocityObstacle,
     )
     from hrsafety.navigation.laws.python_law import (
@@ -53,6 +60,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
         speed_bound as speed_bound,
     )
     from hrsafety.navigation.laws.situation import PointMass as PointMass, Situation as Situation
+    from hrsafety.navigation.laws.twists import TwistChoice as TwistChoice
     from hrsafety.navigation.laws.yielding import Yielding as Yielding
 else:
     __all__, __getattr__, __dir__ = names_of(__name__)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from hrsafety.navigation.laws import force_laws, impedance, planners
+from hrsafety.navigation.laws import force_laws, impedance, local_planners, planners
 from hrsafety.navigation.laws.declared import DECLARED, Law
 
 __all__ = ["LAWS"]
 
-_MODULES = [module.__name__ for module in (force_laws, impedance, planners)]
+_MODULES = [module.__name__ for module in (force_laws, impedance, planners, local_planners)]
 
 LAWS: Mapping[str, type[Law]] = MappingProxyType(
     {law.NAME: law for module in _MODULES for law in DECLARED.values() if law.__module__ == module}

@@ -5,16 +5,18 @@ from __future__ import annotations
 import math
 from typing import Literal, get_args
 
-from hrsafety._arguments import count, flag, not_negative, word
+from hrsafety._arguments import count, flag, instance, not_negative, word
 from hrsafety._bounds import MOST_DRAWS
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.crowd.pedestrians import Moussaid, Pedestrian
 from hrsafety.navigation.laws.declared import Law, gain, law
 
 __all__ = [
     "FieldDStar",
     "OptimalReciprocalCollisionAvoidance",
     "RapidlyExploringRandomTree",
+    "SocialForce",
     "VelocityObstacle",
     "VelocitySelection",
 ]
@@ -254,3 +256,48 @@ class FieldDStar(Law):
     horizon: float = gain(0.2466, unit="s", bounds=(0.0, 3.0))
     room: float = gain(3.0, unit="m", bounds=(3.0, 3.0))
     look_ahead: float = gain(0.301, unit="m", bounds=(0.05, 0.4))
+
+
+@law("social_force", "sfm", color="#777777", plans=True)
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SocialForce(Law):
+    """A robot that walks as a person of a model does, on its way to the goal.
+
+    The model decides on an acceleration, or a velocity, as it does for people; walls push as they push people. The
+    speed is at most that of the robot. With a map its boundary points are the walls.
+
+    Parameters
+    ----------
+    people_weight : float
+        Weight of the pushes of others.
+    speed_share : float
+        Desired speed as a share of the largest one, at most 1.
+    model : model of people or str
+        Any of `nav.crowd`, or the name of one with its defaults.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is not positive, the share is above 1, or the model is none.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav
+    >>> scene = nav.Scenario(start=(0, 0), goal=(4, 0), obstacles=[nav.Disc(center=(2, 0.3), radius=0.2)])
+    >>> nav.simulate(scene, nav.SocialForce()).outcome
+    'arrived'
+    """
+
+    people_weight: float = gain(1.0, unit="", bounds=(0.1, 5.0))
+    speed_share: float = gain(1.0, unit="", bounds=(0.2, 1.0))
+    model: Pedestrian | str = Moussaid()
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        given = self.model
+        if isinstance(given, str):
+            known = {kind.NAME: kind for kind in Pedestrian.__subclasses__()}
+            given = known[word("model", given, list(known))]()
+        model = instance("model", given, Pedestrian)
+        self._set(model=model)
+        self._make(model=model.NAME, **model.parameters)
