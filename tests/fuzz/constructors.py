@@ -44,6 +44,7 @@ NO_CONSTRUCTORS: dict[type, str] = {
     **dict.fromkeys((nav.metrics.Falsification, nav.metrics.Pursuit), "made by falsify"),
     **dict.fromkeys((nav.metrics.SafetyDecision, nav.metrics.SafetyRecord), "made by record_safety"),
     nav.laws.ShieldDecision: "made by a shield",
+    nav.laws.TwistChoice: "made by a law",
     **dict.fromkeys((arena.Certificate, arena.Ranks), "made by functions of the arena"),
     nav.laws.FilterDecision: "made by a filter",
     nav.laws.SafetyFilter: "the base of filters",

@@ -22,6 +22,7 @@ mod run;
 mod safe;
 mod scenes;
 mod signals;
+mod twists;
 mod unknown;
 mod watch;
 
@@ -189,6 +190,8 @@ mod _hrsafety {
     };
     #[pymodule_export]
     use crate::scenes::Scenarios;
+    #[pymodule_export]
+    use crate::twists::choose_twist;
     #[pymodule_export]
     use crate::unknown::{ArcRollouts, ScanController, UnknownMap, unknown_trial};
 }

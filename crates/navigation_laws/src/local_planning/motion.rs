@@ -98,9 +98,9 @@ impl AxisLimits {
     /// # Errors
     /// They are not, or a rate has the wrong sign.
     pub fn checked(self, names: [&str; 4]) -> Result<Self> {
-        if self.least > self.most {
-            let rule = format!("be at most {}, {}", names[1], self.most);
-            return Err(Failure::invalid(names[0], rule, Given::Number(self.least)));
+        if self.most < self.least {
+            let rule = format!("be at least {}, {}", names[0], self.least);
+            return Err(Failure::invalid(names[1], rule, Given::Number(self.most)));
         }
         not_negative(names[2], self.acceleration)?;
         if self.deceleration > 0.0 {

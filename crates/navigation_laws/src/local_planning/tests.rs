@@ -195,7 +195,7 @@ fn choose(kind: &str, case: &Value) -> (Choice, Vec<[f64; 3]>) {
         "dwa" => alone(place.choose(&mut law::<DynamicWindow>(kind, given).unwrap())),
         "dwb" => alone(place.choose(&mut DwbPlanner::new(law::<DWB>(kind, given).unwrap()))),
         "rpp" => alone(place.choose(&mut law::<RegulatedPurePursuit>(kind, given).unwrap())),
-        _ => {
+        "mppi" => {
             let seed = u32::try_from(case["seed"].as_u64().unwrap()).unwrap();
             let call = u32::try_from(case["call"].as_u64().unwrap()).unwrap();
             let mut planner =
@@ -205,6 +205,7 @@ fn choose(kind: &str, case: &Value) -> (Choice, Vec<[f64; 3]>) {
             let choice = place.choose(&mut planner);
             (choice, planner.planned().to_vec())
         }
+        other => panic!("no law {other}"),
     }
 }
 

@@ -106,9 +106,9 @@ impl PathIntegral {
         ] {
             not_negative(name, value)?;
         }
-        if self.vx_min > self.vx_max {
-            let rule = format!("be at most vx_max, {}", self.vx_max);
-            return Err(Failure::invalid("vx_min", rule, Given::Number(self.vx_min)));
+        if self.vx_max < self.vx_min {
+            let rule = format!("be at least vx_min, {}", self.vx_min);
+            return Err(Failure::invalid("vx_max", rule, Given::Number(self.vx_max)));
         }
         for (name, count, most) in [
             ("batch_size", self.batch_size, MOST_SAMPLES),

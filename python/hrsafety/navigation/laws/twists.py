@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal, NamedTuple, get_args
 import numpy as np
 import numpy.typing as npt
 
+from hrsafety import _hrsafety
 from hrsafety._arguments import (
     Array,
     checked_seed,
@@ -160,7 +161,8 @@ class LocalPlanner(Law):
         ]
         if map is not None:
             instance("map", map, StaticMap)
-        found = self._native.choose(
+        found = _hrsafety.choose_twist(
+            self._native,
             **given,
             goal=finite_pair("goal", goal),
             path=way,
