@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import field
 from os import PathLike
 from typing import Annotated, Any
 
@@ -11,8 +12,17 @@ from hrsafety._arguments import Pair, meant
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety._yaml.documents import YamlDocument, YamlSection
-from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.errors import FileError, InvalidParameterError, Shown
+from hrsafety.io.places.nav2_laws import (
+    INFLATION,
+    Controller,
+    approaches_of,
+    changes,
+    controllers_of,
+    ignored_of,
+)
 from hrsafety.io.reader import Document, Provenance
+from hrsafety.navigation.laws.twists import LocalPlanner
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.robots.footprint import Footprint, corners_of
 from hrsafety.plausibility import ResultWarning, implausible
@@ -25,6 +35,8 @@ RADIUS = 0.1
 """Default of ``robot_radius`` in m."""
 CORNERS = 16
 """Corners of the footprint that Nav2 makes of a radius."""
+FREQUENCY = 20.0
+"""Default of ``controller_frequency`` in Hz."""
 SAME = 1e-6
 Parameters = dict[str, YamlSection]
 """Parameters of a node by their names with dots."""
@@ -85,6 +97,13 @@ class Nav2Settings:
         In rad/s^2.
     drive : {"two wheels", "holonomic", "car"}
         By the motion model of MPPI, else two wheels unless a sideways speed is allowed.
+    period : float
+        Control period in s: the inverse of ``controller_frequency``, 20 Hz by default.
+    monitor : mapping of str to dict
+        Polygons of the collision monitor that slow the robot in time, by their names: ``time_before_collision`` and
+        ``simulation_time_step`` in s.
+    ignored : tuple of str
+        Keys of controller server, local costmap and collision monitor that nothing here uses, with their paths.
     warnings : tuple of ResultWarning
         ``two_footprints`` where local and global costmap differ, ``inflation_below_circumscribed``, ``assumed`` for
         defaults of Nav2 and the encoding, ``implausible`` numbers.
@@ -108,8 +127,64 @@ class Nav2Settings:
     max_deceleration: Annotated[float | None, "m/s^2"]
     max_turn_acceleration: Annotated[float | None, "rad/s^2"]
     drive: str
+    period: Annotated[float, "s"] = 1.0 / FREQUENCY
+    monitor: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    ignored: tuple[str, ...] = ()
     warnings: tuple[ResultWarning, ...]
     source: Provenance
+    _controllers: tuple[Controller, ...] | FileError = field(default=(), repr=False, compare=False)
+    _document: YamlDocument | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def laws(self) -> Mapping[str, LocalPlanner]:
+        """Laws of the controllers by their names.
+
+        Parameters that a file leaves out have the defaults of the laws; those of ``batch_size``, ``time_steps`` and
+        ``model_dt`` are Nav2's own.
+
+        Raises
+        ------
+        FileError
+            If there is no controller, a plugin is none of those known, or a parameter breaks its rule; the error names
+            the key with its path.
+        """
+        found = self._controllers
+        if isinstance(found, FileError):
+            raise found
+        return {each.name: each.law for each in found}
+
+    def write(self, path: str | PathLike[str], laws: Mapping[str, LocalPlanner] | None = None) -> None:
+        """Write the file again with other parameters of its controllers; comments and all else stay.
+
+        Parameters
+        ----------
+        path : path
+            Where.
+        laws : mapping of str to law or None
+            Laws by the names of the controllers; only what they have otherwise than `laws` is changed.
+
+        Raises
+        ------
+        InvalidParameterError
+            If there is no controller of a name, or it is another law.
+        FileError
+            As for `laws`.
+        OSError
+            If it cannot be written; an older file stays as it was.
+        """
+        document = self._document
+        if document is None:
+            raise InvalidParameterError("settings", "come from a file", Shown("none"), "read them with read_nav2")
+        own = self.laws
+        values: dict[tuple[str | int, ...], Any] = {}
+        for name, law in (laws or {}).items():
+            if name not in own:
+                raise InvalidParameterError("laws", f"be named {' or '.join(own)}", name, meant(str(name), own))
+            if type(law) is not type(own[name]):
+                raise InvalidParameterError(f"laws[{name!r}]", f"be a {type(own[name]).__name__}", law)
+            controller = next(each for each in self._controllers if each.name == name)  # type: ignore[union-attr]
+            values |= dict(changes(controller, law))
+        document.changed(values).write(path)
 
     def robot(self, **given: Any) -> DifferentialDriveRobot | HolonomicRobot:
         r"""Return the robot with the padded footprint of the file, or the disc of the circumscribed radius.
@@ -176,7 +251,7 @@ def read_nav2(path: str | PathLike[str]) -> Nav2Settings:
     """Return shape and limits of the robot from a parameter file of Nav2.
 
     Read are the footprints of the costmaps with their padding and inflation, the limits of the controllers (DWB, MPPI,
-    RPP) and of the velocity smoother.
+    RPP) and of the velocity smoother, and the controllers as laws.
 
     Parameters
     ----------
@@ -214,9 +289,12 @@ def read_nav2(path: str | PathLike[str]) -> Nav2Settings:
     ...     settings = io.read_nav2(path)
     >>> settings.max_speed, settings.drive, round(settings.circumscribed_radius, 4)
     (0.26, 'two wheels', 0.3744)
+    >>> settings.laws["FollowPath"].acc_lim_x, settings.period
+    (2.5, 0.05)
     """
     document = Document(path)
-    root = YamlDocument(document.text, document.name).root
+    yaml = YamlDocument(document.text, document.name)
+    root = yaml.root
     doubts = list(document.warnings)
     costmaps = {name: found for name in _COSTMAPS if (found := _node(root, name, name)) is not None}
     server, smoother = _node(root, "controller_server"), _node(root, "velocity_smoother")
@@ -225,13 +303,27 @@ def read_nav2(path: str | PathLike[str]) -> Nav2Settings:
         alike = meant("controller_server", keys)
         rule = "hold the parameters of a costmap, controller_server or velocity_smoother"
         raise document.error("missing_key", rule, Shown(", ".join(keys[:20]) or "nothing"), alike)
+    monitor = _node(root, "collision_monitor") or {}
     shapes = {name: _shape(costmap) for name, costmap in costmaps.items()}
     shape = next((each for each in shapes.values() if each["given"]), next(iter(shapes.values()), None))
     doubts += _doubts_of_shapes(shapes, shape)
     limits = _limits(server, smoother)
     named = limits | {"circumscribed_radius": None if shape is None else shape["circumscribed_radius"]}
     doubts += implausible({name: named[name] for name in _QUANTITIES}, _QUANTITIES)
+    local = costmaps.get("local_costmap", {})
+    approaches = approaches_of(monitor)
+    try:
+        controllers: tuple[Controller, ...] | FileError = tuple(
+            _read_controllers(root, server, shapes.get("local_costmap", {}))
+        )
+    except FileError as error:
+        controllers = error
     return Nav2Settings(
+        period=1.0 / _frequency(server),
+        monitor=approaches,
+        ignored=tuple(ignored_of((server or {}, local, monitor), controllers, _OF_ROBOT)),
+        _controllers=controllers,
+        _document=yaml,
         **({name: each for name, each in shape.items() if name != "given"} if shape else {}),
         **limits,
         warnings=tuple(doubts),
@@ -436,3 +528,33 @@ def _positive(entry: YamlSection) -> float:
     if not value > 0.0:
         raise entry.error("be finite and positive")
     return value
+
+
+# ---- controllers -----------------------------------------------------------------------------------
+
+# Keys that shape and limits of the robot are read from, below a controller or a costmap.
+_OF_ROBOT = frozenset(
+    (
+        *(*_SPEED, *_REVERSE, *_LATERAL, *_TURN, *_SPEED_UP, *_BRAKE, *_TURN_UP, "max_speed_xy", "motion_model"),
+        *("footprint", "robot_radius", "footprint_padding", "inflation_radius", "cost_scaling_factor"),
+    )
+)
+
+
+def _frequency(server: Parameters | None) -> float:
+    entry = (server or {}).get("controller_frequency")
+    return FREQUENCY if entry is None else _positive(entry)
+
+
+def _read_controllers(root: YamlSection, server: Parameters | None, shape: Mapping[str, Any]) -> Iterator[Controller]:
+    """Return the controllers of a file as laws."""
+    if server is None:
+        raise root.error("hold the section controller_server.ros__parameters", code="missing_key")
+    named = server.get("controller_plugins")
+    names = ["FollowPath"] if named is None else named.texts()
+    found = dict(zip(names, _controllers(server), strict=True))
+    for name, parameters in found.items():
+        if "plugin" not in parameters:
+            above = next(iter(parameters.values()), next(iter(server.values()), root))
+            raise above.error(f"stand beside {name}.plugin, which says what the controller is", code="missing_key")
+    return controllers_of(found, {name: shape.get(name) for name in INFLATION})
