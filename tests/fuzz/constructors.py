@@ -45,7 +45,9 @@ NO_CONSTRUCTORS: dict[type, str] = {
     **dict.fromkeys((nav.metrics.SafetyDecision, nav.metrics.SafetyRecord), "made by record_safety"),
     nav.laws.ShieldDecision: "made by a shield",
     nav.laws.TwistChoice: "made by a law",
-    **dict.fromkeys((arena.Certificate, arena.Ranks), "made by functions of the arena"),
+    **dict.fromkeys(
+        (arena.Certificate, arena.Leaderboard, arena.Ranks, arena.Standing), "made by functions of the arena"
+    ),
     nav.laws.FilterDecision: "made by a filter",
     nav.laws.SafetyFilter: "the base of filters",
     nav.maps.Plan: "made by a map",

@@ -1,10 +1,23 @@
-"""The arena: standard scenes of social navigation, which of them can be solved, and what is asked in each."""
+"""The arena: standard scenes of social navigation, what is asked in each, which can be solved, and how laws fare."""
 
 from hrsafety._calls import suggest
 from hrsafety.arena.cards import CARDS, task_error
 from hrsafety.arena.certificates import Certificate, certify, certify_many
+from hrsafety.arena.leaderboard import Cell, Leaderboard, Standing, run
 from hrsafety.arena.ranking import Ranks, ranks
 
-__all__ = ["CARDS", "Certificate", "Ranks", "certify", "certify_many", "ranks", "task_error"]
+__all__ = [
+    "CARDS",
+    "Cell",
+    "Certificate",
+    "Leaderboard",
+    "Ranks",
+    "Standing",
+    "certify",
+    "certify_many",
+    "ranks",
+    "run",
+    "task_error",
+]
 
 suggest(__all__, globals())

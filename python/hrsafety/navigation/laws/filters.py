@@ -45,8 +45,8 @@ class FilterDecision:
         least; ``"touching"``, where somebody is within the distance that is kept, and the robot brakes; ``"stopped"``,
         where no share of the wanted velocity is safe.
     slack : float
-        By how much all half-planes of the rule are given up where it is infeasible, in m/s; of `CollisionCone` in m/s^2.
-        NaN where the limits of the robot themselves contradict each other, and it brakes.
+        By how much all half-planes of the rule are given up where it is infeasible, in m/s; of `CollisionCone` in
+        m/s^2. NaN where the limits of the robot themselves contradict each other, and it brakes.
     share : float
         Share of the wanted velocity that `VelocityClamp` and `ApproachMonitor` let through; of others 1.
     """
