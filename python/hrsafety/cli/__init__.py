@@ -169,6 +169,7 @@ _COMMANDS: dict[str, str | Callable[[argparse.Namespace], None]] = {
     "judge": _judge,
     "record": "record:judge_records",
     "benchmark": "benchmark:run_suite",
+    "arena": "arena:run_arena",
     "ros": "ros:serve_world",
     "play": "play:play_world",
     "init": "init:write_starter",

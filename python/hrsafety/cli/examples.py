@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 __all__ = [
+    "ARENA",
     "ARM",
     "BENCHMARK",
     "CONTACT",
@@ -92,6 +93,14 @@ BENCHMARK = """examples:
 
 Episodes are kept in the folder as they come; the same command resumes there. Shares stand with their
 95 % Wilson intervals. A contact is at fault where the robot moves toward whom it touches.
+"""
+
+ARENA = """examples:
+  hrsafety arena --laws orca+shield+yielding straight+barrier --seeds 20 --out arena
+  hrsafety arena --scenes narrow_doorway blind_corner --people not_reacting --sensing exact noise_delay
+
+Finished tasks are kept in the folder; the same or a larger command resumes there. The page can be sorted, and
+every row has the command that makes its episodes again.
 """
 
 ROS = """examples:

@@ -35,6 +35,18 @@ SUITE_NAMES = (
     *("unknown_barn", "dead_ends"),
 )
 """Suites of `hrsafety.benchmarks`, named here so that ``--help`` need not load them."""
+ARENA_LAWS = (
+    "straight",
+    "field",
+    "orca(horizon=2,margin=0.05)",
+    "velocity_obstacle",
+    "straight+barrier",
+    "straight+collision_cone",
+    "orca(horizon=2,margin=0.05)+barrier",
+    "orca(horizon=2,margin=0.05)+shield+yielding",
+    "field+shield+yielding",
+)
+"""Entries of the arena without others."""
 
 STARTERS = {
     "scenario": "my_first_crossing.toml",
@@ -129,6 +141,7 @@ def parser() -> argparse.ArgumentParser:
     _add_judge(commands)
     _add_record(commands)
     _add_benchmark(commands)
+    _add_arena(commands)
     _add_ros(commands)
     _add_zones(commands)
     _add_play(commands)
@@ -537,6 +550,35 @@ def _add_benchmark(commands: Any) -> None:
     parser.add_argument("--seed", type=_count, metavar="N", help="seed of the draw [of the protocol]")
     parser.add_argument("--data", metavar="DIR", help="folder with recordings (.csv), BARN or DynaBARN worlds (.json)")
     parser.add_argument("--out", metavar="DIR", help="folder for rows, tables (CSV) and a page; resumed from there")
+    parser.add_argument("--threads", type=_count, metavar="N", help="number of threads [all cores]")
+
+
+def _add_arena(commands: Any) -> None:
+    parser = _add_command(
+        commands,
+        "arena",
+        summary="run laws and filters through the standard scenes and show how they stand",
+        example=examples.ARENA,
+    )
+    _add_shared(parser)
+    parser.add_argument(
+        "--laws",
+        nargs="+",
+        metavar="LAW",
+        default=ARENA_LAWS,
+        help="laws with their parts, as orca+shield+yielding or straight+barrier(margin=0.2) [nine]",
+    )
+    parser.add_argument("--scenes", nargs="+", metavar="SCENE", help="standard scenes, as narrow_doorway [all]")
+    parser.add_argument("--seeds", type=_count, default=20, metavar="N", help="seeds of each scene [%(default)s]")
+    people = ("reacting", "not_reacting")
+    parser.add_argument(
+        "--people", nargs="+", choices=people, default=people, help="whether people notice the robot [both]"
+    )
+    sensing = ("exact", "noise", "noise_delay")
+    parser.add_argument(
+        "--sensing", nargs="+", choices=sensing, default=sensing[:1], help="how people are measured [exact]"
+    )
+    parser.add_argument("--out", metavar="DIR", help="folder for episodes and a page; resumed from there")
     parser.add_argument("--threads", type=_count, metavar="N", help="number of threads [all cores]")
 
 

@@ -122,6 +122,8 @@ class Report:
         The file that was read, as given.
     made : str or None
         When it was made, as the page prints it; ``None``: now, empty: the page does not say, and is the same each time.
+    sorts : bool
+        Whether a click on a title sorts its table.
     """
 
     title: str
@@ -136,6 +138,7 @@ class Report:
     files: Sequence[str] = ()
     source: str = ""
     made: str | None = None
+    sorts: bool = False
 
     @property
     def printed(self) -> list[ReportTable]:
