@@ -69,6 +69,8 @@ def comparison_standings(result: Comparison | Result, *, title: str | None = Non
         raise InvalidParameterError(
             "result", "be a Comparison or the Result of a benchmark", Shown(type(result).__name__)
         )
+    if isinstance(result, Result) and not (result.rows and all(result.rows.values())):
+        raise InvalidParameterError("result.rows", "hold an episode of each entry", Shown("none"))
     names, shares, success = _of_comparison(result) if isinstance(result, Comparison) else _of_benchmark(result)
     figure = style.new_figure(1.35 + ROW_HEIGHT * len(names) + (0.4 if title is not None else 0.0), title=title)
     left, right, places = figure.subplots(1, 3, sharey=True, width_ratios=(3, 3, 2))
@@ -84,7 +86,8 @@ def comparison_standings(result: Comparison | Result, *, title: str | None = Non
         axes.set_xlim(-0.03, 1.03)
         axes.set_xlabel(f"share {episodes}")
         axes.set_title(words)
-    _draw_ranks(places, success)
+    if success.size:
+        _draw_ranks(places, success)
     handles = [
         handle("arrived without contact", marker="o", markersize=7, color=blue),
         handle("with a contact", marker="o", markersize=7, color=red),
