@@ -17,6 +17,7 @@ __all__ = ["BROWSERS", "pdf_of", "require_pdf"]
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome", "msedge")
 """Programs that print a page, looked for on the path in this order."""
 MOST_SECONDS = 120.0
+REMEDY = "print the page in a browser, or pip install weasyprint"
 _DATE = re.compile(rb"/(CreationDate|ModDate) \(D:\d{14}([^)]*)\)")
 _FIXED = b"20000101000000"
 
@@ -61,9 +62,21 @@ def pdf_of(page: str) -> bytes:
         If there is neither a browser nor WeasyPrint.
     """
     require_pdf("a PDF")
-    browser = _browser()
-    made = _by_weasyprint(page) if browser is None else _by_browser(browser, page)
+    made = _printed(page)
     return _DATE.sub(lambda found: b"/" + found[1] + b" (D:" + _FIXED + found[2] + b")", made)
+
+
+def _printed(page: str) -> bytes:
+    """Return what the browser prints, or WeasyPrint where there is no browser or it fails."""
+    browser, other = _browser(), importlib.util.find_spec("weasyprint") is not None
+    if browser is None:
+        return _by_weasyprint(page)
+    try:
+        return _by_browser(browser, page)
+    except HrsafetyError:
+        if not other:
+            raise
+        return _by_weasyprint(page)
 
 
 def _browser() -> str | None:
@@ -89,8 +102,8 @@ def _by_browser(browser: str, page: str) -> bytes:
         try:
             told = subprocess.run(command, capture_output=True, timeout=MOST_SECONDS, check=False)
         except (OSError, subprocess.TimeoutExpired) as error:
-            raise HrsafetyError(f"{browser} printed no PDF ({error}); print the page in a browser instead") from None
+            raise HrsafetyError(f"{browser} printed no PDF ({error}); {REMEDY}") from None
         if not printed.exists():
             last = told.stderr.decode("utf-8", "replace").strip().rpartition("\n")[2]
-            raise HrsafetyError(f"{browser} printed no PDF ({last}); print the page in a browser instead")
+            raise HrsafetyError(f"{browser} printed no PDF ({last}); {REMEDY}")
         return printed.read_bytes()

@@ -14,7 +14,8 @@ pytest.importorskip("matplotlib")
 from api.read_pages import page_of
 from hrsafety import pages
 from hrsafety.cli import main
-from hrsafety.errors import MissingExtraError
+from hrsafety.errors import HrsafetyError, MissingExtraError
+from hrsafety.pages import pdf
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 CROSSING = EXAMPLES / "my_first_crossing.toml"
@@ -97,3 +98,16 @@ def test_what_writes_no_page_works_without_jinja(monkeypatch: pytest.MonkeyPatch
 def test_numbers_that_are_not_finite_are_dashes() -> None:
     values = (1.0, float("nan"), float("inf"), None, "words")
     assert [pages.shown(value) for value in values] == ["1.00", pages.DASH, pages.DASH, pages.DASH, "words"]
+
+
+def test_a_browser_that_prints_nothing_is_told_with_the_remedy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    broken = tmp_path / "broken-browser"
+    broken.write_text("#!/bin/sh\necho no display >&2\n", encoding="utf-8")
+    broken.chmod(0o755)
+    monkeypatch.setattr(pdf, "BROWSERS", (str(broken),))
+    found = importlib.util.find_spec
+    monkeypatch.setattr(
+        importlib.util, "find_spec", lambda each, *more: None if each == "weasyprint" else found(each, *more)
+    )
+    with pytest.raises(HrsafetyError, match=r"no display\); .*pip install weasyprint"):
+        pdf.pdf_of("<!DOCTYPE html><title>x</title>")
