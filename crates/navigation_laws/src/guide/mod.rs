@@ -9,6 +9,7 @@
 mod detour;
 mod guidance;
 mod nodes;
+mod pace;
 mod plan;
 mod search;
 mod standing;
@@ -23,6 +24,7 @@ pub use guidance::Guidance;
 use navigation_world::world::map::StaticMap;
 pub use nodes::MOST_NODES;
 use numeric::error::{Failure, Given, Result, finite_pair, not_negative, positive};
+pub use pace::Pace;
 pub use plan::{LocalGoal, Plan, PlanView};
 pub use standing::Standing;
 pub use takeover::{Takeover, TakeoverOptions, TakeoverRule};
@@ -108,10 +110,24 @@ impl Guide {
         &self,
         map: &StaticMap,
         robot: impl Into<RobotRoom>,
-        [start, goal]: [[f64; 2]; 2],
+        ends: [[f64; 2]; 2],
         stop: Stop<'_>,
     ) -> Result<Plan> {
-        let robot = robot.into();
+        self.paced_plan(map, robot.into(), ends, None, stop)
+    }
+
+    /// The plan in which ways are as dear as a pace makes the robot slow.
+    ///
+    /// # Errors
+    /// Errors of [`Self::plan`].
+    pub(crate) fn paced_plan(
+        &self,
+        map: &StaticMap,
+        robot: RobotRoom,
+        [start, goal]: [[f64; 2]; 2],
+        pace: Option<Pace>,
+        stop: Stop<'_>,
+    ) -> Result<Plan> {
         let robot_radius = positive("radius", robot.least)?;
         finite_pair("start", start)?;
         finite_pair("goal", goal)?;
@@ -125,7 +141,8 @@ impl Guide {
             }
             check_place(name, place, &nodes, map, robot_radius)?;
         }
-        let plan = Plan::new(*self, nodes, map, robot, goal.into(), stop)?;
+        let to = (goal.into(), pace);
+        let plan = Plan::new(*self, nodes, map, robot, to, stop)?;
         if plan.view(start.into()).is_none() {
             let rule = "be reachable from the start";
             let advice = "a gap must be wider than the robot by twice the margin; a smaller spacing finds narrower ones";

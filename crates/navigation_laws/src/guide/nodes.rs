@@ -118,17 +118,20 @@ impl Nodes {
         })
     }
 
-    /// The nodes linked to one, with the lengths of the links in cells.
+    /// The nodes linked to one, with the number and the length of each link in cells.
     #[inline]
-    pub fn linked(&self, node: usize) -> impl Iterator<Item = (usize, f64)> {
+    pub fn linked(&self, node: usize) -> impl Iterator<Item = (usize, usize, f64)> {
         let (column, row) = (node % self.columns, node / self.columns);
         let nodes = *self;
-        LINKS.iter().filter_map(move |(x, y, length)| {
-            let column = column.checked_add_signed(*x)?;
-            let row = row.checked_add_signed(*y)?;
-            let within = column < nodes.columns && row < nodes.rows;
-            within.then_some((row * nodes.columns + column, *length))
-        })
+        LINKS
+            .iter()
+            .enumerate()
+            .filter_map(move |(link, (x, y, length))| {
+                let column = column.checked_add_signed(*x)?;
+                let row = row.checked_add_signed(*y)?;
+                let within = column < nodes.columns && row < nodes.rows;
+                within.then_some((row * nodes.columns + column, link, *length))
+            })
     }
 }
 
@@ -137,7 +140,7 @@ const DIAGONAL: f64 = std::f64::consts::SQRT_2;
 const KNIGHT: f64 = 2.236_067_977_499_79;
 
 /// Steps along the axes, along the diagonals, and of a knight, with their lengths.
-const LINKS: [(isize, isize, f64); 16] = [
+pub(super) const LINKS: [(isize, isize, f64); 16] = [
     (1, 0, 1.0),
     (0, 1, 1.0),
     (-1, 0, 1.0),

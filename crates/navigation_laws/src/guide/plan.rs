@@ -7,6 +7,7 @@ use numeric::order::sort_pairs;
 
 use crate::Stop;
 use crate::guide::nodes::Nodes;
+use crate::guide::pace::Pace;
 use crate::guide::search::{CostToGo, GuideSearch, MapClearance};
 use crate::guide::{Guide, RobotRoom};
 use navigation_world::world::map::StaticMap;
@@ -34,6 +35,8 @@ pub struct Plan {
     /// Least clearance `rho + m_p`, in m.
     least: f64,
     goal: Vector2<f64>,
+    /// Whether ways are dear where people can come from who are not seen.
+    pace: Option<Pace>,
     found: Arc<CostToGo>,
 }
 
@@ -92,6 +95,7 @@ pub(super) struct Planning {
     map: StaticMap,
     least: f64,
     goal: Vector2<f64>,
+    pace: Option<Pace>,
     search: GuideSearch,
 }
 
@@ -102,7 +106,7 @@ impl Planning {
         nodes: Nodes,
         map: &StaticMap,
         robot: RobotRoom,
-        goal: Vector2<f64>,
+        (goal, pace): (Vector2<f64>, Option<Pace>),
     ) -> Result<Self> {
         let least = robot.least + guide.margin;
         let room = MapClearance {
@@ -119,7 +123,8 @@ impl Planning {
             map: map.clone(),
             least,
             goal,
-            search: GuideSearch::new(room, nodes, first),
+            search: GuideSearch::new(room, pace.clone(), nodes, first),
+            pace,
         })
     }
 
@@ -136,6 +141,7 @@ impl Planning {
             map: self.map,
             least: self.least,
             goal: self.goal,
+            pace: self.pace,
             found: Arc::new(self.search.found()),
         }
     }
@@ -148,10 +154,10 @@ impl Plan {
         nodes: Nodes,
         map: &StaticMap,
         robot: RobotRoom,
-        goal: Vector2<f64>,
+        to: (Vector2<f64>, Option<Pace>),
         stop: Stop<'_>,
     ) -> Result<Self> {
-        let mut planning = Planning::new(guide, nodes, map, robot, goal)?;
+        let mut planning = Planning::new(guide, nodes, map, robot, to)?;
         while !planning.advance(BETWEEN_LOOKS) {
             if stop.asked() {
                 return Err(Failure::Interrupted);
@@ -167,7 +173,8 @@ impl Plan {
         map: &StaticMap,
         robot: RobotRoom,
     ) -> Result<Planning> {
-        Planning::new(guide, self.nodes, map, robot, self.goal)
+        let to = (self.goal, self.pace.clone());
+        Planning::new(guide, self.nodes, map, robot, to)
     }
 
     /// The goal in m.

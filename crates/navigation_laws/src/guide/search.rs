@@ -6,6 +6,7 @@ use std::collections::BinaryHeap;
 use nalgebra::Vector2;
 
 use crate::guide::nodes::Nodes;
+use crate::guide::pace::Pace;
 use navigation_world::world::map::StaticMap;
 
 /// Within this distance of the surface of the robot the map makes a way dearer, in m.
@@ -53,6 +54,10 @@ pub(super) struct CostToGo {
 pub(super) struct GuideSearch {
     room: MapClearance,
     nodes: Nodes,
+    /// How many times dearer ways are where people can come from who are not seen, if they are reckoned with, for each
+    /// node and link.
+    pace: Option<Pace>,
+    factors: Vec<Option<Box<[f64; 16]>>>,
     /// Clearances up to `far`, NaN where not yet known.
     clearance: Vec<f64>,
     far: f64,
@@ -69,7 +74,12 @@ fn narrow(node: usize) -> u32 {
 
 impl GuideSearch {
     /// From the goal's node, whose own cost is its distance in m.
-    pub fn new(room: MapClearance, nodes: Nodes, (goal, cost_of_goal): (usize, f64)) -> Self {
+    pub fn new(
+        room: MapClearance,
+        pace: Option<Pace>,
+        nodes: Nodes,
+        (goal, cost_of_goal): (usize, f64),
+    ) -> Self {
         let beyond = room.least - room.robot_radius + 3.0 * nodes.spacing;
         let mut found = CostToGo {
             cost: vec![f64::INFINITY; nodes.count()],
@@ -78,6 +88,8 @@ impl GuideSearch {
         found.cost[goal] = cost_of_goal;
         found.next[goal] = narrow(goal);
         Self {
+            factors: vec![None; pace.as_ref().map_or(0, |_| nodes.count())],
+            pace,
             clearance: vec![f64::NAN; nodes.count()],
             far: (room.robot_radius + NEAR.max(beyond)).max(room.turning_radius + TURNING_ROOM),
             room,
@@ -114,16 +126,19 @@ impl GuideSearch {
         let nodes = self.nodes;
         let (place, clearance) = (nodes.place(node), self.clearance_of(node));
         let weight = self.weight(clearance);
-        for (other, cells) in nodes.linked(node) {
+        for (other, link, cells) in nodes.linked(node) {
             let length = cells * nodes.spacing;
             // The weight of the other end is one at least.
             if cost + length * 0.5 * (weight + 1.0) >= self.found.cost[other] {
                 continue;
             }
             let there = self.clearance_of(other);
-            let total = cost + length * 0.5 * (weight + self.weight(there));
-            if there >= self.room.least
-                && total < self.found.cost[other]
+            if there < self.room.least {
+                continue;
+            }
+            let [near, far] = [node, other].map(|end| self.factor(end, link));
+            let total = cost + length * 0.5 * (weight * near + self.weight(there) * far);
+            if total < self.found.cost[other]
                 && self.free_link([place, nodes.place(other)], [clearance, there], length)
             {
                 self.found.cost[other] = total;
@@ -131,6 +146,16 @@ impl GuideSearch {
                 self.queue.push(Reverse((total.to_bits(), other)));
             }
         }
+    }
+
+    /// How many times dearer it is at a node to go against a link.
+    fn factor(&mut self, node: usize, link: usize) -> f64 {
+        let Some(pace) = &self.pace else {
+            return 1.0;
+        };
+        let place = self.nodes.place(node);
+        let known = self.factors[node].get_or_insert_with(|| Box::new(pace.factors(place)));
+        known[link]
     }
 
     fn clearance_of(&mut self, node: usize) -> f64 {
