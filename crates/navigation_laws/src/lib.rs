@@ -83,6 +83,46 @@ use navigation_world::world::map::StaticMap;
 use navigation_world::world::scenario::{PlacedObstacle, Scenario};
 use numeric::error::{Failure, Given, Result};
 use numeric::lanes::{Real, Vector2};
+use unknown_places::unseen::Belief;
+
+/// What was scanned since a law was asked last, for laws that reckon with people whom nobody sees.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Scan<'a> {
+    /// What is shown.
+    pub shown: Shown<'a>,
+    /// How much more time than the clock tells may have gone by since then, in s.
+    pub more: f64,
+}
+
+/// What a scan shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Shown<'a> {
+    /// Nothing was scanned.
+    #[default]
+    Nothing,
+    /// All obstacles up to a range in m, hidden or not: the law itself scans the map that it knows with them in it.
+    All {
+        /// In m.
+        range: f64,
+    },
+    /// Ends in m of beams that a lidar measured; those that read nothing end where they begin.
+    Beams {
+        /// Position of the lidar in m.
+        from: [f64; 2],
+        /// Ends of the beams in m.
+        ends: &'a [[f64; 2]],
+    },
+}
+
+impl Scan<'static> {
+    /// A scan by the law itself, which is shown everything.
+    pub const ALL: Self = Self {
+        shown: Shown::All {
+            range: f64::INFINITY,
+        },
+        more: 0.0,
+    };
+}
 
 /// What a law knows when it is asked for a force. `B`: numbers of the scene, which robots side by
 /// side share, or which each of them has for itself.
@@ -100,6 +140,8 @@ pub struct Situation<'a, R: Real> {
     pub heading: f64,
     /// How long the force will act, in s.
     pub interval: f64,
+    /// What was scanned.
+    pub scan: Scan<'a>,
     /// Whether to stop.
     pub stop: Stop<'a>,
 }
@@ -139,6 +181,29 @@ impl<R: Real> Command<R> {
     }
 }
 
+/// What a law knows of those whom it does not see.
+#[derive(Clone, Debug)]
+pub struct Unwatched<'a> {
+    /// Where they can be.
+    pub belief: &'a Belief,
+    /// Who is tracked, in the order of the obstacles.
+    pub tracked: Vec<bool>,
+    /// Who was where nobody was reckoned with: for them an assumption about people who are not seen is refuted.
+    pub unexpected: &'a [usize],
+}
+
+impl Unwatched<'_> {
+    /// Centers in m of the cells where those can be who are not tracked.
+    #[must_use]
+    pub fn places(&self) -> Vec<[f64; 2]> {
+        let (cells, ground) = (self.belief.cells(), self.belief.ground());
+        cells
+            .iter()
+            .map(|cell| ground.center(cell).into())
+            .collect()
+    }
+}
+
 /// A law for robots side by side; it may remember what it needs between two samples.
 pub trait Law<R: Real>: Send {
     /// Whether a command takes so long that the caller is asked at each of them whether to stop.
@@ -175,6 +240,11 @@ pub trait Law<R: Real>: Send {
 
     /// Record of the parts around the law in the last control period, if there are any.
     fn trace(&self) -> Option<Trace> {
+        None
+    }
+
+    /// Where those can be whom nobody sees, if the law reckons with them.
+    fn unseen(&self) -> Option<Unwatched<'_>> {
         None
     }
 
@@ -233,6 +303,10 @@ pub trait LawFamily: Send + Sync {
     }
     /// True for a law that steers a robot with two wheels by velocities, not by a point mass to follow.
     fn steers_by_velocity(&self) -> bool {
+        false
+    }
+    /// Whether it scans its map by itself, to reckon with people whom it does not see.
+    fn scans(&self) -> bool {
         false
     }
     /// Map that the law knows, beside the obstacles of a scenario: runs count contacts with it.

@@ -8,7 +8,7 @@ use std::hint::black_box;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use vff_core::lanes::{Lanes, Planar, Real, Vector2};
 use vff_core::laws::field::gains::GainLanes;
-use vff_core::laws::{ForceFieldLaw, Law, Situation, Stop};
+use vff_core::laws::{ForceFieldLaw, Law, Scan, Situation, Stop};
 use vff_core::world::geometry::{Body, RobotState};
 use vff_core::world::scenario::Scenario;
 
@@ -48,6 +48,7 @@ fn width<R: Real>(
                 bodies: black_box(&bodies),
                 robot: black_box(robot),
                 interval: 0.06,
+                scan: Scan::default(),
                 stop: Stop::never(),
             };
             law.command(&situation)

@@ -8,7 +8,7 @@ use vff_core::lanes::{Planar, Vector2};
 use vff_core::laws::field_d_star::{FieldDStar, FieldDStarPlanner};
 use vff_core::laws::planning::Planner;
 use vff_core::laws::tree::{RapidlyExploringRandomTree, TreePlanner};
-use vff_core::laws::{Situation, Stop};
+use vff_core::laws::{Scan, Situation, Stop};
 use vff_core::robots::HolonomicRobot;
 use vff_core::world::geometry::{Body, RobotState};
 use vff_core::world::motion::BodyState;
@@ -114,6 +114,7 @@ fn measure<P: Planner>(
                     velocity: Vector2::splat([-0.7, 0.0]),
                 },
                 interval: PERIOD,
+                scan: Scan::default(),
                 stop: Stop::never(),
             }))
         });

@@ -89,6 +89,12 @@ impl WorldRun {
         Ok(robot_of(&world, robot)?.trace().as_ref().map(told))
     }
 
+    /// Centers in m of the cells where the law of a robot reckons with people whom it does not see, if it does.
+    fn unseen_places(&self, robot: usize) -> PyResult<Option<Vec<[f64; 2]>>> {
+        let world = self.0.idle()?;
+        Ok(robot_of(&world, robot)?.unseen_places())
+    }
+
     /// Number of the person whom each obstacle that a robot sees is, if it is one; none where sensors tell of them.
     fn people(&self, robot: usize) -> PyResult<Vec<Option<usize>>> {
         let world = self.0.idle()?;

@@ -77,6 +77,11 @@ impl Controller {
         fields_of(py, &order)
     }
 
+    /// Who was seen in the last update where the law reckoned with nobody.
+    fn unexpected(&self) -> PyResult<Vec<usize>> {
+        Ok(self.0.idle()?.unexpected())
+    }
+
     /// Who is there, as far as is known, in the order of the obstacles.
     fn present(&self) -> PyResult<Vec<bool>> {
         Ok(self.0.idle()?.present().collect())

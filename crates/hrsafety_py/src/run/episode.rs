@@ -126,6 +126,11 @@ impl Run {
         Ok(self.0.idle()?.trace().as_ref().map(told))
     }
 
+    /// Centers in m of the cells where the law reckons with people whom it does not see, if it does.
+    fn unseen_places(&self, _robot: usize) -> PyResult<Option<Vec<[f64; 2]>>> {
+        Ok(self.0.idle()?.unseen_places())
+    }
+
     /// Plan that the shield verified last, if there is one.
     fn examined(&self, _robot: usize) -> PyResult<Option<Verified>> {
         Ok(self.0.idle()?.examined().map(verified))

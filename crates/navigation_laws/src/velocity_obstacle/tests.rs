@@ -1,5 +1,5 @@
 use super::*;
-use crate::Stop;
+use crate::{Scan, Stop};
 use navigation_world::robots::HolonomicRobot;
 use navigation_world::world::geometry::{Body, RobotState};
 use navigation_world::world::motion::Motion;
@@ -113,6 +113,7 @@ fn the_most_promising_lines_give_the_velocity_of_all_candidates() {
                 robot,
                 heading: 0.0,
                 interval: INTERVAL,
+                scan: Scan::default(),
                 stop: Stop::never(),
             };
             planner.look(&situation, settings.margin);

@@ -13,7 +13,7 @@ use crate::run::navigation::MeasuredState;
 use crate::run::{AnyLaw, Interrupted, Request};
 use navigation_laws::Law;
 use navigation_laws::trace::{Examined, Trace};
-use navigation_laws::{Situation, Stop, force_toward, send};
+use navigation_laws::{Scan, Situation, Stop, force_toward, send};
 use navigation_world::robots::drives::{MotorDrive, PointMass, Reading};
 use navigation_world::world::geometry::RobotState;
 use navigation_world::world::scenario::{Rules, Scenario};
@@ -119,6 +119,10 @@ fn shown<'a>(
     Situation {
         bodies: sensing.map_or(bodies, |sensing| sensing.sensors.bodies(bodies)),
         ages: sensing.map_or(&[], |sensing| sensing.sensors.ages()),
+        scan: match sensing {
+            Some(sensing) if sensing.sensors.tells() => Scan::default(),
+            _ => sight.scan(),
+        },
         ..situation
     }
 }
@@ -253,6 +257,12 @@ impl CrowdRobot {
         self.law()?.trace()
     }
 
+    /// Centers in m of the cells where people can be whom nobody sees, if the law reckons with them.
+    #[must_use]
+    pub fn unseen_places(&self) -> Option<Vec<[f64; 2]>> {
+        Some(self.law()?.unseen()?.places())
+    }
+
     /// What parts around the law verified in the last control period, if there is a shield.
     #[must_use]
     pub fn examined(&self) -> Option<Examined> {
@@ -301,6 +311,7 @@ impl CrowdRobot {
                 robot: known.robot,
                 heading: measured.unwrap_or(heading),
                 interval,
+                scan: Scan::default(),
                 stop: Stop::never(),
             };
             Some(shown(situation, &pilot.sight, pilot.sensing.as_ref()))
@@ -389,6 +400,7 @@ impl CrowdRobot {
             robot: known.robot,
             heading: self.known_heading(),
             interval: self.interval,
+            scan: Scan::default(),
             stop: Stop(interrupted),
         };
         let toward =

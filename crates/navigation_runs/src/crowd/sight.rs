@@ -7,6 +7,7 @@ use crate::crowd::models::Model;
 use crate::crowd::people::{PersonState, Purpose, fastest, stream_of};
 use crate::crowd::walls::Wall;
 use crate::crowd::world::{CrowdWorld, Traits, count_of};
+use navigation_laws::{Scan, Shown};
 use navigation_world::sensing::measurement::{Measurement, Noise};
 use navigation_world::world::geometry::{Body, RobotState};
 use navigation_world::world::motion::{BodyState, Motion};
@@ -176,7 +177,8 @@ impl Sight {
         let sight = Self {
             guests,
             range: robot.sensing_range,
-            occlusion: robot.occlusion,
+            // Who scans by himself finds out whom walls hide: a person whose center is hidden may be seen.
+            occlusion: robot.occlusion && !robot.law.as_ref().is_some_and(|law| law.scans()),
             index,
             // A robot as built has sensors, of which its measurement is one.
             blur: robot
@@ -257,6 +259,14 @@ impl Sight {
             }
             Slot::Robot(other) => Some((robots[other].position, robots[other].velocity)),
             Slot::Guest(_, None) | Slot::Wall => None,
+        }
+    }
+
+    /// Everybody up to the range of sensing: whom walls hide, a law that scans by itself leaves out.
+    pub fn scan(&self) -> Scan<'static> {
+        Scan {
+            shown: Shown::All { range: self.range },
+            more: 0.0,
         }
     }
 

@@ -13,7 +13,7 @@ use crate::run::any_law::AnyLaw;
 use crate::run::as_built::sight::hidden;
 use clock::{ANY, Held, LATE, Last, Reckoned, STANDS};
 use navigation_laws::shield::{Course, ShieldLimits, Status};
-use navigation_laws::{Law, Situation, Stop};
+use navigation_laws::{Law, Scan, Shown, Situation, Stop};
 use navigation_world::robots::differential::Twist;
 use navigation_world::sensing::lidar::{Lidar, Scans};
 use navigation_world::world::frame::Frame;
@@ -45,6 +45,10 @@ pub struct Controller {
     latency: f64,
     /// How old what is known of each body can be, in s.
     ages: Vec<f64>,
+    /// How much longer than the clock tells it may be since the law was asked last, in s.
+    more: f64,
+    /// Ends of the beams of the scan that is told, in m.
+    ends: Vec<[f64; 2]>,
     /// Time that a clock lacks that was set back for good, in s.
     lacking: f64,
     last: Option<Last>,
@@ -91,6 +95,8 @@ impl Controller {
             bodies: bodies.collect(),
             scans,
             scenario,
+            more: 0.0,
+            ends: Vec::new(),
             lacking: 0.0,
             last: None,
         })
@@ -182,6 +188,7 @@ impl Controller {
             *hidden = hidden.max(more);
         }
         self.hidden_points = self.hidden_points.max(more);
+        self.more += more;
         for seen in told.seen {
             // An older measurement of somebody who is there tells nothing.
             let there = self.bodies[seen.index].state.present;
@@ -254,6 +261,13 @@ impl Controller {
         people.map(|body| body.state.present)
     }
 
+    /// Who of them was seen in the last update where the law reckoned with nobody.
+    #[must_use]
+    pub fn unexpected(&self) -> Vec<usize> {
+        let unseen = self.law.unseen();
+        unseen.map_or_else(Vec::new, |unseen| unseen.unexpected.to_vec())
+    }
+
     /// Forgets who was lost where a scan sees nobody.
     fn scan(&mut self, now: f64, frame: &Frame, ranges: &[f64]) -> Result<()> {
         let people = self.measured.len();
@@ -291,6 +305,7 @@ impl Controller {
         if let Some(ranges) = told.scan {
             self.scan(told.time, &frame, ranges)?;
         }
+        self.show(&frame, told.scan);
         self.date(told.time);
         let period = self.scenario.rules.control_period;
         let late = self
@@ -303,8 +318,20 @@ impl Controller {
             robot,
             heading: told.heading,
             interval: period,
+            scan: Scan {
+                shown: if self.ends.is_empty() {
+                    Shown::Nothing
+                } else {
+                    Shown::Beams {
+                        from: robot.position.into(),
+                        ends: &self.ends,
+                    }
+                },
+                more: self.more,
+            },
             stop,
         });
+        self.more = 0.0;
         if !command.force.norm().is_finite() {
             let time = told.time;
             return Err(Failure::non_finite(0, time));
@@ -329,6 +356,14 @@ impl Controller {
             oldest: self.oldest(told.time),
             unknown_beams: self.unknown_beams(),
         })
+    }
+
+    /// What a scan shows of places that were not seen.
+    fn show(&mut self, frame: &Frame, ranges: Option<&[f64]>) {
+        self.ends.clear();
+        if let Some((scans, ranges)) = self.scans.as_ref().zip(ranges) {
+            scans.ends(frame, ranges, &mut self.ends);
+        }
     }
 
     /// Motion of a robot without a shield: it takes up the command of the law, and brakes if nothing follows.

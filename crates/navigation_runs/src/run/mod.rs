@@ -44,7 +44,7 @@ pub(crate) use nominal::Ways;
 pub(crate) use plan::{Key, RunPlan, key_of};
 pub(crate) use table::min_clearance;
 
-use navigation_laws::{FieldTerms, Situation, Stop};
+use navigation_laws::{FieldTerms, Scan, Situation, Stop};
 use navigation_world::world::geometry::RobotState;
 use navigation_world::world::scenario::Scenario;
 pub use numeric::error::Interrupted;
@@ -90,6 +90,7 @@ fn at_state<T>(
         robot,
         heading: scenario.rules.heading,
         interval: scenario.rules.control_period,
+        scan: Scan::default(),
         stop: Stop::never(),
     }))
 }

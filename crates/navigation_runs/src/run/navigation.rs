@@ -190,6 +190,12 @@ impl<L: Listener> Episode<Navigation<L>> {
         self.parts.law.as_ref()?.trace()
     }
 
+    /// Centers in m of the cells where people can be whom nobody sees, if the law reckons with them.
+    #[must_use]
+    pub fn unseen_places(&self) -> Option<Vec<[f64; 2]>> {
+        Some(self.parts.law.as_ref()?.unseen()?.places())
+    }
+
     /// Plan that was verified in the last control period, if there is a shield.
     #[must_use]
     pub fn examined(&self) -> Option<Examined> {
@@ -288,6 +294,7 @@ impl<L: Listener> Navigation<L> {
             robot: self.known.robot,
             heading: self.known.heading(&*self.robot),
             interval: self.interval,
+            scan: self.sight.scan(),
             stop,
         }
     }

@@ -96,7 +96,13 @@ impl Belief {
     /// Whether somebody at a place in m who is not tracked is reckoned with.
     #[must_use]
     pub fn covers(&self, place: Vector2<f64>) -> bool {
-        let within = eta(self.ground.cell()) * (1.0 + 1e-9);
+        self.covers_within(place, 0.0)
+    }
+
+    /// Whether somebody who is not tracked is reckoned with, within a distance in m of a place.
+    #[must_use]
+    pub fn covers_within(&self, place: Vector2<f64>, within: f64) -> bool {
+        let within = (eta(self.ground.cell()) + within) * (1.0 + 1e-9);
         let mut near = self.ground.around(place, within);
         near.any(|cell| self.cells.contains(cell))
     }

@@ -41,6 +41,7 @@ impl CellSet {
     }
 
     /// Columns and rows of the grid.
+    #[inline]
     #[must_use]
     pub fn size(&self) -> [usize; 2] {
         [self.columns, self.rows]

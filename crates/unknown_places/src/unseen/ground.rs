@@ -103,6 +103,7 @@ impl Ground {
     }
 
     /// Side of a cell in m.
+    #[inline]
     #[must_use]
     pub fn cell(&self) -> f64 {
         self.cell
@@ -115,18 +116,21 @@ impl Ground {
     }
 
     /// Columns and rows.
+    #[inline]
     #[must_use]
     pub fn size(&self) -> [usize; 2] {
         self.walkable.size()
     }
 
     /// Cells in which the center of a person can be.
+    #[inline]
     #[must_use]
     pub fn walkable(&self) -> &CellSet {
         &self.walkable
     }
 
     /// Cells that may hold a part of a wall.
+    #[inline]
     #[must_use]
     pub fn occupied(&self) -> &CellSet {
         &self.occupied

@@ -10,7 +10,9 @@ use vff_core::laws::planning::family::Planned;
 use vff_core::laws::reciprocal::ReciprocalAvoidance;
 use vff_core::laws::tree::RapidlyExploringRandomTree;
 use vff_core::laws::velocity_obstacle::VelocityObstacle;
-use vff_core::laws::{BorensteinKoren, GeCui, Khatib, KhatibForm, Law, Masoud, Situation, Stop};
+use vff_core::laws::{
+    BorensteinKoren, GeCui, Khatib, KhatibForm, Law, Masoud, Scan, Situation, Stop,
+};
 use vff_core::robots::HolonomicRobot;
 use vff_core::run::metrics::Weights;
 use vff_core::run::{
@@ -74,6 +76,7 @@ fn force(field: impl PairwiseField<f64>, velocity: [f64; 2], discs: &[Disc]) -> 
         bodies: &bodies,
         robot,
         interval,
+        scan: Scan::default(),
         stop: Stop::never(),
     };
     law.command(&situation).force.lane(0)

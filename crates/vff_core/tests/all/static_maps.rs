@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use proptest::prelude::*;
 use vff_core::laws::field_d_star::{FieldDStar, FieldDStarPlanner};
 use vff_core::laws::tree::{RapidlyExploringRandomTree, TreePlanner};
-use vff_core::laws::{Situation, Stop};
+use vff_core::laws::{Scan, Situation, Stop};
 use vff_core::robots::HolonomicRobot;
 use vff_core::world::geometry::RobotState;
 use vff_core::world::map::{Capsule, GridPlace, MapShapes, StaticMap};
@@ -308,6 +308,7 @@ fn alone(place: [f64; 2]) -> Situation<'static, f64> {
         },
         heading: 0.0,
         interval: 0.06,
+        scan: Scan::default(),
         stop: Stop::never(),
     }
 }

@@ -7,7 +7,7 @@ use vff_core::laws::BorensteinKoren;
 use vff_core::laws::pairwise::Pairwise;
 use vff_core::laws::planning::family::Planned;
 use vff_core::laws::velocity_obstacle::{Selection, VelocityObstacle, VelocityObstaclePlanner};
-use vff_core::laws::{Situation, Stop};
+use vff_core::laws::{Scan, Situation, Stop};
 use vff_core::robots::HolonomicRobot;
 use vff_core::run::metrics::clearances;
 use vff_core::run::{AnyLaw, Options, Outcome, RunSummary, simulate};
@@ -92,6 +92,7 @@ fn has_a_way(scenario: &Scenario, selection: Selection) -> bool {
         bodies: &bodies,
         robot,
         interval,
+        scan: Scan::default(),
         stop: Stop::never(),
     };
     let mut planner = VelocityObstaclePlanner::new(exact, scenario);

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::run::as_built::AsBuilt;
+use navigation_laws::Scan;
 use navigation_world::robots::drives::{PoseFix, Reading};
 use navigation_world::sensing::noisy::NoisyPositions;
 use navigation_world::sensing::sensor::{Sensor, Truth};
@@ -79,6 +80,15 @@ impl BuiltSensors {
     /// Whether a law knows the obstacles that sensors tell of, in place of those that there are.
     pub fn tells(&self) -> bool {
         self.known.is_some()
+    }
+
+    /// What a law can scan by itself: nothing where sensors tell of obstacles in their own way.
+    pub fn scan(&self) -> Scan<'static> {
+        if self.tells() {
+            Scan::default()
+        } else {
+            Scan::ALL
+        }
     }
 
     /// Shows the scene at an instant, at the start of every motion step.

@@ -11,7 +11,7 @@ use crate::run::plan::RunPlan;
 use crate::run::record::Recorder;
 use crate::run::runs::{Dormant, LaneState};
 use crate::run::walls::Maps;
-use navigation_laws::{Law, Situation, Stop};
+use navigation_laws::{Law, Scan, Situation, Stop};
 use navigation_world::world::geometry::RobotState;
 use navigation_world::world::scenario::Scenario;
 use navigation_world::world::shape::Shape;
@@ -340,6 +340,7 @@ impl<'a, R: Real> Relay<'a, R> {
             robot,
             heading: common.rules.heading,
             interval: runs.clock.interval,
+            scan: Scan::ALL,
             stop,
         });
         runs.check_force(command.force, time)?;
@@ -415,6 +416,7 @@ impl<'a, R: Real> Relay<'a, R> {
                 robot,
                 heading,
                 interval: clock.interval,
+                scan: Scan::ALL,
                 stop,
             };
             law.command(&situation).force

@@ -394,6 +394,7 @@ impl Parts for PursuitParts<'_> {
             robot: self.known.robot,
             heading: self.known.heading(&*self.robot),
             interval: self.interval,
+            scan: self.sight.scan(),
             stop: Stop(interrupted),
         });
         if !command.force.norm().is_finite() {

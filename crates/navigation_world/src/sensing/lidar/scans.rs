@@ -101,6 +101,21 @@ impl Scans {
         &self.instants
     }
 
+    /// Ends of the beams of a scan from a pose, in m; those that read nothing, or something too near, end where they
+    /// begin.
+    pub fn ends(&self, pose: &Frame, ranges: &[f64], ends: &mut Vec<[f64; 2]>) {
+        let options = &self.options;
+        ends.extend(ranges.iter().enumerate().map(|(beam, range)| {
+            let (sin, cos) = options.bearing(beam).sin_cos();
+            let known = if range.is_nan() {
+                0.0
+            } else {
+                range.min(options.range_max)
+            };
+            <[f64; 2]>::from(pose.position + pose.outward(Vector2::new(cos, sin) * known))
+        }));
+    }
+
     /// How many beams of the last scan that was told read nothing at all.
     #[must_use]
     pub fn unknown(&self) -> usize {

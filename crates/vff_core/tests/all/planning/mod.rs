@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 use vff_core::lanes::{Planar, Vector2};
 use vff_core::laws::planning::Planner;
-use vff_core::laws::{Situation, Stop};
+use vff_core::laws::{Scan, Situation, Stop};
 use vff_core::robots::HolonomicRobot;
 use vff_core::world::geometry::{Body, RobotState};
 use vff_core::world::motion::BodyState;
@@ -44,6 +44,7 @@ pub fn situation(bodies: &[Body], position: [f64; 2], velocity: [f64; 2]) -> Sit
             velocity: Vector2::splat(velocity),
         },
         interval: 0.06,
+        scan: Scan::default(),
         stop: Stop::never(),
     }
 }
