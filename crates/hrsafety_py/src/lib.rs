@@ -185,7 +185,7 @@ mod _hrsafety {
     };
     #[pymodule_export]
     use crate::safe::{
-        Foresight, SafetyFilter, Shield, Yielding, blind_corner_speeds, guarded_law,
+        Foresight, SafetyFilter, Shield, Unseen, Yielding, blind_corner_speeds, guarded_law,
         shield_speed_bound,
     };
     #[pymodule_export]

@@ -12,6 +12,7 @@ use vff_core::laws::shield::{
     StaticObstacles, TrackingError, View,
 };
 use vff_core::laws::yielding;
+use vff_core::unknown::unseen;
 use vff_core::world::geometry::RobotState;
 
 use crate::errors::CoreError;
@@ -104,6 +105,16 @@ type MotionState = ([f64; 2], [f64; 2]);
 type PersonState = ([f64; 2], f64, [f64; 2]);
 
 value_class! {
+    /// Assumptions about people who are not seen.
+    Unseen(unseen::Unseen) of given {
+        taken!(given: unseen::Unseen {
+            person_radius, person_core, cell, creep_speed, sampling, pose_error, heading_error, range_error,
+            sensing = taken!(given: unseen::Sensing { beams, range, field_of_view }),
+        })
+    }
+}
+
+value_class! {
     /// Assumptions of the shield.
     Shield(shield::Shield) of given {
         let bounds: (Option<f64>, Option<f64>) = (
@@ -116,6 +127,7 @@ value_class! {
         );
         let friendly = friendly.0.zip(friendly.1);
         let (absolute, relative) = given.take("velocity_tracking")?;
+        let unseen: Option<PyRef<'_, Unseen>> = given.take("unseen")?;
         taken!(given: shield::Shield {
             person_speed, latency, position_error,
             velocity_bounds = bounds.0.zip(bounds.1).map(|(error, most)| [error, most]), margin,
@@ -124,6 +136,7 @@ value_class! {
                 reaction_time,
                 deceleration,
             }),
+            unseen = unseen.map(|unseen| unseen.0),
         })
     }
 
@@ -155,6 +168,7 @@ fn seen((position, velocity): MotionState, people: &[Person]) -> View<'_> {
         },
         people,
         walls: StaticObstacles::NONE,
+        hidden: None,
     }
 }
 

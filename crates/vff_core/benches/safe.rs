@@ -145,6 +145,7 @@ fn decisions(criterion: &mut Criterion) {
             robot: robot(),
             people: &people,
             walls: StaticObstacles::NONE,
+            hidden: None,
         };
         let decision = guard.decide(&view, wanted);
         assert_eq!(decision.status, status, "{name}");

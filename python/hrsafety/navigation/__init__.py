@@ -54,6 +54,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     )
     from hrsafety.navigation.laws.safe_navigation import SafeNavigation as SafeNavigation
     from hrsafety.navigation.laws.shield import Shield as Shield
+    from hrsafety.navigation.laws.unseen import Unseen as Unseen
     from hrsafety.navigation.laws.yielding import Yielding as Yielding
     from hrsafety.navigation.many import simulate_many as simulate_many
     from hrsafety.navigation.maps.guide import Guide as Guide

@@ -85,6 +85,7 @@ fn decisions_are_those_of_the_prototype() {
                 robot,
                 people: &people,
                 walls: StaticObstacles::NONE,
+                hidden: None,
             };
             let mut verifier = Verifier::new(&guard, view);
             let take = |target: &Target| {

@@ -40,6 +40,7 @@ impl SafeLaw {
             robot: *robot,
             people: &self.around.people,
             walls: self.around.walls(),
+            hidden: None,
         };
         let mut verifier = guard.map(|guard| Verifier::new(guard, view));
         let step = foreseer.settings().step;

@@ -268,6 +268,7 @@ impl Law<f64> for SafeLaw {
             robot,
             people: &self.around.people,
             walls: self.around.walls(),
+            hidden: None,
         };
         Some(Examined {
             margin: guard.gap(&view, command),
@@ -515,6 +516,7 @@ impl SafeLaw {
             robot: state,
             people: &self.around.people,
             walls: self.around.walls(),
+            hidden: None,
         };
         let outline = self.outline_now(now);
         let (mut twist, status) = match foreseer {
@@ -628,6 +630,7 @@ impl SafeLaw {
             robot: *robot,
             people: &self.around.people,
             walls,
+            hidden: None,
         };
         let kept = self
             .limits

@@ -11,6 +11,7 @@ mod blind;
 mod bound;
 mod course;
 mod half_disc;
+mod hidden;
 mod outline;
 mod person;
 mod plan;
@@ -25,6 +26,7 @@ pub use blind::{BlindCorner, CornerEdge};
 pub use bound::speed_bound;
 pub use course::Course;
 pub use half_disc::half_disc_distance;
+pub use hidden::Hidden;
 pub use outline::{BodyCommand, OutlineGuard};
 pub use person::{KnownVelocity, Person};
 pub use plan::{BrakingPlan, braking, braking_periods};
@@ -35,8 +37,9 @@ pub use verifier::Verifier;
 pub use walls::StaticObstacles;
 
 use navigation_world::world::geometry::RobotState;
-use numeric::error::{Result, not_negative, positive};
+use numeric::error::{Failure, Given, Result, not_negative, positive};
 use numeric::lanes::Vector2;
+use unknown_places::unseen::Unseen;
 
 /// Rounding of speeds, relative.
 const SPEED_ROUNDING: f64 = 1e-9;
@@ -94,6 +97,8 @@ pub struct Shield {
     pub wall_margin: f64,
     /// Whether people are left a way to stop.
     pub friendly: Option<Friendly>,
+    /// Whether it reckons with people whom nobody sees.
+    pub unseen: Option<Unseen>,
 }
 
 impl Default for Shield {
@@ -109,6 +114,7 @@ impl Default for Shield {
             velocity_tracking: TrackingError::default(),
             wall_margin: 0.005,
             friendly: None,
+            unseen: None,
         }
     }
 }
@@ -136,11 +142,19 @@ impl Shield {
             not_negative("reaction_time", friendly.reaction_time)?;
             positive("person_deceleration", friendly.deceleration)?;
         }
+        if let Some(unseen) = self.unseen {
+            unseen.checked().map_err(|error| error.within("unseen"))?;
+            if self.person_speed.is_none() {
+                let rule = "be given for people who are not seen: no scene tells how fast they are";
+                let given = Given::Found("None".into());
+                return Err(Failure::invalid("person_speed", rule, given));
+            }
+        }
         Ok(self)
     }
 
     /// Margin added to the radius of the robot, in m.
-    fn around(&self) -> f64 {
+    pub(crate) fn around(&self) -> f64 {
         self.margin + self.position_tracking
     }
 
@@ -180,7 +194,12 @@ impl Shield {
     }
 
     fn grown(&self, person: &Person) -> f64 {
-        let way = |friendly: Friendly| friendly.stopping_way(person.max_speed);
+        self.grown_at(person.max_speed)
+    }
+
+    /// What is added to the radius of somebody of a speed in m/s at the end of a plan, in m.
+    pub(crate) fn grown_at(&self, speed: f64) -> f64 {
+        let way = |friendly: Friendly| friendly.stopping_way(speed);
         self.friendly.map_or(0.0, way)
     }
 }
@@ -239,7 +258,7 @@ impl ShieldLimits {
     }
 
     /// Longest time until rest, and longest way, from any speed up to `speed`: in s and m.
-    fn horizon(&self, speed: f64) -> [f64; 2] {
+    pub(crate) fn horizon(&self, speed: f64) -> [f64; 2] {
         let fastest = speed.max(self.max_speed);
         let time = (1.0 + braking_periods(fastest, self)) * self.period;
         [time, fastest * time]
@@ -299,6 +318,8 @@ pub struct View<'a> {
     pub people: &'a [Person],
     /// Static obstacles.
     pub walls: StaticObstacles<'a>,
+    /// People whom nobody sees, if they are reckoned with.
+    pub hidden: Option<Hidden<'a>>,
 }
 
 /// The shield of one robot.
@@ -479,7 +500,11 @@ impl Guard {
     ) -> Option<Vector2<f64>> {
         let before = view.robot.velocity;
         let tried = SHARES.iter().map(|share| wanted * *share);
-        let tried = tried.chain([before, braking(before, &self.limits)]);
+        let creep = self.shield.unseen.map_or(0.0, |unseen| unseen.creep_speed);
+        let creep = (creep > 0.0).then(|| wanted * (creep / wanted.norm().max(creep)));
+        let tried = tried
+            .chain([before, braking(before, &self.limits)])
+            .chain(creep);
         let mut first: Option<(f64, Vector2<f64>)> = None;
         for velocity in tried {
             let distance = (velocity - wanted).norm();

@@ -1,6 +1,7 @@
 //! The plan behind a command: take up a velocity within a period, then brake to rest.
 
 use crate::shield::half_disc::Look;
+use crate::shield::hidden::{Hidden, Instant};
 use crate::shield::person::Person;
 use crate::shield::{ShieldLimits, TrackingError};
 use navigation_world::world::geometry::RobotState;
@@ -270,6 +271,50 @@ impl BrakingPlan {
             time = Self::later(time, (clearance - least + accuracy) / rate, until);
         }
         least.min(self.clearance(person, radius, end).0)
+    }
+
+    /// Whether nobody who is not seen can be ahead at any time of the plan, of a robot of a radius in m.
+    pub(super) fn avoids_hidden(&self, hidden: &Hidden<'_>, radius: f64) -> bool {
+        if self.rests() || hidden.lets_creep(self.speed) {
+            return true;
+        }
+        let end = self.end();
+        let parts = (end / hidden.unseen.sampling).ceil().max(1.0);
+        let step = end / parts;
+        let instant = |part: f64| {
+            let time = part * step;
+            let last = part == parts;
+            Instant {
+                time,
+                half: 0.5 * step,
+                position: self.position(time),
+                way: 0.5 * step * (self.speed + self.deviation),
+                radius: radius + if last { hidden.grown } else { 0.0 },
+            }
+        };
+        let clear = |at: &Instant| {
+            // Later the robot is slower, and looks no less far around.
+            let (_, look) = self.part(at.time + at.half);
+            let ramps = at.time - at.half <= self.period;
+            hidden.is_clear(at, |offset| {
+                let along = |look: &Look| look.toward(offset).dot(&offset);
+                let braked = along(&look);
+                if ramps {
+                    self.ramp.iter().map(along).fold(braked, f64::max)
+                } else {
+                    braked
+                }
+            })
+        };
+        // Where it ends is the farthest from where it was verified last.
+        let mut part = parts;
+        while part >= 0.0 {
+            if !clear(&instant(part)) {
+                return false;
+            }
+            part -= 1.0;
+        }
+        true
     }
 
     /// Chords of the way with what the way deviates from them, in m: ramp in four, braking in one.

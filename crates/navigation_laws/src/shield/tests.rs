@@ -11,6 +11,7 @@ const EXACT: Shield = Shield {
     velocity_tracking: TrackingError::EXACT,
     wall_margin: 0.005,
     friendly: None,
+    unseen: None,
 };
 
 /// A row of the check values of plans.
@@ -95,6 +96,7 @@ fn plans_of_the_specification() {
             robot: row.robot(),
             people: &people,
             walls: StaticObstacles::NONE,
+            hidden: None,
         };
         let reached = guard.clipped(&view.robot, row.wanted.into());
         assert!(near(reached, clipped[index], 1e-6));
@@ -153,6 +155,7 @@ fn the_search_is_nearly_as_near_as_a_fine_grid() {
             robot,
             people: &people,
             walls: StaticObstacles::NONE,
+            hidden: None,
         };
         let limits = guard.limits;
         let angle = stream.uniform(0.0, std::f64::consts::TAU);
@@ -212,6 +215,7 @@ fn a_world_that_is_turned_or_mirrored_is_decided_alike() {
                 robot,
                 people,
                 walls: StaticObstacles::NONE,
+                hidden: None,
             };
             guard.decide(&view, wanted)
         };
@@ -342,6 +346,7 @@ fn what_a_robot_does_within_its_tracking_stays_off_everybody_a_verified_plan_avo
             robot,
             people: &people,
             walls: StaticObstacles::NONE,
+            hidden: None,
         };
         let angle = stream.uniform(0.0, std::f64::consts::TAU);
         let wanted = Vector2::new(angle.cos(), angle.sin()) * limits.max_speed;

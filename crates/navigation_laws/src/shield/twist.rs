@@ -5,6 +5,7 @@ mod plan;
 pub use plan::{TwistLimits, TwistState};
 
 use crate::foresight::{Driven, Target};
+use crate::shield::hidden::Hidden;
 use crate::shield::person::Person;
 use crate::shield::walls::StaticObstacles;
 use crate::shield::{Shield, ShieldLimits, Status};
@@ -48,6 +49,8 @@ pub struct TwistView<'a> {
     pub people: &'a [Person],
     /// Static obstacles.
     pub walls: StaticObstacles<'a>,
+    /// People whom nobody sees, if they are reckoned with.
+    pub hidden: Option<Hidden<'a>>,
 }
 
 impl TwistGuard {
@@ -154,7 +157,9 @@ impl TwistGuard {
         let plan = TwistPlan::new(&view.robot, command, &self.limits, tracking);
         let radius = self.limits.radius;
         let avoids = |person: &Person| plan.avoids(person, radius, self.shield.grown(person));
-        view.people.iter().all(avoids) && self.off_walls(&view.walls, &plan)
+        let apart = view.people.iter().all(avoids) && self.off_walls(&view.walls, &plan);
+        let hidden = view.hidden.as_ref();
+        apart && hidden.is_none_or(|hidden| plan.avoids_hidden(hidden, radius))
     }
 
     fn off_walls(&self, walls: &StaticObstacles<'_>, plan: &TwistPlan) -> bool {
@@ -220,6 +225,11 @@ impl TwistGuard {
             ..wanted
         });
         found.extend(rests);
+        let creep = self.shield.unseen.map_or(0.0, |unseen| unseen.creep_speed);
+        found.extend((creep > 0.0).then(|| Twist {
+            speed: wanted.speed.clamp(-creep, creep),
+            ..wanted
+        }));
         found.push(Twist::default());
         found.push(robot.twist);
         found.push(self.limits.braking(robot.twist));
@@ -246,6 +256,7 @@ mod tests {
         velocity_tracking: TrackingError::EXACT,
         wall_margin: 0.005,
         friendly: None,
+        unseen: None,
     };
 
     fn guard() -> TwistGuard {
@@ -274,6 +285,7 @@ mod tests {
             robot: state,
             people,
             walls: StaticObstacles::NONE,
+            hidden: None,
         }
     }
 
@@ -399,6 +411,7 @@ mod tests {
                     robot,
                     people: &people,
                     walls: StaticObstacles::NONE,
+                    hidden: None,
                 };
                 // Bounds between nodes may refuse more, never less.
                 if twists.verified(&view, twist) {

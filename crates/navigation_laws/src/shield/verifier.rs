@@ -68,11 +68,13 @@ impl<'a> Verifier<'a> {
             self.suspect = index;
             return false;
         }
-        self.kept.is_none_or(|kept| {
+        let off_walls = self.kept.is_none_or(|kept| {
             let apart = |([from, to], deviation): ([Vector2<f64>; 2], f64)| {
                 self.view.walls.segment_keeps(from, to, kept + deviation)
             };
             plan.chords().all(apart)
-        })
+        });
+        let hidden = self.view.hidden.as_ref();
+        off_walls && hidden.is_none_or(|hidden| plan.avoids_hidden(hidden, limits.radius))
     }
 }

@@ -141,7 +141,7 @@ proptest! {
             max_speed: speed,
             ..Person::disc([0.0; 2], 1.0)
         }];
-        let view = View { robot, people: &people, walls: StaticObstacles::NONE };
+        let view = View { robot, people: &people, walls: StaticObstacles::NONE, hidden: None };
         prop_assume!(guard.verified(&view, command));
         let plan = BrakingPlan::new(&robot, command, &guard.limits, TrackingError::EXACT);
         for step in 0..=60 {

@@ -61,6 +61,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     )
     from hrsafety.navigation.laws.situation import PointMass as PointMass, Situation as Situation
     from hrsafety.navigation.laws.twists import TwistChoice as TwistChoice
+    from hrsafety.navigation.laws.unseen import Unseen as Unseen
     from hrsafety.navigation.laws.yielding import Yielding as Yielding
 else:
     __all__, __getattr__, __dir__ = names_of(__name__)

@@ -9,10 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Parameters, not_negative, number, numbers, pair, positive
+from hrsafety._arguments import Array, Parameters, instance, not_negative, number, numbers, pair, positive
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.navigation.laws.unseen import Unseen
 
 __all__ = ["Shield", "ShieldDecision", "speed_bound"]
 
@@ -86,6 +87,8 @@ class Shield(Parameters):
     reaction_time, person_deceleration : float or None
         Passive friendly safety: people are left the way in which they stop, ``v t_r + v^2/(2 b)``.
         Both or neither, in s and m/s^2.
+    unseen : Unseen or None
+        Whether it reckons with people who are not seen, and what it assumes of them; the law then needs a map.
 
     Raises
     ------
@@ -112,6 +115,7 @@ class Shield(Parameters):
     velocity_tracking: tuple[float, float] = (0.0, 0.02)
     reaction_time: float | None = None
     person_deceleration: float | None = None
+    unseen: Unseen | None = None
     _native: _hrsafety.Shield = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -134,6 +138,9 @@ class Shield(Parameters):
             self._set(position_tracking=number("position_tracking", self.position_tracking))
         self._set(velocity_tracking=pair("velocity_tracking", self.velocity_tracking))
         values |= {name: getattr(self, name) for name in ("margin", "wall_margin", "velocity_tracking")}
+        if self.unseen is not None:
+            instance("unseen", self.unseen, Unseen)
+        values["unseen"] = None if self.unseen is None else self.unseen._native
         self._set(_native=_hrsafety.Shield(**values, position_tracking=self.position_tracking or 0.0))
 
     def decide(
@@ -190,6 +197,9 @@ class Shield(Parameters):
         """
         if self.person_speed is None:
             raise InvalidParameterError("person_speed", "be given where there is no scene", None)
+        if self.unseen is not None:
+            remedy = "ask a SafeNavigation or a Controller with a map"
+            raise InvalidParameterError("unseen", "be None where there is no map", self.unseen, remedy)
         limits = [
             positive(name, value)
             for name, value in (

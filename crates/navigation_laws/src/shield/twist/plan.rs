@@ -2,6 +2,7 @@
 
 use crate::shield::TrackingError;
 use crate::shield::half_disc::Look;
+use crate::shield::hidden::{Hidden, Instant};
 use crate::shield::person::Person;
 use crate::shield::walls::{ROUNDING, StaticObstacles};
 use navigation_world::robots::differential::{DifferentialLimits, Twist};
@@ -119,6 +120,14 @@ impl Ahead {
         Self::Union([unit(from) * sign, unit(to) * sign])
     }
 
+    /// How far ahead an offset lies, in m.
+    fn along(&self, offset: Vector2<f64>) -> f64 {
+        match self {
+            Self::Union(looks) => looks[0].dot(&offset).max(looks[1].dot(&offset)),
+            Self::Around => f64::INFINITY,
+        }
+    }
+
     fn clearance(&self, person: &Person, place: Vector2<f64>, radius: f64, time: f64) -> f64 {
         let [one, other] = match self {
             Self::Union(both) => *both,
@@ -209,6 +218,29 @@ impl TwistPlan {
         let last = &self.braking[PARTS];
         let ahead = &self.ahead[1][PARTS - 1];
         grown == 0.0 || ahead.clearance(person, last.position, radius + grown, end) > 0.0
+    }
+
+    /// Whether nobody who is not seen can be ahead at any time of the plan, of a robot of a radius in m.
+    pub(super) fn avoids_hidden(&self, hidden: &Hidden<'_>, radius: f64) -> bool {
+        if self.speed < STILL || hidden.lets_creep(self.speed) {
+            return true;
+        }
+        let end = self.braking[PARTS].time;
+        self.parts().into_iter().all(|(nodes, looks)| {
+            let half = 0.5 * (nodes[1].time - nodes[0].time);
+            nodes.iter().enumerate().all(|(index, node)| {
+                let at = Instant {
+                    time: node.time,
+                    half,
+                    position: node.position,
+                    way: half * (self.speed + self.deviation),
+                    radius: radius + if node.time == end { hidden.grown } else { 0.0 },
+                };
+                // What a look sees, the next one sees, too.
+                let ahead = &looks[index.min(PARTS - 1)];
+                hidden.is_clear(&at, |offset| ahead.along(offset))
+            })
+        })
     }
 
     /// Whether the whole way keeps `least` m from walls, with the sagitta of each part to spare. Where the robot
