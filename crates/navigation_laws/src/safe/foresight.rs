@@ -3,7 +3,10 @@
 use crate::foresight::{AcceptedTarget, Driven, Foreseer, Scene, Target, taken_up};
 use crate::guide::Guidance;
 use crate::safe::law::SafeLaw;
-use crate::shield::{Decision, Guard, Status, TwistGuard, TwistView, Verifier, View, braking};
+use crate::safe::watch::Watch;
+use crate::shield::{
+    Decision, Guard, Shield, Status, TwistGuard, TwistView, Verifier, View, braking,
+};
 use navigation_world::robots::differential::Twist;
 use navigation_world::world::geometry::RobotState;
 use numeric::lanes::Vector2;
@@ -40,7 +43,7 @@ impl SafeLaw {
             robot: *robot,
             people: &self.around.people,
             walls: self.around.walls(),
-            hidden: None,
+            hidden: self.watch.as_ref().map(Watch::hidden),
         };
         let mut verifier = guard.map(|guard| Verifier::new(guard, view));
         let step = foreseer.settings().step;
@@ -55,7 +58,10 @@ impl SafeLaw {
             let admits = verifier.is_none_or(|verifier| verifier.admits(command));
             admits.then_some(command)
         };
-        let found = foreseer.decide(&self.scene(robot, to_goal), false, driven, take);
+        let mut take = take;
+        let found = foreseer
+            .decide(&self.scene(robot, to_goal), false, driven, &mut take)
+            .or_else(|| creeping(guard.map(|guard| &guard.shield), to_goal, take));
         let (velocity, status) = chosen(found, wanted, braking(robot.velocity, &self.limits));
         Decision { velocity, status }
     }
@@ -80,9 +86,29 @@ impl SafeLaw {
             guard.verified(view, twist).then_some(twist)
         };
         let driven = |target: &Target| guard.driven(state, target, step, to_goal);
-        let found = foreseer.decide(&self.scene(&robot, to_goal), true, driven, take);
+        let found = foreseer
+            .decide(&self.scene(&robot, to_goal), true, driven, take)
+            .or_else(|| creeping(Some(&guard.shield), to_goal, take));
         chosen(found, wanted, guard.limits.braking(state.twist))
     }
+}
+
+/// The command toward where the robot is to go that is slow enough not to reckon with people who are not seen.
+fn creeping<C>(
+    shield: Option<&Shield>,
+    to_goal: Vector2<f64>,
+    mut take: impl FnMut(&Target) -> Option<C>,
+) -> Option<AcceptedTarget<C>> {
+    let creep = Some(shield?.unseen?.creep_speed).filter(|creep| *creep > 0.0)?;
+    let target = Target {
+        velocity: to_goal * (creep / to_goal.norm().max(f64::MIN_POSITIVE)),
+        backwards: false,
+    };
+    take(&target).map(|command| AcceptedTarget {
+        command,
+        target: target.velocity,
+        cheapest: false,
+    })
 }
 
 /// Command and status of a choice, whose target is what is wanted; braking without one.

@@ -5,13 +5,14 @@ use crate::foresight::Foreseer;
 use crate::guide::{Detour, Guidance, LocalGoal, Takeover};
 use crate::safe::settings::SafeNavigation;
 use crate::safe::surroundings::Surroundings;
+use crate::safe::watch::Watch;
 use crate::shield::{
     BodyCommand, Course, Decision, Deviation, Guard, OutlineGuard, ShieldLimits, Status,
     TwistGuard, TwistState, TwistView, Verifier, View, braking_periods,
 };
 use crate::trace::{Examined, Trace};
 use crate::yielding::{Outlook, Yielder};
-use crate::{Command, Law, Situation};
+use crate::{Command, Law, Situation, Unwatched};
 use navigation_world::robots::differential::{DifferentialLimits, Twist};
 use navigation_world::robots::drives::velocity_of;
 use navigation_world::world::geometry::RobotState;
@@ -54,6 +55,8 @@ pub struct SafeLaw {
     /// Way of the guide to the goal, for laws that ask for it.
     way: Vec<Vector2<f64>>,
     pub(super) around: Surroundings,
+    /// People whom nobody sees, if they are reckoned with.
+    pub(super) watch: Option<Watch>,
     /// State of the robot as measured in the last control period.
     measured: RobotState<f64>,
     trace: Trace,
@@ -95,9 +98,6 @@ impl SafeLaw {
             max_acceleration: robot.guaranteed_acceleration(),
             period: scenario.rules.control_period,
         };
-        let guidance = family.guidance(scenario)?;
-        let mapped = guidance.is_some() && family.map.is_some();
-        let rule = family.rule.rule(mapped, inner.robot.max_speed);
         let zero = Vector2::zeros();
         let twist_guard = family.shield.zip(wheels).map(|(shield, wheels)| {
             TwistGuard::new(shield, DifferentialLimits::from(wheels), &limits)
@@ -107,15 +107,31 @@ impl SafeLaw {
             let given = Given::Found("foresight".into());
             return Err(Failure::invalid("foresight", rule, given));
         }
+        let unseen = family.shield.is_some_and(|shield| shield.unseen.is_some());
+        if scenario.footprint.is_some() && unseen {
+            let rule =
+                "be left out for a robot with a footprint, whose turns its plans do not verify";
+            let given = Given::Found("unseen".into());
+            return Err(Failure::invalid("unseen", rule, given)
+                .mended_by("give the disc around the robot as its radius"));
+        }
         let outlined = family.shield.zip(scenario.footprint.clone());
         let outline = outlined.map(|(shield, outline)| OutlineGuard {
             shield,
             outline,
             wheels: wheels.is_some(),
         });
+        let twist_guard = twist_guard.transpose()?;
+        let [_, way] = horizon(&limits, twist_guard.as_ref(), 0.0);
+        let watch = Watch::new(family, scenario, way)?;
+        let pace = watch.as_ref().and_then(|watch| watch.pace(&limits));
+        let guidance = family.guidance(scenario, pace)?;
+        let mapped = guidance.is_some() && family.map.is_some();
+        let rule = family.rule.rule(mapped, inner.robot.max_speed);
         Ok(Self {
+            watch,
             outline,
-            twist_guard: twist_guard.transpose()?,
+            twist_guard,
             course: None,
             filter: family.filter_for(scenario)?,
             max_turn_rate: wheels
@@ -167,6 +183,71 @@ impl Law<f64> for SafeLaw {
 
     fn command(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
         self.set_period(situation.interval);
+        let Some(mut watch) = self.watch.take() else {
+            return self.command_among(situation);
+        };
+        let speed = situation.robot.velocity.norm();
+        let until = horizon(&self.limits, self.twist_guard.as_ref(), speed);
+        let radius = self
+            .guard
+            .map_or(self.limits.radius, |guard| guard.doubled().limits.radius);
+        let bodies = watch.look(situation, until, radius).to_vec();
+        self.watch = Some(watch);
+        self.command_among(&Situation {
+            bodies: &bodies,
+            ..*situation
+        })
+    }
+
+    /// Heads for another goal from now on; with a guide in a map it keeps to its plan while it does not see that goal.
+    fn aim(&mut self, goal: [f64; 2]) {
+        if self.guidance.is_some() && self.detour.is_none() {
+            self.moving = Some(goal.into());
+        } else {
+            self.goal = goal.into();
+            self.law.aim(goal);
+        }
+    }
+
+    fn can_aim(&self) -> bool {
+        self.foreseer.is_some() || self.law.can_aim()
+    }
+
+    fn trace(&self) -> Option<Trace> {
+        Some(self.trace)
+    }
+
+    fn unseen(&self) -> Option<Unwatched<'_>> {
+        self.watch.as_ref().map(Watch::unwatched)
+    }
+
+    fn examined(&self) -> Option<Examined> {
+        let plain = self.twist_guard.is_none() && self.outline.is_none();
+        let guard = self.guard.filter(|_| plain)?;
+        let (robot, command) = (self.measured, self.trace.command);
+        let plan = guard.plan(&robot, command);
+        let share = |part: u32| f64::from(part) / f64::from(PARTS_OF_PLAN);
+        let instants = (0..=PARTS_OF_PLAN).map(|part| plan.end() * share(part));
+        let time: Vec<f64> = instants.collect();
+        let view = View {
+            robot,
+            people: &self.around.people,
+            walls: self.around.walls(),
+            hidden: self.watch.as_ref().map(Watch::hidden),
+        };
+        Some(Examined {
+            margin: guard.gap(&view, command),
+            position: time.iter().map(|at| plan.position(*at).into()).collect(),
+            reach: self.around.reaches(plan.end()),
+            foreseen: self.foreseer.as_ref().map(Foreseer::foreseen),
+            time,
+        })
+    }
+}
+
+impl SafeLaw {
+    /// Command among obstacles that are seen.
+    fn command_among(&mut self, situation: &Situation<'_, f64>) -> Command<f64> {
         self.around
             .look(situation, self.guard.as_ref(), self.yielder.as_ref());
         let heading = self.head(situation);
@@ -238,49 +319,6 @@ impl Law<f64> for SafeLaw {
         Command::plain(change * (self.mass / situation.interval))
     }
 
-    /// Heads for another goal from now on; with a guide in a map it keeps to its plan while it does not see that goal.
-    fn aim(&mut self, goal: [f64; 2]) {
-        if self.guidance.is_some() && self.detour.is_none() {
-            self.moving = Some(goal.into());
-        } else {
-            self.goal = goal.into();
-            self.law.aim(goal);
-        }
-    }
-
-    fn can_aim(&self) -> bool {
-        self.foreseer.is_some() || self.law.can_aim()
-    }
-
-    fn trace(&self) -> Option<Trace> {
-        Some(self.trace)
-    }
-
-    fn examined(&self) -> Option<Examined> {
-        let plain = self.twist_guard.is_none() && self.outline.is_none();
-        let guard = self.guard.filter(|_| plain)?;
-        let (robot, command) = (self.measured, self.trace.command);
-        let plan = guard.plan(&robot, command);
-        let share = |part: u32| f64::from(part) / f64::from(PARTS_OF_PLAN);
-        let instants = (0..=PARTS_OF_PLAN).map(|part| plan.end() * share(part));
-        let time: Vec<f64> = instants.collect();
-        let view = View {
-            robot,
-            people: &self.around.people,
-            walls: self.around.walls(),
-            hidden: None,
-        };
-        Some(Examined {
-            margin: guard.gap(&view, command),
-            position: time.iter().map(|at| plan.position(*at).into()).collect(),
-            reach: self.around.reaches(plan.end()),
-            foreseen: self.foreseer.as_ref().map(Foreseer::foreseen),
-            time,
-        })
-    }
-}
-
-impl SafeLaw {
     /// Whether no part has a say in what the law commands: the robot itself keeps to its limits, and does what it does
     /// under the law alone.
     fn lets_through(&self, heading: &Destination) -> bool {
@@ -516,7 +554,7 @@ impl SafeLaw {
             robot: state,
             people: &self.around.people,
             walls: self.around.walls(),
-            hidden: None,
+            hidden: self.watch.as_ref().map(Watch::hidden),
         };
         let outline = self.outline_now(now);
         let (mut twist, status) = match foreseer {
@@ -630,7 +668,7 @@ impl SafeLaw {
             robot: *robot,
             people: &self.around.people,
             walls,
-            hidden: None,
+            hidden: self.watch.as_ref().map(Watch::hidden),
         };
         let kept = self
             .limits
@@ -672,6 +710,21 @@ impl SafeLaw {
             },
         }
     }
+}
+
+/// Longest time in s and way in m until a robot of a speed in m/s rests, whatever it is told next.
+fn horizon(limits: &ShieldLimits, wheels: Option<&TwistGuard>, speed: f64) -> [f64; 2] {
+    let plain = limits.horizon(speed);
+    let Some(guard) = wheels else {
+        return plain;
+    };
+    let drive = &guard.limits.drive;
+    let fastest = Twist {
+        speed: speed.max(drive.max_speed),
+        turn_rate: drive.max_turn_rate,
+    };
+    let time = (1.0 + guard.limits.braking_periods(fastest)) * limits.period;
+    [time.max(plain[0]), (time * fastest.speed).max(plain[1])]
 }
 
 /// A velocity shortened to a largest speed.

@@ -10,6 +10,7 @@ mod law;
 mod plans;
 mod settings;
 mod surroundings;
+mod watch;
 
 pub use law::SafeLaw;
 pub use plans::Plans;
@@ -43,6 +44,10 @@ impl LawFamily for SafeNavigation {
 
     fn map(&self) -> Option<&StaticMap> {
         self.map.as_ref().or_else(|| self.law.map())
+    }
+
+    fn scans(&self) -> bool {
+        self.shield.is_some_and(|shield| shield.unseen.is_some())
     }
 
     fn takes_any_goal(&self) -> bool {

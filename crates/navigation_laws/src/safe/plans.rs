@@ -3,19 +3,23 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::Stop;
-use crate::guide::{Guide, Plan, RobotRoom};
+use crate::guide::{Guide, Pace, Plan, RobotRoom};
 use navigation_world::world::map::{MapShapes, StaticMap};
 use numeric::error::Result;
+use unknown_places::unseen::Ground;
 
 /// Most plans that are kept; a batch of more different ways plans anew.
 const MOST_KEPT: usize = 64;
 
-/// Room for the robot, start and goal, bit by bit.
-type Key = [u64; 6];
+/// Room for the robot, start and goal, and what its pace depends on, bit by bit.
+type Key = [u64; 9];
 
-/// Plans that were made, shared by all copies.
+/// Cells of places, with the corners of the places.
+type Grounds = Vec<([[u64; 2]; 2], Arc<Ground>)>;
+
+/// Plans that were made, and cells for people who are not seen, shared by all copies.
 #[derive(Clone, Debug, Default)]
-pub struct Plans(Arc<Mutex<Vec<(Key, Plan)>>>);
+pub struct Plans(Arc<Mutex<Vec<(Key, Plan)>>>, Arc<Mutex<Grounds>>);
 
 impl Plans {
     /// The plan of a guide in a map, for a robot, from a start to a goal.
@@ -28,18 +32,40 @@ impl Plans {
         map: Option<&StaticMap>,
         robot: RobotRoom,
         ends: [[f64; 2]; 2],
+        pace: Option<Pace>,
     ) -> Result<Plan> {
         let [[a, b], [c, d]] = ends;
-        let key = [robot.least, robot.turning, a, b, c, d].map(f64::to_bits);
+        // The limits of the robot tell how slow it has to be.
+        let slow = |pace: &Pace| [pace.max_speed, pace.deceleration, pace.period];
+        let [e, f, g] = pace.as_ref().map_or([0.0; 3], slow);
+        let key = [robot.least, robot.turning, a, b, c, d, e, f, g].map(f64::to_bits);
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, plan)) = kept.iter().find(|(known, _)| *known == key) {
             return Ok(plan.clone());
         }
         let map = map.cloned().unwrap_or_else(|| MapShapes::new().map());
-        let plan = guide.plan(&map, robot, ends, Stop::never())?;
+        let plan = guide.paced_plan(&map, robot, ends, pace, Stop::never())?;
         if kept.len() < MOST_KEPT {
             kept.push((key, plan.clone()));
         }
         Ok(plan)
+    }
+
+    /// The cells between two corners in m, which are made once.
+    pub(super) fn kept_ground(
+        &self,
+        bounds: [[f64; 2]; 2],
+        make: impl FnOnce() -> Result<Ground>,
+    ) -> Result<Arc<Ground>> {
+        let key = bounds.map(|corner| corner.map(f64::to_bits));
+        let mut kept = self.1.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, ground)) = kept.iter().find(|(known, _)| *known == key) {
+            return Ok(ground.clone());
+        }
+        let ground = Arc::new(make()?);
+        if kept.len() < MOST_KEPT {
+            kept.push((key, ground.clone()));
+        }
+        Ok(ground)
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::LawFamily;
 use crate::filters::Filter;
 use crate::foresight::Foresight;
-use crate::guide::{Guidance, Guide, RobotRoom, TakeoverOptions};
+use crate::guide::{Guidance, Guide, Pace, RobotRoom, TakeoverOptions};
 use crate::safe::boundary::boundary_obstacle;
 use crate::safe::plans::Plans;
 use crate::shield::Shield;
@@ -13,6 +13,9 @@ use crate::yielding::Yielding;
 use navigation_world::world::map::{MOST_POINTS, StaticMap};
 use navigation_world::world::scenario::Scenario;
 use numeric::error::{Failure, Given, Result, not_negative, positive};
+
+/// The local goal of a robot that reckons with people who are not seen is no farther ahead, in m: it cuts no corners.
+const BEHIND_CORNERS: f64 = 0.5;
 
 /// A law with the parts around it.
 #[derive(Clone)]
@@ -71,6 +74,11 @@ impl SafeNavigation {
     pub fn checked(self) -> Result<Self> {
         if let Some(shield) = self.shield {
             shield.checked()?;
+            if shield.unseen.is_some() && self.map.is_none() {
+                let rule = "be given for a shield that reckons with people who are not seen: walls hide them";
+                let given = Given::Found("None".into());
+                return Err(Failure::invalid("map", rule, given));
+            }
         }
         if self.filter.is_some() && self.shield.is_some() {
             let rule = "be None beside a shield";
@@ -137,16 +145,25 @@ impl SafeNavigation {
     }
 
     /// The guide at work in a scenario.
-    pub(super) fn guidance(&self, scenario: &Scenario) -> Result<Option<Guidance>> {
-        let Some(guide) = self.guide else {
+    pub(super) fn guidance(
+        &self,
+        scenario: &Scenario,
+        pace: Option<Pace>,
+    ) -> Result<Option<Guidance>> {
+        let Some(mut guide) = self.guide else {
             return Ok(None);
         };
+        if pace.is_some() {
+            guide.look_ahead = guide.look_ahead.min(BEHIND_CORNERS);
+        }
         let robot = RobotRoom {
             least: scenario.least_room(),
             turning: scenario.robot.radius,
         };
         let ends = [scenario.start, scenario.goal];
-        let plan = self.plans.get(&guide, self.map.as_ref(), robot, ends)?;
+        let plan = self
+            .plans
+            .get(&guide, self.map.as_ref(), robot, ends, pace)?;
         Ok(Some(Guidance::new(guide, robot, plan)))
     }
 }
