@@ -38,6 +38,8 @@ FAR = 1e4
 COUNTS = ("contacts_toward", "contacts_away", "contacts_standing", "wall_contacts")
 COLUMNS = ("margin", "min_clearance", "arrival_time", "end_time", *COUNTS)
 """Columns that are kept of every episode."""
+EVERY, LASTING = 0.5, 4.0
+"""Time between two encounters with people who were hidden, and how long each lasts, in s."""
 ROOM = 0.3
 """Least distance of the surfaces at the start, in m."""
 
@@ -157,7 +159,7 @@ def falsify(
     law: AnyLaw,
     property: Property | Callable[[Pursuit], float] = "at_fault",  # the word of the field
     *,
-    method: Literal["random", "cma_es"] = "random",
+    method: Literal["random", "cma_es", "hidden"] = "random",
     episodes: int = 1000,
     least: float = 0.0,
     most: float | None = None,
@@ -189,10 +191,13 @@ def falsify(
         nearer than ``least``; the robot arrives within the time limit; it is never faster than
         ``most``. Or a function of a `Pursuit` that returns a margin, negative where your property is
         broken (random persons only).
-    method : {"random", "cma_es"}
-        How persons are chosen.
+    method : {"random", "cma_es", "hidden"}
+        How persons are chosen. ``"hidden"``: they are hidden by the map of a law whose shield reckons with `Unseen`
+        people. The robot drives with nobody there; every 0.5 s somebody appears at the worst of 48 places where it
+        does not see him, by a trial in which it does not react, and comes for it on the shortest way for 4 s. Contacts
+        through walls do not count.
     episodes : int
-        How many episodes.
+        How many episodes; of hidden persons at most.
     least : float
         Least clearance in m.
     most : float or None
@@ -239,8 +244,8 @@ def falsify(
     drives, own = as_law(law), callable(property)
     kind = "at_fault" if own else word("property", property, ("at_fault", "clearance", "arrival", "speed"))
     limit = _least(least) if kind == "clearance" else _most(most, scene) if kind == "speed" else 0.0
-    how = word("method", method, ("random", "cma_es"))
-    if own and how == "cma_es":
+    how = word("method", method, ("random", "cma_es", "hidden"))
+    if own and how != "random":
         raise InvalidParameterError("method", 'be "random" for a property of your own', method)
     size, fastest = positive("person_radius", person_radius), positive("person_speed", person_speed)
     pursued = _with_person(scene, size, fastest)
@@ -263,6 +268,8 @@ def falsify(
             raise SimulationError("the search for the worst person has no result")
         worst = _pursuit(hunt.replay(seed=start, index=0, numbers=numbers))
         found = {name: np.array([getattr(worst, name)]) for name in COLUMNS[1:]} | {"margin": np.array([margin])}
+    elif how == "hidden":
+        found, worst = _hidden(hunt, _unseen(drives), (kind, limit), runs, start)
     else:
         columns = hunt.sweep((kind, limit), episodes=runs, seed=start, threads=team, progress=heard)
         swept = cast(Mapping[str, Any], columns)
@@ -271,14 +278,90 @@ def falsify(
     return Falsification(
         property_name="own" if own else kind,
         **found,
-        episodes=runs,
+        episodes=len(found["margin"]) if how == "hidden" else runs,
         worst=worst,
         warnings=(
             *implausible({"person_radius": size, "person_speed": fastest}, {"person_speed": "pursuer_speed"}),
             *run_warnings.of_run(pursued, drives, robot, step),
             *_of_turns(drives, fastest),
+            *(() if how == "hidden" else _of_walls(drives)),
         ),
     )
+
+
+def _of_walls(law: object) -> Iterator[ResultWarning]:
+    """Warn of persons who come through walls, where a shield takes walls to hide people."""
+    shield, _ = shield_of(law)
+    if shield is not None and shield.unseen is not None:
+        message = (
+            "persons walk through the walls of the map, but the shield takes people whom it does not see to keep off "
+            'them: a fault says nothing about it; method="hidden" has persons who go around walls'
+        )
+        yield ResultWarning(ASSUMES_LESS, "shield.unseen", message)
+
+
+def _unseen(law: object) -> _hrsafety.Unseen:
+    """Return what the shield of a law assumes of people whom it does not see."""
+    shield, _ = shield_of(law)
+    if shield is None or shield.unseen is None:
+        rule = "have a shield that reckons with people who are not seen"
+        raise InvalidParameterError("law", rule, law, "Shield(unseen=Unseen())")
+    return shield.unseen._native
+
+
+def hidden_encounters(
+    scenario: Scenario, law: AnyLaw, *, radius: float, speed: float, most: int, seed: int
+) -> tuple[dict[str, Array], float]:
+    """Return the columns of encounters with people who were hidden, evenly spread over a run with nobody there.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Where.
+    law : law
+        What drives the robot; its shield reckons with `Unseen` people.
+    radius, speed : float
+        Of the person, in m and m/s.
+    most : int
+        Most encounters.
+    seed : int
+        Of the starts.
+
+    Returns
+    -------
+    columns : dict
+        ``COLUMNS``, with the time in s and the start in m of each encounter, the largest speed in m/s with which the
+        robot was at fault, and the control periods in which the person was neither seen nor reckoned with.
+    arrival_time : float
+        When the robot arrives with nobody there, in s; NaN if it does not.
+    """
+    drives = as_law(law)
+    hunt = _hrsafety.Hunt(
+        _with_person(scenario, radius, speed)._native,
+        drives._native,
+        AsBuilt()._native,
+        step=0.01,
+        person_speed=speed,
+        free=scenario.robot.radius + radius + ROOM,
+    )
+    limit = ("at_fault", 0.0)
+    found, places, alone = hunt.hidden(limit, _unseen(drives), every=EVERY, lasting=LASTING, most=most, seed=seed)
+    columns = {name: np.array(found[name]) for name in (*COLUMNS, "fault_speed", "overlooked")}
+    times = {"time": np.array([time for time, _ in places]), "start": np.array([start for _, start in places])}
+    return columns | times, alone
+
+
+def _hidden(
+    hunt: _hrsafety.Hunt, unseen: _hrsafety.Unseen, limited: tuple[str, float], most: int, seed: int
+) -> tuple[dict[str, Any], Pursuit]:
+    """Return columns of encounters with people who were hidden, and the worst of them."""
+    columns, places, _ = hunt.hidden(limited, unseen, every=EVERY, lasting=LASTING, most=most, seed=seed)
+    if not places:
+        raise SimulationError("nobody can hide in the map near the way of the robot")
+    at = int(np.argmin(columns["margin"]))
+    (time, start) = places[at]
+    worst = _pursuit(hunt.hidden_replay(unseen, time=time, start=start, lasting=LASTING))
+    return {name: columns[name] for name in COLUMNS}, worst
 
 
 def _in_world(

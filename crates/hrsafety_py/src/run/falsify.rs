@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vff_core::run::pursuit::{Encounter, NUMBERS, Pursued, Pursuer};
+use vff_core::run::pursuit::{Encounter, HiddenHunt, NUMBERS, Pursued, Pursuer};
 use vff_core::run::{ContactCounts, as_built};
 use vff_core::search;
 
@@ -11,6 +11,7 @@ use crate::errors::InvalidParameterError;
 use crate::laws::Law;
 use crate::parameters::Scenario;
 use crate::robots::as_built::AsBuilt;
+use crate::safe::Unseen;
 use crate::watch::{Report, watched_law};
 
 /// A robot under a law, and the bounds of who pursues it.
@@ -70,12 +71,13 @@ fn columns<'py>(
     };
     Ok(fields! { py;
         vector margin = column(&|each| property.margin(each));
-        each found: least_toward, arrival_time, top_speed, end_time;
+        each found: least_toward, arrival_time, top_speed, fault_speed, end_time;
         vector min_clearance = column(&|each| each.least);
         vector contacts_toward = counts(|each| each.toward);
         vector contacts_away = counts(|each| each.away);
         vector contacts_standing = counts(|each| each.standing);
         vector wall_contacts = counts(|each| each.walls);
+        vector overlooked = found.iter().map(|each| i64::from(each.overlooked)).collect::<Vec<i64>>();
     })
 }
 
@@ -173,14 +175,84 @@ impl Hunt {
                 hunt.episode(&pursuer, own, Some(&mut rows), &interrupted)
             })
         })?;
-        let fields = columns(py, &[found], search::Property::NotAtFault)?;
-        let count = rows.time.len();
-        let more = fields! { py;
-            vector rows: time;
-            array [count, 2] rows: position, velocity;
-            array [count, 2] person_position = rows.pursuer;
-        };
-        fields.update(more.as_mapping())?;
-        Ok(fields)
+        told(py, found, &rows)
     }
+
+    /// Columns of encounters with people who were hidden, with their times in s and starts in m, and when the robot
+    /// arrives with nobody there, in s.
+    #[pyo3(signature = (property, unseen, *, every, lasting, most, seed))]
+    fn hidden<'py>(
+        &self,
+        py: Python<'py>,
+        property: Limited,
+        unseen: &Unseen,
+        every: f64,
+        lasting: f64,
+        most: usize,
+        seed: u64,
+    ) -> PyResult<(Bound<'py, PyDict>, Vec<(f64, [f64; 2])>, f64)> {
+        let property = property.property()?;
+        let law = self.law.get();
+        let (alone, found) = watched_law(py, (law, Some(1)), Report::none(), |control| {
+            let interrupted = || control.interrupted();
+            self.hidden_hunt(law, unseen, [every, lasting])
+                .encounters(most, seed, &interrupted)
+        })?;
+        let places = found.iter().map(|each| (each.time, each.start)).collect();
+        let found: Vec<Encounter> = found.into_iter().map(|each| each.found).collect();
+        Ok((columns(py, &found, property)?, places, alone.arrival_time))
+    }
+
+    /// One encounter with somebody who was hidden again, with its rows.
+    #[pyo3(signature = (unseen, *, time, start, lasting))]
+    fn hidden_replay<'py>(
+        &self,
+        py: Python<'py>,
+        unseen: &Unseen,
+        time: f64,
+        start: [f64; 2],
+        lasting: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let law = self.law.get();
+        let mut rows = Pursued::default();
+        let found = watched_law(py, (law, Some(1)), Report::none(), |control| {
+            let interrupted = || control.interrupted();
+            let hunt = self.hidden_hunt(law, unseen, [1.0, lasting]);
+            hunt.encounter(time, start, Some(&mut rows), &interrupted)
+        })?;
+        told(py, found, &rows)
+    }
+}
+
+impl Hunt {
+    fn hidden_hunt<'a>(
+        &'a self,
+        law: &'a Law,
+        unseen: &Unseen,
+        [every, lasting]: [f64; 2],
+    ) -> HiddenHunt<'a> {
+        HiddenHunt {
+            scenario: &self.scenario,
+            law: &law.any,
+            built: &self.built,
+            unseen: unseen.0,
+            max_speed: self.max_speed,
+            every,
+            lasting,
+        }
+    }
+}
+
+/// Columns of an encounter, with its rows.
+fn told<'py>(py: Python<'py>, found: Encounter, rows: &Pursued) -> PyResult<Bound<'py, PyDict>> {
+    let fields = columns(py, &[found], search::Property::NotAtFault)?;
+    let count = rows.time.len();
+    let more = fields! { py;
+        vector time = rows.time.clone();
+        array [count, 2] position = rows.position.clone();
+        array [count, 2] velocity = rows.velocity.clone();
+        array [count, 2] person_position = rows.pursuer.clone();
+    };
+    fields.update(more.as_mapping())?;
+    Ok(fields)
 }

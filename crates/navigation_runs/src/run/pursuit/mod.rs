@@ -5,9 +5,13 @@
 //! sensors; only what the measurement of the scenario tells of the last obstacle is computed here,
 //! from the way that it took.
 
+mod hidden;
+mod lurker;
 mod outline;
 mod pursuer;
 
+pub use hidden::{HiddenEncounter, HiddenHunt};
+pub use lurker::Lurker;
 pub use pursuer::{NUMBERS, Pursuer};
 
 use nalgebra::Vector2;
@@ -53,6 +57,11 @@ pub struct Encounter {
     pub top_speed: f64,
     /// When the episode ended, in s.
     pub end_time: f64,
+    /// Largest speed of the robot in m/s while it touched somebody toward whom it moved; 0 if it did not.
+    pub fault_speed: f64,
+    /// In how many control periods the last obstacle was neither seen nor where the law reckoned with somebody whom it
+    /// does not see.
+    pub overlooked: u32,
 }
 
 impl Encounter {
@@ -74,6 +83,10 @@ pub struct Pursued {
     pub velocity: Vec<f64>,
     /// Positions of the pursuer in m.
     pub pursuer: Vec<f64>,
+    /// Time in s between two instants at which it is kept where people can be who are not seen.
+    pub every: Option<f64>,
+    /// These instants in s, and the centers of the cells in m.
+    pub hidden: Vec<(f64, Vec<[f64; 2]>)>,
 }
 
 /// The way that he took, and what a measurement tells of it: late and noisy positions, velocities
@@ -158,6 +171,8 @@ struct Followed {
 struct PursuitParts<'a> {
     scenario: &'a Scenario,
     pursuer: &'a Pursuer,
+    /// The pursuer, if he comes out of hiding.
+    lurker: Option<Lurker>,
     /// How long a force acts, in s.
     interval: f64,
     robot: Box<dyn MotorDrive>,
@@ -195,6 +210,18 @@ pub fn pursue(
     rows: Option<&mut Pursued>,
     interrupted: Interrupted<'_>,
 ) -> Result<Encounter> {
+    encounter(scenario, law, built, (pursuer, None), rows, interrupted)
+}
+
+/// An episode with a pursuer, who may come out of hiding.
+fn encounter(
+    scenario: &Scenario,
+    law: &AnyLaw,
+    built: &AsBuilt,
+    (pursuer, lurker): (&Pursuer, Option<Lurker>),
+    rows: Option<&mut Pursued>,
+    interrupted: Interrupted<'_>,
+) -> Result<Encounter> {
     if scenario.obstacles.is_empty() {
         let rule = "hold an obstacle whose place the pursuer takes";
         let given = Given::Found("none".into());
@@ -208,6 +235,7 @@ pub fn pursue(
     let parts = PursuitParts {
         scenario,
         pursuer,
+        lurker,
         interval: clock.interval,
         robot,
         law: law.with_own_gains(sight.known(scenario))?,
@@ -229,6 +257,8 @@ pub fn pursue(
             to_go: f64::INFINITY,
             top_speed: 0.0,
             end_time: 0.0,
+            fault_speed: 0.0,
+            overlooked: 0,
         },
         rows,
         time: 0.0,
@@ -250,12 +280,33 @@ impl PursuitParts<'_> {
         let mut bodies = bodies_at(self.scenario, self.time);
         if let Some(last) = bodies.last_mut() {
             last.state = state_at(self.place(), self.chased());
+            last.state.present = self.is_there();
         }
         bodies
     }
 
+    /// Whether the pursuer is there.
+    fn is_there(&self) -> bool {
+        let lurker = self.lurker.as_ref();
+        lurker.is_none_or(|lurker| lurker.is_there(self.time))
+    }
+
+    /// Takes down whether the law knows of the pursuer, or reckons with somebody there whom it does not see.
+    fn check_belief(&mut self) {
+        let last = self.scenario.obstacles.len() - 1;
+        if let Some(unseen) = self.law.unseen().filter(|_| self.is_there()) {
+            let known = unseen.tracked.get(last).is_some_and(|tracked| *tracked);
+            if !known && !unseen.belief.covers(self.place()) {
+                self.found.overlooked += 1;
+            }
+        }
+    }
+
     /// Velocity of the pursuer now, in m/s.
     fn chased(&self) -> Vector2<f64> {
+        if let Some(lurker) = &self.lurker {
+            return lurker.velocity(self.time, self.place(), self.reading.robot.position);
+        }
         self.pursuer
             .velocity(self.time, self.place(), &self.reading.robot)
     }
@@ -299,9 +350,13 @@ impl PursuitParts<'_> {
         for (index, body) in bodies.iter().enumerate() {
             let seen = robot.position - Vector2::from(body.state.position);
             let before = self.followed[index].before.replace(seen);
-            if body.state.present && self.scenario.footprint.is_some() {
+            let apart = index + 1 == bodies.len()
+                && self.lurker.as_ref().is_some_and(|lurker| {
+                    lurker.is_behind_wall(robot.position, body.state.position.into())
+                });
+            if body.state.present && !apart && self.scenario.footprint.is_some() {
                 self.look_at_outline(index, body, before.unwrap_or(seen), from);
-            } else if body.state.present {
+            } else if body.state.present && !apart {
                 self.look_at(index, body, before.unwrap_or(seen));
             } else {
                 self.followed[index].before = None;
@@ -359,6 +414,10 @@ impl PursuitParts<'_> {
             self.found.least_ahead = self.found.least_ahead.min(gap);
             if moves {
                 self.found.least_toward = self.found.least_toward.min(gap);
+                if gap <= 0.0 {
+                    let speed = robot.velocity.norm();
+                    self.found.fault_speed = self.found.fault_speed.max(speed);
+                }
             }
         }
     }
@@ -372,6 +431,13 @@ impl PursuitParts<'_> {
         rows.position.extend(robot.position.lane(0));
         rows.velocity.extend(robot.velocity.lane(0));
         rows.pursuer.extend(place.iter());
+        let due = rows.every.is_some_and(|every| {
+            let last = rows.hidden.last().map_or(0.0, |(time, _)| *time);
+            self.time >= last + every - 1e-9
+        });
+        if let Some(unseen) = self.law.unseen().filter(|_| due) {
+            rows.hidden.push((self.time, unseen.places()));
+        }
     }
 }
 
@@ -383,7 +449,10 @@ impl Parts for PursuitParts<'_> {
     }
 
     fn decide(&mut self, time: f64, _request: (), interrupted: Interrupted<'_>) -> Result<bool> {
-        self.keep();
+        let (robot, own) = (self.reading.robot.position, self.place());
+        if let Some(lurker) = self.lurker.as_mut().filter(|lurker| lurker.is_there(time)) {
+            lurker.look(robot, &[own]);
+        }
         if let Some(goal) = self.sight.goal() {
             send(&mut *self.law, goal)?;
         }
@@ -400,12 +469,18 @@ impl Parts for PursuitParts<'_> {
         if !command.force.norm().is_finite() {
             return Err(Failure::non_finite(0, time));
         }
+        self.keep();
+        self.check_belief();
         self.robot.hold(&self.known.order(command.force));
         Ok(true)
     }
 
     fn travel(&mut self, clock: &Clock, step: usize) {
-        let next = self.place() + self.chased() * clock.step;
+        let way = self.chased() * clock.step;
+        let next = match &self.lurker {
+            Some(lurker) => lurker.moved(self.place(), way),
+            None => self.place() + way,
+        };
         let from = self.reading.robot.position;
         self.reading = self.robot.step();
         self.tracked.places.push(next);
@@ -437,6 +512,7 @@ impl Parts for PursuitParts<'_> {
         let (time, heading) = (clock.time(step), self.robot.known_heading());
         let bodies = self.bodies();
         let measured = self.tracked.measure(self.interval, self.chased());
+        let there = self.is_there();
         let seen = self.sight.look(time, &self.reading, heading, &bodies);
         self.seen.clear();
         self.seen.extend_from_slice(seen.bodies);
@@ -444,6 +520,7 @@ impl Parts for PursuitParts<'_> {
         let last = self.scenario.obstacles.len() - 1;
         if let (Some(state), Some(body)) = (measured, self.seen.get_mut(last)) {
             body.state = state;
+            body.state.present = there;
         }
         self.known = MeasuredState::of(&SensedState {
             bodies: &self.seen,

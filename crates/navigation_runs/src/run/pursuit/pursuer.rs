@@ -110,6 +110,16 @@ impl Pursuer {
         }
     }
 
+    /// One who stands, for all that he does by himself.
+    #[must_use]
+    pub fn standing(start: [f64; 2]) -> Self {
+        Self {
+            start,
+            max_speed: 0.0,
+            tactic: Tactic::Pursuit { lead: 0.0 },
+        }
+    }
+
     /// The one of [`NUMBERS`] numbers from 0 to 1.
     #[must_use]
     pub fn planned(numbers: &[f64; NUMBERS], ends: [[f64; 2]; 2], free: f64, speed: f64) -> Self {
