@@ -271,6 +271,9 @@ class Controller:
                 for name, former in renamed.items():
                     self._measured.rename(name, former)
             found = self._refuted(now, told) | {"renamed": tuple(renamed)}
+            if fields["timing"] != "lost":
+                surprises = set(self._native.unexpected())
+                found["unexpected"] = tuple(name for name in told if places[name] in surprises)
         self._last = self._told(fields, found)
         return self._last
 
@@ -366,7 +369,7 @@ _NOTHING: Mapping[str, Any] = {
 """Fields of the command of a robot that does not know its position yet."""
 
 
-_OF_PEOPLE = ("faster", "accelerated", "velocity_off")
+_OF_PEOPLE = ("faster", "accelerated", "velocity_off", "unexpected")
 """Fields of a command that name people whose measurements refute something."""
 
 
@@ -375,7 +378,8 @@ def _assumed(shield: Shield | None) -> tuple[str, ...]:
     if shield is None:
         return ()
     velocities = () if shield.velocity_error is None else ("velocity_off",)
-    return ("faster", "accelerated", *velocities, "robot_off_plan")
+    unseen = () if shield.unseen is None else ("unexpected",)
+    return ("faster", "accelerated", *velocities, *unseen, "robot_off_plan")
 
 
 def _ranges(scan: npt.ArrayLike) -> Array:

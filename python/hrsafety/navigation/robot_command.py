@@ -90,6 +90,10 @@ class Command:
         Names of those whose places do not fit the velocities that were told: by more than the ``velocity_error`` and
         ``person_acceleration`` of a shield allow, or, for a shield that assumes nothing of velocities, by more than
         0.3 m/s over at least 0.5 s; then yielding and the law are misled, and the shield is not.
+    unexpected : tuple of hashable
+        Names of those who were first seen where a shield with `Unseen` people reckoned with nobody: they were faster
+        than ``person_speed``, came through a wall of the map or out of nothing, or a beam or the pose of the robot was
+        less exact than is assumed. What it guarantees does not hold for them.
     lost : tuple of hashable
         Names of those who were not measured within the ``age_limit`` of the controller: until then they were reckoned
         with wherever they could be, now they count no more. They may be anywhere, until they are measured again or
@@ -102,8 +106,8 @@ class Command:
         before counts on, ever older.
     refuted : tuple of str
         Names of the fields that tell of an assumption of the shield that the measurements of this update refute:
-        ``"faster"``, ``"accelerated"``, ``"velocity_off"`` (if the shield assumes anything of velocities) and
-        ``"robot_off_plan"``.
+        ``"faster"``, ``"accelerated"``, ``"velocity_off"`` (if the shield assumes anything of velocities),
+        ``"unexpected"`` and ``"robot_off_plan"``.
     before : (float, float)
         Velocity at the update as the plan has it, in m/s.
     period, max_acceleration : float
@@ -126,6 +130,7 @@ class Command:
     faster: tuple[Hashable, ...]
     accelerated: tuple[Hashable, ...]
     velocity_off: tuple[Hashable, ...]
+    unexpected: tuple[Hashable, ...]
     lost: tuple[Hashable, ...]
     renamed: tuple[Hashable, ...]
     unknown_beams: int

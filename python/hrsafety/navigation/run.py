@@ -6,10 +6,11 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NoReturn
 
+import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Pair, checked_seed, count, finite_pair, flag, instance, number
+from hrsafety._arguments import Array, Pair, checked_seed, count, finite_pair, flag, instance, number
 from hrsafety.errors import InvalidParameterError, Shown, SimulationError
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.laws.python_law import AnyLaw, PythonLaw, as_law
@@ -229,6 +230,39 @@ class Run:
         """
         index = self._index(robot)
         return situation_of(self._native.situation(index), *self._robots[index])
+
+    def unseen_places(self, robot: int | None = None) -> Array | None:
+        """Return where people can be whom a robot does not see, as its shield has it since the last control period.
+
+        Parameters
+        ----------
+        robot : int or None
+            Index of the robot; ``None``: the only one.
+
+        Returns
+        -------
+        ndarray, shape (n, 2), or None
+            Centers of the cells in m; ``None`` for a law whose shield reckons with seen people only.
+
+        Raises
+        ------
+        InvalidParameterError
+            If there is no such robot.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav
+        >>> walls = nav.StaticMap.from_polylines([[(0, 0), (4, 0), (4, 3), (0, 3), (0, 0)]], radius=0.05)
+        >>> shield = nav.Shield(unseen=nav.laws.Unseen())
+        >>> law = nav.SafeNavigation(nav.VirtualForceField(), map=walls, guide=nav.maps.Guide(), shield=shield)
+        >>> run = nav.Run(nav.Scenario(start=(0.8, 1.5), goal=(3.2, 1.5)), law)
+        >>> seen = run.step()
+        >>> inside = (run.unseen_places() > 0.1).all(axis=1) & (run.unseen_places() < (3.9, 2.9)).all(axis=1)
+        >>> int(inside.sum())  # the room is seen to be empty
+        0
+        """
+        found = self._native.unseen_places(self._index(robot))
+        return None if found is None else np.array(found).reshape(-1, 2)
 
     def step(
         self,

@@ -231,6 +231,10 @@ def record_safety(
     if instance(name, body, HolonomicRobot).footprint is not None:
         # The plan and the margin of a record are those of a disc.
         raise InvalidParameterError(f"{name}.footprint", "be None", body.footprint, "give the disc around it")
+    if parts.shield is not None and parts.shield.unseen is not None:
+        # Margins are those from people who are seen.
+        rule = "reckon with seen people only"
+        raise InvalidParameterError("law.shield.unseen", rule, parts.shield.unseen, "record it without unseen=")
     plan = None
     if parts.guide is not None and parts.map is not None:
         plan = parts.guide.plan(parts.map, radius=body.radius, start=own.start, goal=own.goal)

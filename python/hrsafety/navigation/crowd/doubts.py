@@ -22,6 +22,7 @@ from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.warnings.filters import of_filter
 from hrsafety.navigation.warnings.scenarios import circled, own_speed
 from hrsafety.navigation.warnings.shields import (
+    ASSUMES_LESS,
     SEES_LESS,
     Motion,
     Mover,
@@ -356,6 +357,13 @@ def of_robots(
         if shield is None:
             continue
         found += of_order(robot.law, f"robots[{index}].law")
+        if shield.unseen is not None and (people or sources):
+            message = (
+                "people of a world keep a tenth of their radius off walls and come out of sources; the shield takes "
+                f"cores of {shield.unseen.person_core:.3g} m to be off all walls and nobody to appear where it sees: "
+                "nothing is proved about those whom it does not see; take scenarios for that"
+            )
+            found.append(ResultWarning(ASSUMES_LESS, f"robots[{index}].law.shield.unseen", message))
         others = [each for each in _speeds(people, sources, robots) if each[0] != f"robots[{index}]"]
         fastest = max(others, key=lambda each: each[1], default=None)
         built = robot.as_built()
@@ -400,7 +408,7 @@ def _radii(people: Iterable[Person], sources: Iterable[Source], robots: Iterable
 
 def _of_range(owner: str, robot: Robot, motion: Motion, shield: Shield, radius: float) -> Iterator[ResultWarning]:
     """Warn of a range within which a person may stand unseen by the robot, which cannot stop in time."""
-    if shield.person_speed is None or radius == 0.0:
+    if shield.person_speed is None or radius == 0.0 or shield.unseen is not None:
         return
     plan = motion.plan_duration
     touch = robot.body.radius + radius + shield.margin + shield.position_error
@@ -417,7 +425,7 @@ def _of_range(owner: str, robot: Robot, motion: Motion, shield: Shield, radius: 
 
 def _of_occlusion(owner: str, robot: Robot, shield: Shield, *, walls: bool) -> Iterator[ResultWarning]:
     """Warn of walls that hide people from a robot whose shield reckons with nobody who is not seen."""
-    if robot.occlusion and walls and getattr(shield, "unseen", None) is None:
+    if robot.occlusion and walls and shield.unseen is None:
         yield ResultWarning(
             SEES_LESS,
             f"{owner}.occlusion",

@@ -18,7 +18,7 @@ from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.warnings.filters import of_filter
 from hrsafety.navigation.warnings.scenarios import BELOW_SAFE, GOAL_IN_REGION, IN_CRITICAL_REGION
-from hrsafety.navigation.warnings.shields import ASSUMES_LESS, maps_of, of_order, of_shield, shield_of
+from hrsafety.navigation.warnings.shields import ASSUMES_LESS, maps_of, of_hidden_ways, of_order, of_shield, shield_of
 from hrsafety.navigation.warnings.walls import unknown_walls
 from hrsafety.plausibility import ResultWarning, gathered
 
@@ -72,6 +72,7 @@ def of_run(
         *of_map,
         *of_order(law),
         *of_shield(scenario, shield, built, motion_step, walls=walls),
+        *of_hidden_ways(scenario, shield, maps_of(law)),
     )
 
 

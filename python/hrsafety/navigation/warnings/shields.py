@@ -13,6 +13,7 @@ from hrsafety._records import dataclass
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation
 from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.obstacles.base import Obstacle
+from hrsafety.navigation.obstacles.moving import Human, MovingDisc
 from hrsafety.navigation.obstacles.moving_rectangle import Mobile
 from hrsafety.navigation.obstacles.standing import Rectangle
 from hrsafety.navigation.robots.as_built import AsBuilt
@@ -32,6 +33,7 @@ __all__ = [
     "Mover",
     "maps_of",
     "of_built",
+    "of_hidden_ways",
     "of_order",
     "of_shield",
     "of_surroundings",
@@ -276,6 +278,12 @@ def of_controller(
     # How the robot carries out what it is told is its own: no motion steps here.
     motion = Motion(robot, 1.0, 0.0)
     yield from of_surroundings(shield, [Mover("people", person_speed)], measurement=None, motion=motion, walls=False)
+    if shield.unseen is not None and not lidar:
+        message = (
+            "the shield reckons with people who are not seen, but the controller has no lidar: no place is ever seen "
+            "to be empty, and the robot does not move faster than it creeps; give a lidar, and its scans"
+        )
+        yield ResultWarning(SEES_LESS, "lidar", message, safe_side=True)
     if lidar:
         yield ResultWarning(
             SEES_LESS,
@@ -317,6 +325,7 @@ def of_surroundings(
     ResultWarning
         With the code ``"shield_assumes_less"``.
     """
+    yield from _of_unseen(shield, owner)
     needed = [*_of_motions(shield, others, measurement, motion), *_of_measurement(shield, measurement)]
     for name, assumed, least, why in needed:
         if assumed < least * (1.0 - ROUNDING):
@@ -327,6 +336,89 @@ def of_surroundings(
                 f"{name} of the shield is {assumed:.4g}, but {why}: it may let the robot move into somebody; {mended}",
             )
     yield from _of_own_motion(shield, measurement, motion, walls=walls, owner=owner)
+
+
+def _of_unseen(shield: Shield, owner: str) -> Iterator[ResultWarning]:
+    """Warn of a shield that never sees what is behind the robot: it is safe, and hardly moves."""
+    if shield.unseen is not None and shield.unseen.field_of_view < math.tau * (1.0 - ROUNDING):
+        message = (
+            f"field_of_view of the shield's unseen people is {shield.unseen.field_of_view:.4g} rad: somebody may "
+            "follow the robot unseen and overtake it while it stops, so it waits nearly everywhere; let it look "
+            "all around, 2 pi"
+        )
+        yield ResultWarning(SEES_LESS, f"{owner}.unseen.field_of_view", message, safe_side=True)
+
+
+def of_hidden_ways(scenario: Scenario, shield: Shield, maps: Sequence[StaticMap]) -> Iterator[ResultWarning]:
+    """Warn of people whom a shield that reckons with unseen ones takes to be nowhere: in walls, or out of nothing.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Where the robot runs.
+    shield : Shield
+        What is assumed.
+    maps : sequence of StaticMap
+        Walls that the law knows.
+
+    Yields
+    ------
+    ResultWarning
+        With the code ``"shield_assumes_less"``.
+    """
+    if shield.unseen is None:
+        return
+    core, found = shield.unseen.person_core, []
+    for index, obstacle in enumerate(scenario.obstacles):
+        if not isinstance(obstacle, Human | MovingDisc) or own_speed(obstacle, scenario.time_limit) == 0.0:
+            continue
+        way = _way(obstacle, scenario.time_limit)
+        near = min((float(np.min(each.clearance(way), initial=math.inf)) for each in maps), default=math.inf)
+        if near < core * (1.0 - ROUNDING):
+            found.append(
+                f"the middle of obstacles[{index}] comes to {near:.3g} m from a wall, nearer than {core:.3g} m"
+            )
+        elif obstacle.path is not None and obstacle.path[0][0] > 0.0:
+            found.append(f"obstacles[{index}] is not there before {obstacle.path[0][0]:.4g} s")
+    if found:
+        more = f" ({len(found) - 1} more alike)" if found[1:] else ""
+        message = (
+            f"{found[0]}{more}, but the shield takes people whom it does not see to walk around walls, and nobody to "
+            "appear where it saw nobody: nothing is proved about them"
+        )
+        yield ResultWarning(ASSUMES_LESS, "shield.unseen", message)
+
+
+def _way(obstacle: Human | MovingDisc, until: float) -> Array:
+    """Return places (n, 2) of somebody before a time limit, at most 0.05 m apart up to a way of 500 m."""
+    if obstacle.path is not None:
+        time, places = np.array(obstacle.path[0]), np.array(obstacle.path[1])
+        last = [np.interp(min(until, time[-1]), time, axis) for axis in places.T]
+        corners = np.vstack([places[time < until], last])
+        lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(corners, axis=0).T))])
+        steps = np.linspace(0.0, lengths[-1], _count(lengths[-1]))
+        return np.column_stack([np.interp(steps, lengths, axis) for axis in corners.T])
+    place = np.array(obstacle.start if isinstance(obstacle, Human) else obstacle.center)
+    endless = (math.inf, obstacle.velocity, getattr(obstacle, "acceleration", (0.0, 0.0)))
+    parts, left = [place[None]], until
+    for duration, velocity, acceleration in obstacle.segments or (endless,):
+        first, gained = np.array(velocity), np.array(acceleration)
+        length = min(duration, left)
+        way = length * max(math.hypot(*first), math.hypot(*(first + gained * length)))
+        time = np.linspace(0.0, length, _count(way))[:, None]
+        parts.append(place + first * time + 0.5 * gained * time**2)
+        place, left = parts[-1][-1], left - length
+    walked: Array = np.concatenate(parts)
+    if obstacle.stop is None:
+        return walked
+    # On a straight line.
+    stop = math.dist(walked[0], obstacle.stop)
+    before: Array = walked[np.hypot(*(walked - walked[0]).T) <= stop + ROUNDING]
+    return before
+
+
+def _count(way: float) -> int:
+    return 2 + int(min(way / 0.05, 10_000.0))
 
 
 def _of_motions(
