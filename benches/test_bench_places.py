@@ -16,6 +16,8 @@ import shapely.affinity
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
+from hrsafety.benchmarks.hidden import PERSON, ROBOT
+from hrsafety.benchmarks.hidden import PLACES as HIDING
 from hrsafety.benchmarks.unknown import dead_end, rollout_entry, trial
 
 PLACES, ROUNDS, POINTS = 10, 5, 1000
@@ -55,6 +57,29 @@ def test_decisions_among_twelve_people(benchmark: Any, ahead: nav.Foresight | No
     benchmark.extra_info["ms a decision, simulation included"] = min(spent) / periods * 1e3
     benchmark.pedantic(runs, rounds=1)
     print(f"{'foresight' if ahead else 'shield'}: {min(spent) / periods * 1e3:.3f} ms a decision, simulation included")
+
+
+@pytest.mark.benchmark(group="decisions, one core")
+@pytest.mark.parametrize("unseen", [None, nav.laws.Unseen(person_radius=PERSON)], ids=["seen", "unseen"])
+def test_decisions_with_people_who_are_not_seen(benchmark: Any, unseen: nav.laws.Unseen | None) -> None:
+    walls, start, goal = HIDING["rooms"](np.random.default_rng(0))
+    law = nav.SafeNavigation(
+        nav.VirtualForceField(), map=walls, guide=nav.maps.Guide(), shield=nav.Shield(unseen=unseen)
+    )
+    rules = {"control_period": 0.05, "rest_time": 60.0}
+    spent = []
+    for limit in (1.0, 11.0):  # the plan of the guide is made before the first decision
+        scene = nav.Scenario(robot=ROBOT, start=start, goal=goal, time_limit=limit, **rules)
+        best = float("inf")
+        for _ in range(ROUNDS):
+            begun = time.process_time()
+            run = nav.simulate(scene, law)
+            best = min(best, time.process_time() - begun)
+        spent.append((best, run.time[-1] / scene.control_period))
+    each = (spent[1][0] - spent[0][0]) / (spent[1][1] - spent[0][1]) * 1e3
+    benchmark.extra_info["ms a decision, simulation included"] = each
+    benchmark.pedantic(nav.simulate, args=(scene, law), rounds=1)
+    print(f"{'people not seen' if unseen else 'seen people'}: {each:.3f} ms a decision, simulation included")
 
 
 @pytest.mark.benchmark(group="swept rectangle, one core")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from types import MappingProxyType
 from typing import TypeVar
@@ -13,7 +13,7 @@ from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.laws.known import LAWS
 
-__all__ = ["FILTERS", "MARGIN", "PARTS", "Entry", "entry"]
+__all__ = ["FILTERS", "MARGIN", "PARTS", "Entry", "entry", "settings_of"]
 
 MARGIN = 0.005
 """Error of the robot's motion that shields assume unless a protocol says otherwise, in m."""
@@ -173,6 +173,45 @@ def entry(word: str) -> Entry:
     drives, own = _gains(_law(name.partition("(")[0], word), name, word)
     law = drives.replaced(**own) if own else drives
     return Entry(name=word, law=law, parts=tuple(each for each in PARTS if each in parts), filter=rule)
+
+
+def settings_of(word: str, names: Sequence[str], settings: Sequence[str]) -> dict[str, float]:
+    """Return the settings in the brackets of a word.
+
+    Parameters
+    ----------
+    word : str
+        A name, with settings in brackets or without: ``rollouts(noise=0.03,drift=1)``.
+    names, settings : sequence of str
+        Names and settings that there are.
+
+    Returns
+    -------
+    dict of str to float
+        The settings that are given.
+
+    Raises
+    ------
+    InvalidParameterError
+        If the name or a setting is unknown, or a setting is given twice or no number.
+    """
+    example = f"{names[0]}({settings[0]}=3)"
+    checked_text("laws", word, f"hold words such as {example}")
+    name, bracket, rest = word.strip().lower().partition("(")
+    if name not in names or (bracket and not rest.endswith(")")):
+        rule = f"be {' or '.join(names)}, with settings as in {example}"
+        raise InvalidParameterError("laws", rule, word, meant(name, names))
+    values: dict[str, float] = {}
+    for part in rest[:-1].split(",") if bracket else ():
+        setting, _, value = (text.strip() for text in part.partition("="))
+        if setting not in settings or setting in values:
+            rule = f"give one of {', '.join(settings)} once"
+            raise InvalidParameterError("laws", rule, word, meant(setting, settings))
+        try:
+            values[setting] = float(value)
+        except ValueError:
+            raise InvalidParameterError("laws", f"give {setting} a number", word) from None
+    return values
 
 
 def _gains(law: Whose, name: str, word: str) -> tuple[Whose, dict[str, float]]:

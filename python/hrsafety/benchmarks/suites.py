@@ -14,6 +14,7 @@ from hrsafety import navigation as nav
 from hrsafety._arguments import readable
 from hrsafety.benchmarks import barn
 from hrsafety.benchmarks.drawn import DRAWN, among, crowd, drifting, first_of
+from hrsafety.benchmarks.hidden import HIDDEN
 from hrsafety.benchmarks.protocol import Case, Suite
 from hrsafety.benchmarks.reacting import REACTING
 from hrsafety.benchmarks.results import Row
@@ -258,6 +259,7 @@ SUITES: dict[str, Suite] = {
         ),
         *REACTING,
         *UNKNOWN,
+        *HIDDEN,
     )
 }
 """The suites by name."""

@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 
 from hrsafety import navigation as nav
-from hrsafety._arguments import checked_text, meant
 from hrsafety._records import dataclass
 from hrsafety.benchmarks import barn
-from hrsafety.benchmarks.entries import Entry
+from hrsafety.benchmarks.entries import Entry, settings_of
 from hrsafety.benchmarks.protocol import Case, Suite
 from hrsafety.benchmarks.results import Row
 from hrsafety.errors import InvalidParameterError
@@ -95,20 +94,7 @@ def rollout_entry(word: str) -> RolloutEntry:
     >>> rollout_entry("rollouts(acceleration=3)").turn_acceleration
     6.0
     """
-    checked_text("laws", word, "hold words such as rollouts(acceleration=3)")
-    name, bracket, rest = word.strip().lower().partition("(")
-    if name != "rollouts" or (bracket and not rest.endswith(")")):
-        raise InvalidParameterError("laws", "be rollouts, with settings as in rollouts(noise=0.03,drift=1)", word)
-    values: dict[str, float] = {}
-    for part in rest[:-1].split(",") if bracket else ():
-        setting, _, value = (text.strip() for text in part.partition("="))
-        if setting not in SETTINGS or setting in values:
-            rule = f"give one of {', '.join(SETTINGS)} once"
-            raise InvalidParameterError("laws", rule, word, meant(setting, SETTINGS))
-        try:
-            values[setting] = float(value)
-        except ValueError:
-            raise InvalidParameterError("laws", f"give {setting} a number", word) from None
+    values = settings_of(word, ("rollouts",), SETTINGS)
     acceleration = values.get("acceleration", 10.0)
     late = values.get("late", 0.0)
     if late != int(late):

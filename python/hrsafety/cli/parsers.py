@@ -32,7 +32,7 @@ LAW_NAMES = (
 SUITE_NAMES = (
     *("s4", "s5", "crowd", "recordings", "adversary", "barn", "dynabarn", "dynabarn3"),
     *("circle_crossing", "circle_crossing_unseen", "antipodal", "corridor", "crossing", "bottleneck", "scenes"),
-    *("unknown_barn", "dead_ends"),
+    *("unknown_barn", "dead_ends", "hidden_people"),
 )
 """Suites of `hrsafety.benchmarks`, named here so that ``--help`` need not load them."""
 ARENA_LAWS = (
