@@ -24,7 +24,7 @@ from hrsafety.navigation.robots.bodies import HolonomicRobot
 from hrsafety.navigation.robots.footprint import Footprint
 from hrsafety.navigation.sensing.lidar import Lidar
 
-__all__ = ["replay_of_record", "replay_of_run", "walls_of"]
+__all__ = ["replay_of_record", "replay_of_run", "scanner_of", "walls_of"]
 
 Run = Any
 """A `Trajectory`."""
@@ -219,15 +219,24 @@ def _robot(
         goal=None if scene is None else own.goal,
         tolerance=0.0 if scene is None else own.arrival_tolerance,
         decisions=decisions,
-        scan=_scanner(run, bodies),
+        scan=scanner_of(run, bodies),
     )
 
 
-def _scanner(run: Run, bodies: Bodies) -> PlayedLidar | None:
-    """Return the lidar of a robot, whose ranges are told without its noise."""
+def scanner_of(run: Run, bodies: Bodies | None = None) -> PlayedLidar | None:
+    """Return the lidar of a robot, whose ranges are told without its noise; ``None`` without one.
+
+    Parameters
+    ----------
+    run : Trajectory
+        Of one robot.
+    bodies : sequence or None
+        Who can move; those of a scenario when ``None``.
+    """
     lidar = next((each for each in (() if run.built is None else run.built.sensors) if isinstance(each, Lidar)), None)
     if lidar is None or run.obstacle_position is None:
         return None
+    bodies = _moving(run) if bodies is None else bodies
     exact = replace(lidar, range_noise=0.0)
     half = 0.5 * lidar.field_of_view
     last = half - (2.0 * half / lidar.beams if lidar.field_of_view >= 2.0 * math.pi else 0.0)

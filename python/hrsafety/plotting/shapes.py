@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -13,6 +13,7 @@ from hrsafety.navigation.obstacles.base import Obstacle
 from hrsafety.navigation.obstacles.moving import Human, MovingDisc
 from hrsafety.navigation.obstacles.moving_rectangle import Box, Mobile, MovingRectangle
 from hrsafety.navigation.obstacles.standing import Rectangle
+from hrsafety.navigation.replays import scanner_of
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.trajectory import Trajectory
@@ -29,6 +30,8 @@ Robot = HolonomicRobot | DifferentialDriveRobot
 LEAST_SPEED = 0.02  # m/s, below which a robot that can move to any side points anywhere
 MOST_COLORS = 6  # more obstacles than this cannot be told apart by color
 NOTE = "region-note"
+SCAN: style.Properties = {"linestyle": "none", "marker": ".", "markersize": 2.5, "color": "#1aa7ff"}
+"""Look of the points of a scan, as players have it."""
 _ARC_POINTS = 17
 
 
@@ -172,6 +175,22 @@ def look_angle(run: Trajectory, row: int, robot: int = 0) -> float:
         x, y = run.robots[robot].velocity[row]
         return float(np.arctan2(y, x)) if np.hypot(x, y) > LEAST_SPEED else float("nan")
     return float(run.robot_heading[row, robot])
+
+
+def scan_of(run: Trajectory) -> Callable[[int], Array] | None:
+    """Return what gives the points that the lidar of a robot hits at a row, shape (n, 2) in m; ``None`` without one."""
+    lidar = scanner_of(run)
+    if lidar is None:
+        return None
+
+    def points(row: int) -> Array:
+        ranges = lidar.ranges(row)
+        angles = run.heading[row] + np.linspace(lidar.start_angle, lidar.end_angle, len(ranges))
+        hit = (ranges > 0.0) & (ranges < lidar.range_max)
+        found: Array = run.position[row] + (ranges * np.stack([np.cos(angles), np.sin(angles)])).T[hit]
+        return found
+
+    return points
 
 
 def scene_points(obstacles: Iterable[Obstacle]) -> list[Array]:

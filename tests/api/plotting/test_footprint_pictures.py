@@ -93,3 +93,10 @@ def test_a_player_holds_the_scans_of_a_run() -> None:
     for angle, away in ((np.pi / 2.0, 2.0), (-np.pi / 2.0, 1.0)):
         near = int(np.abs(angles - angle).argmin())
         assert exact[near] == pytest.approx(away / abs(np.sin(angles[near])), abs=1e-6)
+    figure = plotting.time_sequence(run, instants=[0.0])
+    (points,) = [line for line in figure.axes[0].get_lines() if line.get_color() == shapes.SCAN["color"]]
+    places = np.stack(points.get_data(), axis=1)
+    on_wall = np.isclose(places[:, 1], 2.0, atol=1e-6) | np.isclose(places[:, 1], -1.0, atol=1e-6)
+    on_person = np.isclose(np.hypot(*(places - person.start).T), person.radius, atol=1e-6)
+    assert (on_wall | on_person).all()
+    assert len(places) == np.count_nonzero((exact > 0.0) & (exact < 5.0))

@@ -41,12 +41,11 @@ def animate(
 ) -> Path:
     """Write an animation of a run to a GIF or MP4 file.
 
-    Shown are the robot with its trail and heading, its goal, every obstacle that is present, with an id in
-    each moving one, and a clock. Stationary obstacles show their regions all the time, moving
-    ones while the robot is inside their active region; of more than six obstacles only
-    the border of the active one. A contact is ringed and leaves a red cross. The view holds the whole path
-    of the robot with a margin; whoever walks outside is out of view. The file appears under
-    its name only when it is complete.
+    Shown are the robot with its trail and heading, what its lidar hits if it has one, its goal, every obstacle that is
+    present, with an id in each moving one, and a clock. Stationary obstacles show their regions all the time, moving
+    ones while the robot is inside their active region; of more than six obstacles only the border of the active one. A
+    contact is ringed and leaves a red cross. The view holds the whole path of the robot with a margin; whoever walks
+    outside is out of view. The file appears under its name only when it is complete.
 
     Parameters
     ----------
@@ -131,6 +130,8 @@ class _Stage:
         self.contacts = axes.plot([], [], linestyle="none", zorder=7.0, animated=True, **contact)[0]
         own: style.Properties = {"facecolor": ROBOT_COLOR, "edgecolor": "white", "linewidth": 1.0, "animated": True}
         self.robot = axes.add_patch(shapes.robot(run.scenario.robot, (0.0, 0.0), zorder=5.0, **own))
+        self.scanned = shapes.scan_of(run)
+        self.scan = axes.plot([], [], zorder=2.95, animated=True, **shapes.SCAN)[0]
         self.heading = axes.plot([], [], color="white", linewidth=1.6, zorder=5.5, animated=True)[0]
         self.flash = axes.plot([], [], zorder=7.0, animated=True, **floor.FLASH)[0]
         box: style.Properties = {"boxstyle": "round,pad=0.25", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
@@ -173,7 +174,17 @@ class _Stage:
     def artists(self) -> list[Artist]:
         """Return everything that moves, from back to front."""
         moving = [artist for _, body, text, rings in self.bodies for artist in (body, text, *rings)]
-        every = [*self.fixed, *moving, self.trail, self.contacts, self.flash, self.robot, self.heading, self.clock]
+        every = [
+            self.scan,
+            *self.fixed,
+            *moving,
+            self.trail,
+            self.contacts,
+            self.flash,
+            self.robot,
+            self.heading,
+            self.clock,
+        ]
         return sorted(every, key=lambda artist: float(artist.get_zorder()))
 
     def show(self, row: int) -> None:
@@ -198,6 +209,8 @@ class _Stage:
         shapes.move(self.robot, run.position[row], float(run.heading[row]))
         angle, ahead = shapes.look_angle(run, row), run.scenario.robot.radius
         self.heading.set_data(*(run.position[row] + np.outer([0.0, ahead], [np.cos(angle), np.sin(angle)])).T)
+        if self.scanned is not None:
+            self.scan.set_data(*self.scanned(row).T)
         touched = run.contact_time[run.contact_time <= run.time[row]]
         rows = [inputs.row_at(run, float(instant)) for instant in touched]
         self.contacts.set_data(run.position[rows, 0], run.position[rows, 1])

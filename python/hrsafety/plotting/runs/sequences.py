@@ -37,10 +37,9 @@ def time_sequence(
 ) -> Figure:
     """Draw the scene of one run at several instants, side by side.
 
-    Each panel shows the robot, its path so far and every obstacle that is present, with
-    arrows for the way of one second at the present velocity (that of an obstacle by
-    differences of its positions). Among more than six obstacles the moving ones may be out of
-    view.
+    Each panel shows the robot, its path so far and every obstacle that is present, with arrows for the way of one
+    second at the present velocity (that of an obstacle by differences of its positions), and of a run with a lidar
+    the points that it hits. Among more than six obstacles the moving ones may be out of view.
 
     Parameters
     ----------
@@ -80,12 +79,16 @@ def time_sequence(
     run = inputs.checked_trajectory("trajectory", trajectory)
     chosen = _checked_instants(run, instants)
     limits = _limits(run, chosen, whole=inputs.checked_view(view))
-    handles = _handles(run, regions=regions)
+    handles, scan = _handles(run, regions=regions), shapes.scan_of(run)
+    if scan is not None:
+        handles.append(floor.handle("scan", **(shapes.SCAN | {"markersize": 6})))
     rows = [inputs.row_at(run, instant) for instant in chosen]
     titles = [f"t = {run.time[row]:.2f} s" for row in rows]
     figure, panels = floor.panels(limits, titles=titles, columns=COLUMNS, entries=len(handles), title=title)
     for axes, row in zip(panels, rows, strict=True):
         _draw_instant(axes, run, row, regions=regions)
+        if scan is not None:
+            axes.plot(*scan(row).T, zorder=2.95, **shapes.SCAN)
     return floor.finish(figure, handles, runs=[run])
 
 
