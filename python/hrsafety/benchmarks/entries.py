@@ -11,9 +11,10 @@ from hrsafety import navigation as nav
 from hrsafety._arguments import checked_text, meant
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.laws.filters import FILTERS
 from hrsafety.navigation.laws.known import LAWS
 
-__all__ = ["FILTERS", "MARGIN", "PARTS", "Entry", "entry", "settings_of"]
+__all__ = ["MARGIN", "PARTS", "Entry", "entry", "settings_of"]
 
 MARGIN = 0.005
 """Error of the robot's motion that shields assume unless a protocol says otherwise, in m."""
@@ -27,20 +28,6 @@ _OWN: Mapping[str, nav.Law] = MappingProxyType(
         "straight": nav.laws.BorensteinKoren(attractive_gain=50.0, repulsive_gain=0.0),
     }
 )
-FILTERS: Mapping[str, type[nav.laws.SafetyFilter]] = MappingProxyType(
-    {
-        kind.NAME: kind
-        for kind in (
-            nav.laws.Barrier,
-            nav.laws.BarrierUnicycle,
-            nav.laws.CollisionCone,
-            nav.laws.VelocityClamp,
-            nav.laws.ResponsibilityRule,
-            nav.laws.ApproachMonitor,
-        )
-    }
-)
-"""Filters that a word may put into the place of the shield."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

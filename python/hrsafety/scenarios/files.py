@@ -126,7 +126,8 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
     - ``[measurement]`` with the fields of `Measurement`;
     - ``[safe]``, which puts parts around the law: ``preferred_speed``, ``takeover`` and
       ``critical_distance`` of `SafeNavigation`, and the tables ``[safe.shield]`` and ``[safe.yielding]`` or
-      ``[safe.foresight]`` with the fields of `Shield`, `Yielding` and `Foresight`;
+      ``[safe.foresight]`` with the fields of `Shield`, `Yielding` and `Foresight`, or ``[safe.filter]`` with ``type``,
+      such as ``"barrier"``, and the fields of that filter;
     - ``[law]`` with ``type``, the name of a law such as ``"virtual_force_field"`` or a short name such as
       ``"vff"``, and the fields of its class. An unknown name is an error that lists all.
 

@@ -12,6 +12,7 @@ from hrsafety import navigation as nav
 from hrsafety._arguments import meant
 from hrsafety._keys import Keys, Kind, checked, located
 from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.laws.filters import FILTERS
 from hrsafety.navigation.laws.known import LAWS
 
 __all__ = ["LAWS", "SHORT_NAMES", "keys_of", "law_named", "law_of", "name_of", "safe_of"]
@@ -72,7 +73,7 @@ _PARTS: Mapping[str, type[nav.laws.Shield] | type[nav.laws.Yielding] | type[nav.
 )
 _SAFE: Keys = MappingProxyType(
     {
-        **dict.fromkeys(_PARTS, kind.table),
+        **dict.fromkeys((*_PARTS, "filter"), kind.table),
         "preferred_speed": kind.number,
         "takeover": kind.boolean,
         "critical_distance": kind.number,
@@ -90,5 +91,23 @@ def safe_of(law: nav.Law, table: dict[str, Any]) -> nav.laws.SafeNavigation:
             values = checked(f"safe.{name}", given[name], keys)
             with located(f"safe.{name}"):
                 given[name] = part(**values)
+    if "filter" in given:
+        given["filter"] = _filter_of(given["filter"])
     with located("safe"):
         return nav.laws.SafeNavigation(law, **given)
+
+
+def _filter_of(table: dict[str, Any]) -> nav.laws.SafetyFilter:
+    """Return the filter that a table ``[safe.filter]`` describes."""
+    if "type" not in table:
+        raise kind.missing("safe.filter.type", f"write one of {', '.join(FILTERS)}")
+    name = kind.word("safe.filter.type", table["type"])
+    if name not in FILTERS:
+        known = f"be one of {', '.join(FILTERS)}"
+        raise InvalidParameterError("safe.filter.type", known, kind.shown(name), meant(name, [*FILTERS]))
+    made = FILTERS[name]
+    numbers = {each.name: kind.number for each in fields(made) if each.init}  # type: ignore[arg-type]  # all are dataclasses
+    given = checked("safe.filter", table, {"type": kind.word, **numbers})
+    del given["type"]
+    with located("safe.filter"):
+        return made(**given)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import field, fields
+from types import MappingProxyType
 from typing import ClassVar
 
 import numpy as np
@@ -17,6 +19,7 @@ from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.plausibility import ResultWarning
 
 __all__ = [
+    "FILTERS",
     "FILTER_INFEASIBLE",
     "ApproachMonitor",
     "Barrier",
@@ -393,3 +396,12 @@ class ApproachMonitor(SafetyFilter):
     simulation_time_step: float = 0.1
     margin: float = 0.0
     _native: _hrsafety.SafetyFilter = field(init=False, repr=False, compare=False)
+
+
+FILTERS: Mapping[str, type[SafetyFilter]] = MappingProxyType(
+    {
+        kind.NAME: kind
+        for kind in (Barrier, BarrierUnicycle, CollisionCone, VelocityClamp, ResponsibilityRule, ApproachMonitor)
+    }
+)
+"""Filters by their names."""
