@@ -10,9 +10,11 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
+from hrsafety import _keys as kind
 from hrsafety import scenarios, sweep
 from hrsafety._arguments import Array, callback, checked_text, count, sequence, word
 from hrsafety._display import displayed
+from hrsafety._keys import checked, parsed
 from hrsafety._records import dataclass
 from hrsafety._statistics import Mean, Share, compare_paired, mean_interval, wilson
 from hrsafety.arena.certificates import certify_many
@@ -20,13 +22,17 @@ from hrsafety.arena.episodes import COLUMNS, ENDS, SENSINGS, ArenaStudy
 from hrsafety.arena.ranking import Ranks, ranks
 from hrsafety.benchmarks.entries import Entry, entry
 from hrsafety.errors import InvalidParameterError
+from hrsafety.io.places.nav2 import read_nav2
+from hrsafety.navigation.laws.declared import Law
 from hrsafety.navigation.laws.python_law import AnyLaw, as_law
 from hrsafety.plausibility import ResultWarning
+from hrsafety.scenarios.laws import law_of, safe_of
 from hrsafety.sweep.running import Progress
 
 __all__ = ["Cell", "Leaderboard", "Standing", "run"]
 
 PEOPLE = ("reacting", "not_reacting")
+FILES = (".toml", ".yaml", ".yml")
 TASK, BLOCK = 50, 20
 """Episodes of a task, and seeds that are kept together."""
 MOST_SEEDS = 100_000
@@ -213,8 +219,10 @@ def run(
     Parameters
     ----------
     laws : sequence of str, or mapping of str to str or law
-        Words such as ``"orca+shield+yielding"`` or ``"straight+barrier(margin=0.2)"``; or entries by name: words, laws,
-        functions of a `Situation`, objects with ``velocity`` or ``force``.
+        Words such as ``"orca+shield+yielding"`` or ``"straight+barrier(margin=0.2)"``; a TOML file with the tables
+        ``[law]`` and ``[safe]`` of `hrsafety.scenarios.load`; a parameter file of Nav2, whose controllers are entries;
+        or entries by name: those, laws, functions of a `Situation`, objects with ``velocity`` or ``force``, policies
+        as `hrsafety.gym.PolicyLaw`.
     scenes : sequence of str or None
         Which of `hrsafety.scenarios.SOCIAL`; all when ``None``.
     seeds : int
@@ -299,12 +307,23 @@ def _entries(laws: object) -> dict[str, Entry]:
         laws = {checked_text("laws", each, "hold words such as orca+shield"): each for each in words}
     if not laws:
         raise InvalidParameterError("laws", "name at least one entry", laws)
-    found = {}
+    found: dict[str, Entry] = {}
     for name, given in laws.items():
         checked_text("laws", name, "have names")
-        own = entry(given) if isinstance(given, str) else Entry(name=name, law=as_law(given), parts=())
-        found[name] = own
+        if isinstance(given, str) and given.lower().endswith(FILES):
+            found |= {own: Entry(name=own, law=law, parts=()) for own, law in _of_file(name, Path(given)).items()}
+        else:
+            found[name] = entry(given) if isinstance(given, str) else Entry(name=name, law=as_law(given), parts=())
     return found
+
+
+def _of_file(name: str, path: Path) -> dict[str, Law]:
+    """Return the law of a TOML file, or those of the controllers of a parameter file of Nav2."""
+    if path.suffix.lower() == ".toml":
+        given = checked("", parsed(path), dict.fromkeys(("law", "safe"), kind.table), required=("law",))
+        law = law_of(given["law"])
+        return {name: safe_of(law, given["safe"]) if "safe" in given else law}
+    return {f"{name}:{own}": law for own, law in read_nav2(path).laws.items()}
 
 
 def _folder(out: str | PathLike[str] | None, cell: Cell) -> Path | None:

@@ -125,7 +125,9 @@ def _percent(share: Share) -> str:
 def _command(board: arena.Leaderboard, cell: arena.Cell) -> str:
     """Return what makes the episodes of a row again."""
     scenes = [] if len(board.scenes) == len(arena.CARDS) else ["--scenes", *board.scenes]
-    words = ["--laws", cell.entry, *scenes, "--seeds", str(board.seeds)]
+    file = cell.entry.rpartition(":")[0]
+    law = file if file.lower().endswith((".yaml", ".yml")) else cell.entry
+    words = ["--laws", law, *scenes, "--seeds", str(board.seeds)]
     return shlex.join(["hrsafety", "arena", *words, "--people", cell.people, "--sensing", cell.sensing])
 
 

@@ -150,3 +150,24 @@ def test_a_command_of_the_page_gives_its_row_again(tmp_path: Path, capsys: pytes
     capsys.readouterr()
     assert main(["arena", "--laws", "nobody"]) == 2
     assert "--laws" in capsys.readouterr().err
+
+
+def test_files_are_entries(tmp_path: Path) -> None:
+    (tmp_path / "mine.toml").write_text(
+        '[law]\ntype = "orca"\nhorizon = 2.0\n[safe.filter]\ntype = "barrier"\nmargin = 0.1\n', encoding="utf-8"
+    )
+    file = str(tmp_path / "mine.toml")
+    found = arena.run([file], **FEW)
+    law = nav.OptimalReciprocalCollisionAvoidance(horizon=2.0)
+    same_law = arena.run({file: nav.SafeNavigation(law, filter=nav.laws.Barrier(margin=0.1))}, **FEW)
+    assert same(found, same_law)
+    for text, name in (
+        ('[law]\ntype = "orca"\n[safe.filter]\nmargin = 0.1\n', "safe.filter.type"),
+        ('[law]\ntype = "orca"\n[safe.filter]\ntype = "barrier"\nrate = 0\n', "safe.filter.rate"),
+        ('[law]\ntype = "orca"\n[safe.filter]\ntype = "barier"\n', "barrier"),
+        ('[law]\ntype = "orca"\n[robot]\n', "robot"),
+        ("[safe]\n", "law"),
+    ):
+        (tmp_path / "bad.toml").write_text(text, encoding="utf-8")
+        with pytest.raises(InvalidParameterError, match=name):
+            arena.run([str(tmp_path / "bad.toml")], **FEW)
