@@ -73,13 +73,14 @@ fn defaults(kind: &str) -> Value {
             "use_cost_regulated_linear_velocity_scaling": true, "use_rotate_to_heading": true,
             "use_collision_detection": true, "allow_reversing": false}"#
         }
-        _ => {
+        "mppi" => {
             r#"{"vx_min": -0.35, "vx_max": 0.5, "vy_max": 0, "wz_max": 1.9, "ax_max": 3, "ay_max": 3, "az_max": 3.5,
             "vx_std": 0.2, "vy_std": 0.2, "wz_std": 0.4, "model_dt": 0.1, "temperature": 0.3, "gamma": 0.015,
             "cost_weight": 3.81, "goal_weight": 5, "path_align_weight": 10, "path_follow_weight": 5,
             "path_angle_weight": 2.2, "prefer_forward_weight": 5, "cost_scaling_factor": 3,
             "inflation_radius": 0.55, "batch_size": 256, "time_steps": 28}"#
         }
+        other => panic!("no law {other}"),
     };
     let mut found: Value = serde_json::from_str(text).unwrap();
     found["prediction"] = "static".into();
