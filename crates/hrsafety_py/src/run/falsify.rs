@@ -81,6 +81,9 @@ fn columns<'py>(
     })
 }
 
+/// Columns of encounters, times in s and starts in m, and when the robot arrives with nobody there, in s.
+type HiddenColumns<'py> = (Bound<'py, PyDict>, Vec<(f64, [f64; 2])>, f64);
+
 #[pymethods]
 impl Hunt {
     #[new]
@@ -180,6 +183,7 @@ impl Hunt {
 
     /// Columns of encounters with people who were hidden, with their times in s and starts in m, and when the robot
     /// arrives with nobody there, in s.
+    #[allow(clippy::too_many_arguments)] // each by name in Python's face
     #[pyo3(signature = (property, unseen, *, every, lasting, most, seed))]
     fn hidden<'py>(
         &self,
@@ -190,7 +194,7 @@ impl Hunt {
         lasting: f64,
         most: usize,
         seed: u64,
-    ) -> PyResult<(Bound<'py, PyDict>, Vec<(f64, [f64; 2])>, f64)> {
+    ) -> PyResult<HiddenColumns<'py>> {
         let property = property.property()?;
         let law = self.law.get();
         let (alone, found) = watched_law(py, (law, Some(1)), Report::none(), |control| {

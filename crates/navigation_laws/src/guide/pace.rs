@@ -10,6 +10,9 @@ use unknown_places::unseen::Ground;
 /// A way is at most so many times dearer where the robot has to be slow.
 const DEAREST: f64 = 20.0;
 
+/// People who appear farther away are taken to appear there, in m.
+const FARTHEST: f64 = 4.0;
+
 /// Beams that tell what is seen from a node.
 const BEAMS: u32 = 360;
 
@@ -51,15 +54,16 @@ impl Pace {
     pub(super) fn factors(&self, place: Vector2<f64>) -> [f64; 16] {
         let ground = &*self.ground;
         let (enough, middle) = (self.enough(), ground.in_cells(place));
-        let reach = enough / ground.cell();
+        let farthest = enough.min(FARTHEST);
+        let reach = farthest / ground.cell();
         let wide = reach.ceil() as i64 + 2;
         let first = middle.map(|axis| axis.floor() as i64 - wide);
-        let side = (2 * wide + 1) as usize;
-        let mut seen = vec![false; side * side];
+        let side = 2 * wide + 1;
+        let mut seen = vec![false; (side * side) as usize];
         let index = |[column, row]: [i64; 2]| {
             let [column, row] = [column - first[0], row - first[1]];
-            let within = column >= 0 && row >= 0 && column < side as i64 && row < side as i64;
-            within.then(|| row as usize * side + column as usize)
+            let within = column >= 0 && row >= 0 && column < side && row < side;
+            within.then_some((row * side + column) as usize)
         };
         for beam in 0..BEAMS {
             let (sin, cos) = (f64::from(beam) * std::f64::consts::TAU / f64::from(BEAMS)).sin_cos();
@@ -78,16 +82,16 @@ impl Pace {
             });
         }
         let mut nearest = [f64::INFINITY; 16];
-        for row in 1..side as i64 - 1 {
-            for column in 1..side as i64 - 1 {
+        for row in 1..side - 1 {
+            for column in 1..side - 1 {
                 let cell = [first[0] + column, first[1] + row];
-                let at = row as usize * side + column as usize;
+                let at = (row * side + column) as usize;
+                let beside = [at - 1, at + 1, at - side as usize, at + side as usize];
                 let hidden = !seen[at]
                     && ground
                         .cell_at(cell)
                         .is_some_and(|cell| ground.walkable().contains(cell));
-                if !hidden || !(seen[at - 1] || seen[at + 1] || seen[at - side] || seen[at + side])
-                {
+                if !hidden || !beside.into_iter().any(|place| seen[place]) {
                     continue;
                 }
                 let offset = [0, 1].map(|axis| cell[axis] as f64 + 0.5 - middle[axis]);
@@ -101,6 +105,7 @@ impl Pace {
             }
         }
         nearest.map(|away| {
+            let away = away.min(farthest);
             if away >= enough {
                 1.0
             } else {

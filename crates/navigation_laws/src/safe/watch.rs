@@ -7,6 +7,7 @@ use crate::guide::Pace;
 use crate::safe::settings::SafeNavigation;
 use crate::shield::{Hidden, Shield, ShieldLimits};
 use crate::{Shown, Situation, Unwatched};
+use navigation_world::sensing::measurement::Measurement;
 use navigation_world::world::geometry::Body;
 use navigation_world::world::map::StaticMap;
 use navigation_world::world::obstacle::Shape;
@@ -87,7 +88,7 @@ impl Watch {
                 .map_err(|error| error.within(&format!("obstacles[{index}]")))?;
         }
         let measurement = scenario.measurement;
-        let own = measurement.filter(|found| found.of_robot());
+        let own = measurement.filter(Measurement::of_robot);
         let others = measurement.filter(|found| found.of_obstacle(false));
         check_errors(
             &unseen,

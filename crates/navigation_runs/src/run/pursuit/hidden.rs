@@ -166,7 +166,7 @@ impl HiddenHunt<'_> {
         let count = hiding.len().min(most);
         for index in 0..count {
             let each = &hiding[index * hiding.len() / count];
-            let start = self.worst(&rows, &mut lurker, each, &mut stream);
+            let start = worst(&rows, &mut lurker, each, &mut stream);
             lurker.appears = each.time;
             let until = each.time + self.lasting;
             let encounter = self.run(start, lurker.clone(), until, None, stop)?;
@@ -202,46 +202,40 @@ impl HiddenHunt<'_> {
             places,
         })
     }
+}
 
-    /// The start from which somebody comes nearest to a robot that does not react, while it moves toward him.
-    fn worst(
-        &self,
-        rows: &Pursued,
-        lurker: &mut Lurker,
-        hiding: &Hiding,
-        stream: &mut Stream,
-    ) -> [f64; 2] {
-        let [first, last] = hiding.rows;
-        lurker.appears = 0.0;
-        let drawn = (0..STARTS).map(|_| hiding.places[stream.below(hiding.places.len())]);
-        let starts: Vec<[f64; 2]> = drawn.collect();
-        let mut people: Vec<(Vector2<f64>, f64)> = starts
-            .iter()
-            .map(|start| ((*start).into(), f64::INFINITY))
-            .collect();
-        for row in first..last {
-            let (place, velocity) = (vector(&rows.position, row), vector(&rows.velocity, row));
-            if (row - first) % LOOKED == 0 {
-                let places: Vec<Vector2<f64>> = people.iter().map(|(own, _)| *own).collect();
-                lurker.look(place, &places);
-            }
-            let step = rows.time[row + 1] - rows.time[row];
-            for (own, least) in &mut people {
-                let offset = *own - place;
-                let toward = velocity.norm() > CONTACT_SPEED && velocity.dot(&offset) > 0.0;
-                // Who does not come ahead of it counts less than who does.
-                let gap = offset.norm() + if toward { 0.0 } else { 10.0 };
-                *least = least.min(gap);
-                let way = lurker.velocity(hiding.time, *own, place) * step;
-                *own = lurker.moved(*own, way);
-            }
+/// The start from which somebody comes nearest to a robot that does not react, while it moves toward him.
+fn worst(rows: &Pursued, lurker: &mut Lurker, hiding: &Hiding, stream: &mut Stream) -> [f64; 2] {
+    let [first, last] = hiding.rows;
+    lurker.appears = 0.0;
+    let drawn = (0..STARTS).map(|_| hiding.places[stream.below(hiding.places.len())]);
+    let starts: Vec<[f64; 2]> = drawn.collect();
+    let mut people: Vec<(Vector2<f64>, f64)> = starts
+        .iter()
+        .map(|start| ((*start).into(), f64::INFINITY))
+        .collect();
+    for row in first..last {
+        let (place, velocity) = (vector(&rows.position, row), vector(&rows.velocity, row));
+        if (row - first) % LOOKED == 0 {
+            let places: Vec<Vector2<f64>> = people.iter().map(|(own, _)| *own).collect();
+            lurker.look(place, &places);
         }
-        let worst = people
-            .iter()
-            .enumerate()
-            .min_by(|one, two| one.1.1.total_cmp(&two.1.1));
-        starts[worst.map_or(0, |(index, _)| index)]
+        let step = rows.time[row + 1] - rows.time[row];
+        for (own, least) in &mut people {
+            let offset = *own - place;
+            let toward = velocity.norm() > CONTACT_SPEED && velocity.dot(&offset) > 0.0;
+            // Who does not come ahead of it counts less than who does.
+            let gap = offset.norm() + if toward { 0.0 } else { 10.0 };
+            *least = least.min(gap);
+            let way = lurker.velocity(hiding.time, *own, place) * step;
+            *own = lurker.moved(*own, way);
+        }
     }
+    let worst = people
+        .iter()
+        .enumerate()
+        .min_by(|one, two| one.1.1.total_cmp(&two.1.1));
+    starts[worst.map_or(0, |(index, _)| index)]
 }
 
 fn vector(values: &[f64], row: usize) -> Vector2<f64> {
