@@ -2,7 +2,7 @@
 
 ``python docs/measure_hidden_people.py --places 30`` prints a table, ``--write`` replaces what stands between the marks
 of docs/guides/people_behind_corners.md. Encounters are kept in the folder ``HRSAFETY_ROWS`` where that is set, place
-by place, and the run resumes there.
+by place, and the run resumes there; ``--kept`` counts those alone.
 """
 
 from __future__ import annotations
@@ -25,13 +25,15 @@ MOST = 60
 """Encounters in a place: one every half second, at most."""
 
 
-def place(word: str, number: int) -> dict[str, Any]:
+def place(word: str, number: int, *, only_kept: bool) -> dict[str, Any] | None:
     """Return the encounters in a place, kept ones where there are some."""
     folder = os.environ.get("HRSAFETY_ROWS")
     kept = None if folder is None else Path(folder) / f"{word}-{number}.json"
     if kept is not None and kept.exists():
         found: dict[str, Any] = json.loads(kept.read_text(encoding="utf-8"))
         return found
+    if only_kept:
+        return None
     columns, alone = encounters(hidden_entry(word), number, person_speed=WALKING, most=MOST)
     faulty = columns["margin"] < 0.0
     found = {
@@ -48,10 +50,11 @@ def place(word: str, number: int) -> dict[str, Any]:
     return found
 
 
-def table(places: int, words: list[str]) -> str:
+def table(places: int, words: list[str], *, only_kept: bool) -> str:
     """Return the table."""
     lines = head(
         "place and shield",
+        "places",
         "encounters",
         "at fault %",
         "fastest at fault, m/s",
@@ -61,19 +64,23 @@ def table(places: int, words: list[str]) -> str:
         "not in 60 s",
     )
     for word in words:
-        found = [place(word, number) for number in range(places)]
+        made = (place(word, number, only_kept=only_kept) for number in range(places))
+        found = [each for each in made if each is not None]
+        if not found:
+            continue
         total = {name: sum(each[name] for each in found) for name in ("count", "fault", "moving", "overlooked")}
         times = [each["time"] for each in found]
         lines.append(
             line(
                 f"`{word}`",
+                len(found),
                 total["count"],
                 percent(total["fault"], total["count"], 2),
                 f"{max(each['fastest'] for each in found):.2f}" if total["fault"] else "-",
                 total["moving"],
                 total["overlooked"],
                 f"{np.median(times):.1f}, {max(times):.1f}",
-                f"{sum(time >= LIMIT for time in times)} of {places}",
+                sum(time >= LIMIT for time in times),
             )
         )
     return "\n".join(lines) + "\n"
@@ -83,5 +90,7 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--places", type=int, default=10, help="places of each kind")
     parser.add_argument("--laws", nargs="*", default=list(SUITE_LAWS))
+    parser.add_argument("--kept", action="store_true", help="no new encounters")
     given, sys.argv[1:] = parser.parse_known_args()
-    print_or_write(PAGE, {"encounters": ("hidden people", lambda: table(given.places, given.laws))})
+    made = {"encounters": ("hidden people", lambda: table(given.places, given.laws, only_kept=given.kept))}
+    print_or_write(PAGE, made)

@@ -1,9 +1,9 @@
 //! Speeds that people whom nobody sees leave a robot on its way.
 
 use nalgebra::Vector2;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use crate::guide::nodes::LINKS;
+use crate::guide::nodes::{LINKS, Nodes};
 use unknown_places::map::walk_while;
 use unknown_places::unseen::Ground;
 
@@ -31,6 +31,9 @@ pub struct Pace {
     pub deceleration: f64,
     /// Control period in s.
     pub period: f64,
+    /// How many times dearer ways are at the nodes of a guide, as far as they were asked for; plans that are made anew share
+    /// them.
+    pub known: Arc<OnceLock<Vec<OnceLock<Box<[f64; 16]>>>>>,
 }
 
 impl Pace {
@@ -49,9 +52,19 @@ impl Pace {
         self.apart + self.max_speed * (self.max_speed / (2.0 * self.deceleration) + slope)
     }
 
+    /// How many times dearer it is at a node of a guide to go against a link.
+    pub(super) fn factor(&self, nodes: &Nodes, node: usize, link: usize) -> f64 {
+        let made = || (0..nodes.count()).map(|_| OnceLock::new()).collect();
+        let make = || Box::new(self.factors(nodes.place(node)));
+        match self.known.get_or_init(made).get(node) {
+            Some(known) => known.get_or_init(make)[link],
+            None => make()[link],
+        }
+    }
+
     /// How many times dearer a way is at a place, against the direction of each link.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // cells around a place
-    pub(super) fn factors(&self, place: Vector2<f64>) -> [f64; 16] {
+    fn factors(&self, place: Vector2<f64>) -> [f64; 16] {
         let ground = &*self.ground;
         let (enough, middle) = (self.enough(), ground.in_cells(place));
         let farthest = enough.min(FARTHEST);
@@ -138,6 +151,7 @@ mod tests {
             max_speed: 1.2,
             deceleration: 2.0,
             period: 0.05,
+            known: Arc::default(),
         };
         // The first link leads in +x: its way comes from there, and the third one the other way.
         let before = pace.factors(Vector2::new(-0.6, 0.3));

@@ -54,10 +54,8 @@ pub(super) struct CostToGo {
 pub(super) struct GuideSearch {
     room: MapClearance,
     nodes: Nodes,
-    /// How many times dearer ways are where people can come from who are not seen, if they are reckoned with, for each
-    /// node and link.
+    /// How many times dearer ways are where people can come from who are not seen, if they are reckoned with.
     pace: Option<Pace>,
-    factors: Vec<Option<Box<[f64; 16]>>>,
     /// Clearances up to `far`, NaN where not yet known.
     clearance: Vec<f64>,
     far: f64,
@@ -88,7 +86,6 @@ impl GuideSearch {
         found.cost[goal] = cost_of_goal;
         found.next[goal] = narrow(goal);
         Self {
-            factors: vec![None; pace.as_ref().map_or(0, |_| nodes.count())],
             pace,
             clearance: vec![f64::NAN; nodes.count()],
             far: (room.robot_radius + NEAR.max(beyond)).max(room.turning_radius + TURNING_ROOM),
@@ -149,13 +146,9 @@ impl GuideSearch {
     }
 
     /// How many times dearer it is at a node to go against a link.
-    fn factor(&mut self, node: usize, link: usize) -> f64 {
-        let Some(pace) = &self.pace else {
-            return 1.0;
-        };
-        let place = self.nodes.place(node);
-        let known = self.factors[node].get_or_insert_with(|| Box::new(pace.factors(place)));
-        known[link]
+    fn factor(&self, node: usize, link: usize) -> f64 {
+        let pace = self.pace.as_ref();
+        pace.map_or(1.0, |pace| pace.factor(&self.nodes, node, link))
     }
 
     fn clearance_of(&mut self, node: usize) -> f64 {

@@ -144,6 +144,7 @@ impl Watch {
             max_speed: limits.max_speed,
             deceleration: limits.max_acceleration,
             period: limits.period,
+            known: Arc::default(),
         })
     }
 
