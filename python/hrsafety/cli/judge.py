@@ -143,6 +143,13 @@ def _robot(options: argparse.Namespace) -> tuple[dict[str, Any], tuple[ResultWar
 # ---- report -------------------------------------------------------------------------------------------------
 
 
+def _body(found: Judgement) -> str:
+    """Return by what the robot is judged."""
+    if found.footprint is None:
+        return f"radius {found.robot_radius:g} m"
+    return f"footprint of {len(found.footprint.corners)} corners, within {found.robot_radius:.3g} m"
+
+
 def _said(found: Judgement) -> str:
     """Return the verdict in a sentence."""
     counts = found.counts
@@ -178,7 +185,7 @@ def _report(options: argparse.Namespace, log: io.RobotLog, found: Judgement) -> 
     crowd = "nobody" if log.people is None else f"{len(log.people.people())}, {len(log.people)} positions"
     facts = [
         ("log", f"{options.log} ({log.source.format}, SHA-256 {log.source.sha256[:16]})"),
-        ("robot", f"{len(log)} poses in {log.duration:.2f} s, in frame {log.frame}; radius {found.robot_radius:g} m"),
+        ("robot", f"{len(log)} poses in {log.duration:.2f} s, in frame {log.frame}; {_body(found)}"),
         ("people", f"{crowd}; radius {found.person_radius:g} m"),
         ("instants", f"every {found.step:g} s; velocities over {found.window:g} s keep what is slower than {wide}"),
         ("error", f"{found.error:.3f} m of a clearance, from the noise of the log"),
@@ -349,6 +356,7 @@ def _values(log: io.RobotLog, found: Judgement) -> dict[str, Any]:
         "bandwidth_Hz": found.bandwidth,
         "error_m": found.error,
         "robot_radius_m": found.robot_radius,
+        "footprint_m": None if found.footprint is None else found.footprint.corners,
         "person_radius_m": found.person_radius,
         "delay_s": {topic: each._asdict() for topic, each in log.delay.items()},
         "pose_jumps": [each._asdict() for each in log.pose_jumps],
