@@ -74,6 +74,24 @@ def test_two_wheels_turn_to_a_goal_behind_them() -> None:
     assert abs(math.remainder(float(run.heading[-1]) - math.pi, 2.0 * math.pi)) < 1.0
 
 
+@pytest.mark.parametrize("others", [[(3.4, 2.4), (3.4, 1.4)], [(3.0, 2.3), (4.0, 1.7)]])
+def test_two_wheels_go_around_people_who_stand_in_their_way(others: list[tuple[float, float]]) -> None:
+    walls = [[(0.0, 0.0), (8.0, 0.0), (8.0, 5.0), (0.0, 5.0), (0.0, 0.0)]]
+    people = [nav.Person(start=place, route=[place], desired_speed=1.0) for place in others]
+    law = SafeNavigation(
+        FIELD,
+        map=nav.StaticMap.from_polylines(walls),
+        guide=nav.Guide(),
+        shield=Shield(person_speed=1.6, margin=0.02, wall_margin=0.02),
+        foresight=Foresight(),
+    )
+    body = nav.DifferentialDriveRobot(radius=0.25, max_speed=0.6, max_acceleration=3.0)
+    robot = nav.Robot(body, start=(0.6, 2.0), goal=(7.4, 1.9), law=law)
+    run = nav.simulate(nav.World(robots=[robot], people=people, walls=walls, time_limit=40.0))
+    assert run.outcome == "arrived"
+    assert not run.contacts_at_fault
+
+
 def test_threads_and_batches_change_no_bit() -> None:
     law = SafeNavigation(FIELD, shield=Shield(latency=0.1, position_error=0.0354), foresight=Foresight())
     scenes = [replace(each, measurement=LATE) for each in scenarios.random_traffic_batch(range(6), obstacles=6)]

@@ -57,8 +57,24 @@ pub struct AcceptedTarget<C> {
 pub struct Driven {
     /// Places after the four quarters of a stage, in m.
     pub places: [Vector2<f64>; 4],
-    /// Price of its heading at the end, in s.
-    pub turning: f64,
+    /// Where a robot with two wheels looks at the end.
+    pub facing: Option<Facing>,
+}
+
+/// Heading of a robot that has to turn before it drives another way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facing {
+    /// Direction, of length 1.
+    pub ahead: Vector2<f64>,
+    /// Price of a turn in s for each rad.
+    pub price: f64,
+}
+
+impl Facing {
+    /// Price of the turn to a direction, in s.
+    fn turning(&self, to: Vector2<f64>) -> f64 {
+        self.price * self.ahead.perp(&to).atan2(self.ahead.dot(&to)).abs()
+    }
 }
 
 /// Places after the four quarters of a time in s of a robot that takes up a velocity evenly and keeps it.
@@ -195,10 +211,18 @@ impl Foreseer {
         }
         let change = (target.velocity - self.last.velocity).norm() / self.limits.max_speed;
         let haste = (target.velocity.norm() / self.preferred - 1.0).max(0.0);
+        let end = driven.places[3] - scene.robot.position;
+        let turning = driven.facing.map_or(0.0, |facing| {
+            let onward = self.program.onward(end).unwrap_or_default();
+            facing.turning(onward)
+        });
         price
-            + self.program.cost(driven.places[3] - scene.robot.position)
-            + driven.turning
+            + self.program.cost(end)
+            + turning
             + settings.change_weight * change
             + settings.speed_weight * settings.step * haste
+            + self
+                .impatience
+                .price(scene.robot.position + target.velocity * settings.step)
     }
 }

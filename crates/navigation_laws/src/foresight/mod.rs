@@ -7,6 +7,7 @@
 mod candidates;
 mod estimate;
 mod ground;
+mod impatience;
 mod prediction;
 mod program;
 
@@ -16,13 +17,14 @@ mod tests;
 use crate::guide::Plan;
 use crate::shield::{ShieldLimits, StaticObstacles};
 use estimate::Estimates;
+use impatience::Impatience;
 use navigation_world::world::geometry::RobotState;
 use numeric::error::{Failure, Given, Result, not_negative, positive};
 use numeric::lanes::Vector2;
 use prediction::Prediction;
 use program::Program;
 
-pub use candidates::{AcceptedTarget, Driven, Target, taken_up};
+pub use candidates::{AcceptedTarget, Driven, Facing, Target, taken_up};
 pub use estimate::Sighting;
 
 /// Most stages of the program.
@@ -171,6 +173,7 @@ pub struct Foreseer {
     /// Where the robot was at the last decision, and where its first velocity leads, in m.
     ends: [Vector2<f64>; 2],
     candidates: Vec<candidates::Candidate>,
+    impatience: Impatience,
     processor: pulp::Arch,
 }
 
@@ -199,6 +202,7 @@ impl Foreseer {
             last: Target::forwards(Vector2::zeros()),
             ends: [Vector2::zeros(); 2],
             candidates: Vec::new(),
+            impatience: Impatience::new(preferred),
             processor: pulp::Arch::new(),
         })
     }
@@ -229,6 +233,7 @@ impl Foreseer {
             .solve(&settings, scene, &self.prediction, radius, self.processor);
         let place = scene.robot.position;
         self.ends = [place, place];
+        self.impatience.observe(place, period);
         let mut cheapest = true;
         let mut choice = |foreseer: &mut Self, target: Target| {
             let Some(command) = take(&target) else {

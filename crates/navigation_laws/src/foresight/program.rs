@@ -11,6 +11,9 @@ pub(super) const FARTHEST_MOVE: f64 = 2.24;
 /// Way to the goal in m at which the robot is there.
 const THERE: f64 = 0.1;
 
+/// Stages over which the way onward is looked at.
+const ONWARD: usize = 3;
+
 /// Cells of the longest move along an axis.
 const MOVE: usize = 2;
 
@@ -264,33 +267,61 @@ impl Program {
         }
     }
 
-    /// Places of the cheapest way at the stages, in m: the robot itself, where the first velocity leads, then nodes.
+    /// Node nearest to a place in m from the robot after the first stage.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // within the grid
-    pub fn way(&self, [origin, end]: [Vector2<f64>; 2]) -> Vec<[f64; 2]> {
-        let across = self.across();
+    fn nearest(&self, place: Vector2<f64>) -> [usize; 2] {
         let rim = self.rim(1) as f64;
-        let cell = ((end - origin) / self.spacing).map(|value| value.round().clamp(-rim, rim));
-        let index = |value: f64| (value + self.half as f64) as usize;
-        let [mut column, mut row] = [index(cell.x), index(cell.y)];
+        let cell = (place / self.spacing).map(|value| value.round().clamp(-rim, rim));
+        [cell.x, cell.y].map(|value| (value + self.half as f64) as usize)
+    }
+
+    /// Node of a stage to which the cheapest move leads, `None` at the goal and where no move leads on.
+    fn next(&self, stage: usize, [column, row]: [usize; 2]) -> Option<[usize; 2]> {
+        let across = self.across();
+        if self.ground[row * across + column] <= THERE {
+            return None;
+        }
+        let (mut least, mut best) = (f64::INFINITY, None);
+        for (x, y) in MOVES {
+            let to = [column.wrapping_add_signed(x), row.wrapping_add_signed(y)];
+            let cost = self.costs[stage - 1][to[1] * across + to[0]];
+            if cost < least {
+                (least, best) = (cost, Some(to));
+            }
+        }
+        best
+    }
+
+    /// Place of a node in m from the robot.
+    fn place(&self, [column, row]: [usize; 2]) -> Vector2<f64> {
+        let half = self.half as f64;
+        Vector2::new(column as f64 - half, row as f64 - half) * self.spacing
+    }
+
+    /// Way in m that the cheapest moves lead on, after the first stage, from a place in m from the robot; `None` where
+    /// they stay.
+    pub fn onward(&self, place: Vector2<f64>) -> Option<Vector2<f64>> {
+        let mut node = self.nearest(place);
+        for stage in 2..=self.stages.min(1 + ONWARD) {
+            match self.next(stage, node) {
+                Some(next) => node = next,
+                None => break,
+            }
+        }
+        let way = self.place(node) - place;
+        (way.norm() > self.spacing).then_some(way)
+    }
+
+    /// Places of the cheapest way at the stages, in m: the robot itself, where the first velocity leads, then nodes.
+    pub fn way(&self, [origin, end]: [Vector2<f64>; 2]) -> Vec<[f64; 2]> {
+        let mut node = self.nearest(end - origin);
         let mut way = vec![origin.into(), end.into()];
-        for costs in &self.costs[1..] {
-            if self.ground[row * across + column] <= THERE {
+        for stage in 2..=self.stages {
+            let Some(next) = self.next(stage, node) else {
                 break;
-            }
-            let mut best = (f64::INFINITY, column, row);
-            for (x, y) in moves() {
-                let to = [column.wrapping_add_signed(x), row.wrapping_add_signed(y)];
-                let cost = costs[to[1] * across + to[0]];
-                if cost < best.0 {
-                    best = (cost, to[0], to[1]);
-                }
-            }
-            if best.0 == f64::INFINITY {
-                break;
-            }
-            (column, row) = (best.1, best.2);
-            let node = Vector2::new(column as f64, row as f64) - Vector2::repeat(self.half as f64);
-            way.push((origin + node * self.spacing).into());
+            };
+            node = next;
+            way.push((origin + self.place(node)).into());
         }
         way
     }
@@ -306,15 +337,26 @@ fn least(found: &mut [f64], one: &[f64], two: &[f64], three: &[f64]) {
 }
 
 /// Moves of a stage in nodes, the farthest first, then by their angle.
-fn moves() -> Vec<(isize, isize)> {
-    let all = (-2_isize..=2).flat_map(|y| (-2_isize..=2).map(move |x| (x, y)));
-    let mut moves: Vec<_> = all.filter(|(x, y)| x * x + y * y <= 5).collect();
-    let angle = |(x, y): (isize, isize)| (y as f64).atan2(x as f64);
-    moves.sort_by(|one, two| {
-        let far = |(x, y): (isize, isize)| x * x + y * y;
-        far(*two)
-            .cmp(&far(*one))
-            .then(angle(*one).total_cmp(&angle(*two)))
-    });
-    moves
-}
+const MOVES: [(isize, isize); 21] = [
+    (-2, -1),
+    (-1, -2),
+    (1, -2),
+    (2, -1),
+    (2, 1),
+    (1, 2),
+    (-1, 2),
+    (-2, 1),
+    (0, -2),
+    (2, 0),
+    (0, 2),
+    (-2, 0),
+    (-1, -1),
+    (1, -1),
+    (1, 1),
+    (-1, 1),
+    (0, -1),
+    (1, 0),
+    (0, 1),
+    (-1, 0),
+    (0, 0),
+];

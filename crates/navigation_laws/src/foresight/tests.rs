@@ -18,7 +18,7 @@ fn pair(value: &Value) -> Vector2<f64> {
 fn driven(robot: &RobotState<f64>, target: &Target, limits: &ShieldLimits, step: f64) -> Driven {
     Driven {
         places: taken_up(robot, target.velocity, limits.max_acceleration, step),
-        turning: 0.0,
+        facing: None,
     }
 }
 

@@ -49,7 +49,7 @@ impl SafeLaw {
         let step = foreseer.settings().step;
         let driven = |target: &Target| Driven {
             places: taken_up(robot, target.velocity, self.limits.max_acceleration, step),
-            turning: 0.0,
+            facing: None,
         };
         let take = |target: &Target| {
             let target = self.limits.slowed(target.velocity);
@@ -85,7 +85,7 @@ impl SafeLaw {
             let twist = guard.toward(state, target.velocity, target.backwards);
             guard.verified(view, twist).then_some(twist)
         };
-        let driven = |target: &Target| guard.driven(state, target, step, to_goal);
+        let driven = |target: &Target| guard.driven(state, target, step);
         let found = foreseer
             .decide(&self.scene(&robot, to_goal), true, driven, take)
             .or_else(|| creeping(Some(&guard.shield), to_goal, take));

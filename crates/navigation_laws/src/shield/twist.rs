@@ -4,7 +4,7 @@ mod plan;
 
 pub use plan::{TwistLimits, TwistState};
 
-use crate::foresight::{Driven, Target};
+use crate::foresight::{Driven, Facing, Target};
 use crate::shield::hidden::Hidden;
 use crate::shield::person::Person;
 use crate::shield::walls::StaticObstacles;
@@ -113,16 +113,9 @@ impl TwistGuard {
         drive.toward(robot.twist, wish, self.limits.period)
     }
 
-    /// Way of a robot that turns toward a velocity and keeps it for a time in s, with the price of the turn that is
-    /// left at its end to the direction ahead.
+    /// Way of a robot that turns toward a velocity and keeps it for a time in s.
     #[must_use]
-    pub fn driven(
-        &self,
-        robot: &TwistState,
-        target: &Target,
-        time: f64,
-        ahead: Vector2<f64>,
-    ) -> Driven {
+    pub fn driven(&self, robot: &TwistState, target: &Target, time: f64) -> Driven {
         let mut guard = *self;
         let part = 0.25 * time;
         let steps = (part / self.limits.period).round().clamp(1.0, MOST_STEPS);
@@ -142,11 +135,13 @@ impl TwistGuard {
             }
             state.position
         });
-        let facing = unit(state.heading);
-        let off = facing.perp(&ahead).atan2(facing.dot(&ahead)).abs();
+        let facing = Facing {
+            ahead: unit(state.heading),
+            price: HEADING_WEIGHT / self.limits.drive.max_turn_rate,
+        };
         Driven {
             places,
-            turning: HEADING_WEIGHT * off / self.limits.drive.max_turn_rate,
+            facing: Some(facing),
         }
     }
 
