@@ -34,8 +34,9 @@ def main(words: list[str] | None = None) -> int:
     parser.add_argument("--first", type=int, default=0, help="number of the first input [%(default)s]")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1, help="processes [%(default)s]")
     parser.add_argument("--only", type=int, metavar="NUMBER", help="repeat one input in this process")
+    parser.add_argument("--part", default="", help="call only what has this in its name, as in 'judge'")
     options = parser.parse_args(words)
-    folder, inputs = in_new_folder(options.seed)
+    folder, inputs = in_new_folder(options.seed, options.part)
     with folder:
         if options.only is not None:
             outcome = inputs.answer(options.only, lambda target: print(inputs.names[target], flush=True))
@@ -50,7 +51,8 @@ def _watched(options: argparse.Namespace, names: list[str]) -> int:
     told, tally = 0, Tally()
     kinds: Counter[str] = Counter()
     try:
-        for tally in worked_off(options.seed, options.first, options.inputs, options.workers, names):
+        given = (options.seed, options.part, options.first, options.inputs, options.workers)
+        for tally in worked_off(*given, names):
             for escape in tally.escapes[told:]:
                 kinds[escape.kind] += 1
                 if kinds[escape.kind] <= _EXAMPLES:

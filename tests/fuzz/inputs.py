@@ -15,6 +15,7 @@ import numpy as np
 
 from api.fuzzing import CALLS
 from fuzz.constructors import Right, constructors
+from fuzz.programs import JUDGE, misnumbered
 from fuzz.readers import damaged, readers
 from fuzz.results import missing_numbers, says_why
 from fuzz.values import spoiled
@@ -63,21 +64,26 @@ class Inputs:
         Of the draws.
     folder : Path
         For the files that are damaged and read.
+    part : str
+        Only what has this in its name is called; all by default.
     """
 
-    def __init__(self, seed: int, folder: Path) -> None:
+    def __init__(self, seed: int, folder: Path, part: str = "") -> None:
         self.seed = seed
         made, self._files = constructors(), readers(folder)
         self._contents = {name: path.read_bytes() for name, (path, _) in self._files.items()}
         self._targets: dict[str, tuple[Callable[..., Any], Right]] = {**made, **CALLS}
         self._groups = (list(made), list(CALLS), list(self._files))
         self.names = [name for group in self._groups for name in group]
+        self._chosen = [name for name in self.names if part in name] if part else []
         self._number = {name: index for index, name in enumerate(self.names)}
         # What is NaN in the answer to a right call, by function; found when it is needed.
         self._usual: dict[str, set[str]] = {}
 
     def target(self, draws: random.Random) -> str:
         """Return what is called."""
+        if self._chosen:
+            return draws.choice(self._chosen)
         share = draws.random()
         group = 2 if share < FILE_SHARE else 1 if share < FILE_SHARE + FUNCTION_SHARE else 0
         return draws.choice(self._groups[group])
@@ -98,7 +104,8 @@ class Inputs:
         begun(target)
         if name in self._files:
             path, reader = self._files[name]
-            content = damaged(self._contents[name], draws)
+            number_wise = name.startswith(JUDGE) and draws.random() < 0.5
+            content = (misnumbered if number_wise else damaged)(self._contents[name], draws)
             path.write_bytes(content)
             try:
                 return _answered(target, reader, {"path": path}, content, made=False)[0]
@@ -172,7 +179,7 @@ def _has_nan(value: object) -> bool:
     return isinstance(value, (tuple, list)) and any(_has_nan(each) for each in value)
 
 
-def in_new_folder(seed: int) -> tuple[tempfile.TemporaryDirectory[str], Inputs]:
+def in_new_folder(seed: int, part: str = "") -> tuple[tempfile.TemporaryDirectory[str], Inputs]:
     """Return the inputs of a seed and the folder of their files, to be cleaned up."""
     folder = tempfile.TemporaryDirectory(prefix="hrsafety-fuzz-")
-    return folder, Inputs(seed, Path(folder.name))
+    return folder, Inputs(seed, Path(folder.name), part)

@@ -13,7 +13,10 @@ import numpy as np
 
 from hrsafety import arms, program, records
 
-__all__ = ["misnumbered", "programs"]
+__all__ = ["JUDGE", "misnumbered", "programs"]
+
+JUDGE = "judge"
+"""First word of the names of what is judged: half of the damage is in numbers."""
 
 NUMBER = re.compile(rb"(?<![A-Za-z_0-9.])-?\d+(?:\.\d+)?(?:e-?\d+)?(?![A-Za-z_0-9.])")
 START = [0.0, 0.35, 1.45, -0.23, -1.57, 0.0]
@@ -106,19 +109,19 @@ def programs(folder: Path) -> dict[str, tuple[Path, Callable[[Path], Any]]]:
         (folder / name).write_text(text, encoding="utf-8")
     (folder / "force_16.csv").write_bytes(_force().replace(",", ";").replace(".", ",").encode("utf-16"))
     (folder / "head.001").write_text(_channel(), encoding="utf-8")
-    judged: dict[str, Callable[[Path], Any]] = {
-        "moves.toml": _judged,
-        "log.toml": _judged,
-        "drawn.toml": _judged,
-        "joints.csv": lambda _path: _judged(folder / "log.toml"),
-        "arm_of_program.urdf": _arm,
-        "arm_of_program.xml": _arm,
-        "force.csv": _pressed,
-        "force_16.csv": _pressed,
-        "head.csv": _hit,
-        "head.001": _hit,
+    judged: dict[str, tuple[str, Callable[[Path], Any]]] = {
+        "moves.toml": ("program", _judged),
+        "log.toml": ("program", _judged),
+        "drawn.toml": ("program", _judged),
+        "joints.csv": ("program", lambda _path: _judged(folder / "log.toml")),
+        "arm_of_program.urdf": ("arm", _arm),
+        "arm_of_program.xml": ("arm", _arm),
+        "force.csv": ("record", _pressed),
+        "force_16.csv": ("record", _pressed),
+        "head.csv": ("record", _hit),
+        "head.001": ("record", _hit),
     }
-    return {f"judge {name}": (folder / name, call) for name, call in judged.items()}
+    return {f"{JUDGE} {kind} {name}": (folder / name, call) for name, (kind, call) in judged.items()}
 
 
 def _judged(path: Path) -> Any:

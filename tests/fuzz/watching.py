@@ -68,10 +68,10 @@ class Tally:
     done: int = 0
 
 
-def _work(seed: int, span: range, counts: Any, state: Any, out: Connection) -> None:
+def _work(seed: int, part: str, span: range, counts: Any, state: Any, out: Connection) -> None:
     """Work off a span of inputs; ``state`` holds the number under way, its target and its start."""
     resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
-    folder, inputs = in_new_folder(seed)
+    folder, inputs = in_new_folder(seed, part)
 
     def begun(target: int) -> None:
         state[1], state[2] = target, time.monotonic()
@@ -89,13 +89,13 @@ def _work(seed: int, span: range, counts: Any, state: Any, out: Connection) -> N
 class _Worker:
     """A process with its span of inputs."""
 
-    def __init__(self, seed: int, span: range, names: list[str]) -> None:
-        self.seed, self.span, self.names = seed, span, names
+    def __init__(self, seed: int, part: str, span: range, names: list[str]) -> None:
+        self.span = span
         context = multiprocessing.get_context("spawn")
         self.counts = context.RawArray("q", len(names) * len(ANSWERS))
         self.state = context.RawArray("d", [span.start, 0, time.monotonic() + _START])
         self.messages, theirs = context.Pipe(duplex=False)
-        arguments = (seed, span, self.counts, self.state, theirs)
+        arguments = (seed, part, span, self.counts, self.state, theirs)
         self.process = context.Process(target=_work, args=arguments, daemon=True)
         self.process.start()
         theirs.close()
@@ -119,12 +119,12 @@ class _Worker:
         return ""
 
 
-def worked_off(seed: int, first: int, count: int, workers: int, names: list[str]) -> Iterator[Tally]:
+def worked_off(seed: int, part: str, first: int, count: int, workers: int, names: list[str]) -> Iterator[Tally]:
     """Work off inputs in processes and yield what came out, again and again until all is done.
 
     Parameters
     ----------
-    seed : int
+    seed, part : int, str
         Of the inputs.
     first, count : int
         Number of the first input, and how many.
@@ -134,7 +134,7 @@ def worked_off(seed: int, first: int, count: int, workers: int, names: list[str]
         `Inputs.names`.
     """
     bounds = [first + count * index // workers for index in range(workers + 1)]
-    running = [_Worker(seed, range(*ends), names) for ends in itertools.pairwise(bounds)]
+    running = [_Worker(seed, part, range(*ends), names) for ends in itertools.pairwise(bounds)]
     ended: list[_Worker] = []
     escapes: list[Escape] = []
     try:
@@ -150,7 +150,7 @@ def worked_off(seed: int, first: int, count: int, workers: int, names: list[str]
                 if failed:
                     number = int(worker.state[0])
                     escapes.append(Escape(number, names[int(worker.state[1])], failed, ""))
-                    running.append(_Worker(seed, range(number + 1, worker.span.stop), names))
+                    running.append(_Worker(seed, part, range(number + 1, worker.span.stop), names))
             yield _tally([*ended, *running], escapes, names)
     finally:
         for worker in running:

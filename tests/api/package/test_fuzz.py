@@ -94,7 +94,7 @@ def test_an_input_is_the_same_by_its_number(some: Inputs) -> None:
 
 
 def test_processes_count_every_input(some: Inputs) -> None:
-    *_, tally = worked_off(3, 100, 400, 2, some.names)
+    *_, tally = worked_off(3, "", 100, 400, 2, some.names)
     assert tally.done == 400
     assert tally.escapes == []
 
