@@ -105,6 +105,12 @@ class JointCurve(NamedTuple):
         parts = [each.nodes[1:] + start for each, start in zip(curves, starts, strict=False)]
         return cls(np.concatenate([[0.0], *parts]), np.concatenate([each.coefficients for each in curves]))
 
+    def reversed(self) -> JointCurve:
+        """Return the same curve from its end to its start."""
+        value, first, second = self.at(self.nodes[1:], np.arange(len(self.coefficients)))
+        powers = np.stack([value, -first, 0.5 * second, -self.coefficients[:, 3]], axis=1)
+        return JointCurve(self.nodes[-1] - self.nodes[::-1], powers[::-1].copy())
+
     def refined(self, parts: npt.NDArray[np.int64]) -> JointCurve:
         """Return the same curve with each interval cut into so many equal ones."""
         return JointCurve(*_hrsafety.program_refine(self.nodes, self.coefficients, parts))

@@ -266,11 +266,24 @@ def _stretches(still: npt.NDArray[np.bool_], steps: Array) -> Iterator[tuple[int
 
 def _between_turns(joints: Array, velocity: Array, tolerance: float) -> Iterator[tuple[int, int]]:
     """Yield first and last sample of the pieces between which chords turn by more than 90 degrees."""
+    if _is_reverse(joints):
+        yield from (
+            (len(joints) - 1 - last, len(joints) - 1 - first)
+            for first, last in reversed(list(_between_turns(joints[::-1], velocity, tolerance)))
+        )
+        return
     kept = _thinned(joints, tolerance)
     chords = np.diff(joints[kept] / velocity, axis=0)
     turns = kept[1:-1][np.einsum("ij,ij->i", chords[:-1], chords[1:]) < 0.0]
     edges = [0, *turns.tolist(), len(joints) - 1]
     yield from pairwise(edges)
+
+
+def _is_reverse(joints: Array) -> bool:
+    """Whether samples are taken from the last one on: a path and its reverse are followed by the same curve."""
+    ahead = (joints - joints[::-1]).ravel()
+    apart = np.flatnonzero(np.abs(ahead) > SAME)
+    return len(apart) > 0 and bool(ahead[apart[0]] > 0.0)
 
 
 def _thinned(joints: Array, tolerance: float) -> Array:
@@ -293,6 +306,9 @@ def _thinned(joints: Array, tolerance: float) -> Array:
 
 def _fitted(joints: Array, velocity: Array, tolerance: float) -> tuple[JointCurve | None, Array, float]:
     """Return the spline of a piece, the place of each sample and the residual; no curve where nothing moves."""
+    if _is_reverse(joints):
+        back, own, residual = _fitted(joints[::-1], velocity, tolerance)
+        return (None if back is None else back.reversed()), own[-1] - own[::-1], residual
     residual = float("inf")
     for kept in (_thinned(joints, tolerance), np.arange(len(joints))):
         chords = np.linalg.norm(np.diff(joints[kept] / velocity, axis=0), axis=1)

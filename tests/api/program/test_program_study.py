@@ -200,10 +200,32 @@ def test_finer_intervals_and_reversed_paths_take_as_long(seed: int) -> None:
     time = motion.retimed(intervals=2000).time
     assert motion.retimed(intervals=4000).time == pytest.approx(time, rel=5e-3)
     back = program.ArmMotion.from_waypoints(arm, poses[::-1], **limits).retimed(intervals=2000).time
-    assert back == pytest.approx(time, rel=1e-3)
+    assert back == pytest.approx(time, rel=1e-9)
     quick = program.ArmMotion.from_waypoints(arm, poses, velocity=1e3, acceleration=5.0).retimed().time
     quicker = program.ArmMotion.from_waypoints(arm, poses, velocity=1e3, acceleration=20.0).retimed().time
     assert quick == pytest.approx(2.0 * quicker, rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_moves_and_logs_take_as_long_backwards(seed: int) -> None:
+    draw = np.random.default_rng(seed)
+    poses = np.array(list(START.values())) + draw.uniform(-0.4, 0.4, (4, 6))
+    blends = [0.0, *draw.choice([0.0, 0.05, 0.1], 2), 0.0]
+    legs = [
+        program.Move(kind="joint", to=dict(zip(START, pose, strict=True)), blend=blend)
+        for pose, blend in zip(poses.tolist(), blends, strict=True)
+    ]
+    there, back = (
+        program.ArmMotion.from_moves(example(), each, velocity=2.0, acceleration=4.0) for each in (legs, legs[::-1])
+    )
+    limited = [of(each, segment(each, "hand_finger")).report(intervals=400).limited.time for each in (there, back)]
+    assert limited[1] == pytest.approx(limited[0], rel=1e-9)
+    time, joints = there.retimed().sampled(0.02)
+    logs = [
+        program.ArmMotion.from_log(example(), time=instants, joints=values, acceleration=4.0).retimed(intervals=400)
+        for instants, values in ((time, joints), (time[-1] - time[::-1], joints[::-1]))
+    ]
+    assert logs[1].time == pytest.approx(logs[0].time, rel=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(10))
