@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from hrsafety.cli.cell.pictures import Drawing, svg_of
+from hrsafety.cli.cell.pictures import Drawing
+from hrsafety.pages.chart import ChartLine, line_chart
 from hrsafety.program import ProgramStudy, Retimed
 from hrsafety.program.zoned import way_of
 
 __all__ = ["drawings"]
+
+CAPTION = "Speed of the tool center point over its way; segments are shaded"
+RUNS = (("#0072b2", ""), ("#009e73", "6 2"))
+"""Looks of the runs: color and dashes."""
 
 
 def drawings(study: ProgramStudy) -> list[Drawing]:
@@ -24,8 +29,6 @@ def drawings(study: ProgramStudy) -> list[Drawing]:
     list of Drawing
         In the order of the page.
     """
-    from hrsafety import plotting
-
     way = way_of(study.limited.motion, study.speeds)
     if not way[-1] > 0.0:
         return []
@@ -41,17 +44,21 @@ def drawings(study: ProgramStudy) -> list[Drawing]:
     def along(first: float, last: float) -> tuple[float, float]:
         return float(np.interp(first, nodes, way)), float(np.interp(last, nodes, way))
 
-    figure = plotting.contacts.speed_over_path(
-        way,
-        {name: per_node * np.sqrt(run.squared_speed) for name, run in runs.items()},
-        allowed=limit,
-        zones=[(*along(each.first, each.last), each.speed) for each in zones],
-        segments={
-            study.program.segment_name(place): along(*study.program.span(place))
-            for place in range(len(study.program.segments))
-        },
+    drawn = {name: per_node * np.sqrt(run.squared_speed) for name, run in runs.items()}
+    lines = [ChartLine(name, way, drawn[name], *look) for name, look in zip(drawn, RUNS, strict=False)]
+    lines.append(ChartLine("allowed", way, limit, "#c00000", "5 3", 1.2))
+    for index, each in enumerate(zones):
+        ends = np.array(along(each.first, each.last))
+        lines.append(ChartLine("" if index else "zone as typed", ends, np.full(2, each.speed), "#555", "", 2.6))
+    top = max(float(values.max(initial=0.0)) for values in drawn.values())
+    top = max([top, *(min(each.speed, 2.0 * top) for each in zones)])
+    program = study.program
+    picture = line_chart(
+        "speed-over-path",
+        CAPTION,
+        lines,
+        labels=("way of the tool center point (m)", "speed (m/s)"),
+        ends=(float(way[-1]), 1.1 * top if top > 0.0 else 1.0),
+        bands={program.segment_name(place): along(*program.span(place)) for place in range(len(program.segments))},
     )
-    caption = "Speed of the tool center point over its way; segments are shaded"
-    return [
-        Drawing("speed-over-path", "speed_over_path", "segments", caption, svg_of("speed-over-path", caption, figure))
-    ]
+    return [Drawing("speed-over-path", "speed_over_path", "segments", CAPTION, picture)]
