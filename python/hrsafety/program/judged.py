@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,9 @@ import numpy as np
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array
 from hrsafety._records import dataclass
-from hrsafety.arms.doubts import doubts_of_point, for_rule
+from hrsafety.arms.doubts import doubts_of_point, doubts_of_tool, for_rule
+from hrsafety.arms.link_doubts import several
+from hrsafety.arms.rolling import RollingBase, links_of_base
 from hrsafety.plausibility import ResultWarning, unsafe_doubts
 from hrsafety.program.contacts import BLOCK, MASSES, TaskContacts, Waypoints
 from hrsafety.program.exposures import NOT_PERMITTED, Exposure
@@ -20,6 +23,8 @@ from hrsafety.standards.verdicts import speed_verdict
 
 __all__ = ["EVEN", "JudgedExposure", "judged", "path_doubts", "robot_fields", "shares_of"]
 
+DISAGREES = 0.05
+"""Share of the fastest recorded speed of the tool center point by which that of the joints may differ."""
 EVEN = 1e-9
 """Share by which a speed may be above its limit by rounding."""
 
@@ -82,6 +87,32 @@ def path_doubts(runs: Runs) -> Iterator[ResultWarning]:
         message = f"{100.0 * missing:.3g} % of the path belong to no segment: nothing is checked there"
         yield ResultWarning("path_without_segment", "segments", message)
     yield from runs.motion.warnings
+    yield from _against_tool(runs)
+    arm = runs.motion.arm
+    own = set(links_of_base(arm.urdf))
+    if runs.motion.drives and not any(each.link in own for each in runs.program.points):
+        message = (
+            "the base drives, and none of the points lies on it: contacts of the base itself are not checked: name a "
+            f"point on {several(sorted(own))}"
+        )
+        yield ResultWarning("base_without_point", "points", message)
+
+
+def _against_tool(runs: Runs) -> Iterator[ResultWarning]:
+    """Yield the doubt about a log whose joints do not move the tool center point as it was recorded."""
+    log = runs.program.motion.log
+    if log is None or log.tool_speed is None or runs.motion.drives:
+        return
+    masses = runs.contact(None).masses(log.joints, log.rates, body_masses=np.zeros(0), threads=runs.threads)
+    own = np.linalg.norm(masses["velocity"][:, -1], axis=1)
+    off = float(np.sqrt(np.mean((own - log.tool_speed) ** 2)))
+    fastest = max(float(own.max()), float(log.tool_speed.max()))
+    if off > DISAGREES * fastest:
+        message = (
+            f"the joints of the log move the tool center point by {off:.3g} m/s (root of the mean square) otherwise "
+            "than it was recorded: are columns of joints swapped, or is link or point of the tool another one?"
+        )
+        yield ResultWarning("log_disagrees_with_tool", "motion.log", message)
 
 
 def judged(
@@ -159,7 +190,7 @@ def _about_point(runs: TaskContacts, masses: Array, place: int) -> tuple[ResultW
     moving = masses[np.isfinite(masses)]
     point = np.array(program.points[place].point)
     own = for_rule(arm.warnings, program.robot_mass, moving, arm.iso_mass, arm.mass_source)
-    return (*own, *doubts_of_point(point, arm.reach))
+    return (*own, *doubts_of_point(point, arm.reach), *doubts_of_tool(arm, program.points[place].link, point))
 
 
 def _row(
@@ -197,10 +228,24 @@ def _row(
     )
 
 
+def held_mass(row: JudgedExposure, task: ContactTask) -> float | None:
+    """Return the mass of a row along its motion if a base that rolls stood still, in kg."""
+    arm = task.motion.arm
+    if not arm.base_joints or not row.joints or row.speed == 0.0:
+        return None
+    point = task.points[row.exposure.point]
+    held = replace(arm, locked=tuple(dict.fromkeys((*arm.locked, *arm.base_joints))))
+    found = held.effective_mass(
+        row.joints, link=point.link, point=point.point, direction=row.velocity, check_limits=False, threads=1
+    )
+    return float(found.mass)
+
+
 def fields_of(row: JudgedExposure, runs: TaskContacts) -> dict[str, Any]:
     """Return a row as JSON holds it."""
     limit, program = row.exposure.limit, runs.task
     names = program.motion.arm.joint_names
+    rolling = {"mass_if_base_stands": held_mass(row, program)} if program.motion.arm.base_joints else {}
     return {
         "point": program.points[row.exposure.point].name,
         "segment": program.segment_name(row.exposure.segment),
@@ -219,6 +264,7 @@ def fields_of(row: JudgedExposure, runs: TaskContacts) -> dict[str, Any]:
         "scale": row.scale,
         "governs": row.exposure.governs,
         **{name: row.masses.get(name) for name in MASSES},
+        **rolling,
         "human_speed": row.exposure.human_speed,
         "doubts": list(dict.fromkeys(each.code for each in row.doubts)),
         "reasons": list(dict.fromkeys(each.message for each in row.doubts)),
@@ -233,6 +279,7 @@ def robot_fields(task: ContactTask, velocity: Array) -> dict[str, Any]:
     return {
         "name": arm.name,
         "sha256": arm.sha256,
+        "base": None if not isinstance(arm.base, RollingBase) else {"kind": arm.base.kind, "mass": arm.base.mass},
         "iso_mass": arm.iso_mass,
         "total_mass": arm.total_mass,
         "moving_mass": arm.moving_mass,

@@ -17,6 +17,7 @@ from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.arms import Arm
 from hrsafety.arms.inputs import poses_of
+from hrsafety.arms.rolling import BASE_JOINTS, RollingBase
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.plausibility import ResultWarning
 from hrsafety.program.curves import JointCurve
@@ -37,7 +38,7 @@ MOST_LOGGED = 10**6
 FASTEST_JOINT = 1e6
 """Largest rate in rad/s or m/s that is taken for one."""
 STANDS = 1e-9
-"""A base moves less than this, in m or rad, where it stands."""
+"""Slopes of the path of a base that stands are smaller than this."""
 PATH_TOLERANCE = 1e-3
 REASONS = ("acceleration", "velocity", "contact", "zone")
 """Limits that bind at a place of the path, by the code of the core."""
@@ -106,9 +107,11 @@ class ArmMotion:
         arm : Arm
             The arm.
         log : path-like or None
-            Table with a column of times and one for each joint, by its name, in rad or m.
+            Table with a column of times and one for each joint, by its name, in rad or m. Columns ``base_x``,
+            ``base_y`` and ``base_turn`` are poses of a base that rolls, on the floor.
         time, joints
-            Instants in s and values (m, joints), or a mapping by joint, in place of a file.
+            Instants in s and values (m, joints), or a mapping by joint, in place of a file; those of a base are ways
+            driven, see `RollingBase.ways`.
         acceleration, velocity
             As for `from_moves`.
         path_tolerance : float
@@ -139,11 +142,13 @@ class ArmMotion:
         if (log is None) == (time is None):
             raise InvalidParameterError("log", "be given, or time with joints in its place", log)
         recorded = read_log(log, arm) if log is not None else checked_log(arm, time, joints)
+        if log is None and isinstance(joints, Mapping):
+            recorded = recorded._replace(base_recorded=not arm.base_joints or any(n in joints for n in arm.base_joints))
         limits = _limits(arm, velocity, acceleration)
         tolerance = positive("path_tolerance", path_tolerance)
         way = followed(recorded, limits[0], tolerance)
-        found = cls._of(arm, way.curves, way.dwells, limits)
-        doubts = tuple(doubts_of_log(recorded, *limits))
+        found = cls._of(arm, way.curves, way.dwells, limits, (velocity, acceleration))
+        doubts = tuple(doubts_of_log(recorded, arm, *limits))
         return replace(found, log=recorded, place=way.place, residual=way.residual, warnings=doubts)
 
     @classmethod
@@ -196,7 +201,8 @@ class ArmMotion:
             instance(f"moves[{place}]", each, Move) for place, each in enumerate(sequence("moves", "be moves", moves))
         ]
         legs: Legs = legs_of(arm, rows, arm.moved_links[-1] if link is None else link)
-        found = cls._of(arm, legs.curves, legs.dwells, _limits(arm, velocity, acceleration))
+        limits = _limits(arm, velocity, acceleration)
+        found = cls._of(arm, legs.curves, legs.dwells, limits, (velocity, acceleration))
         return replace(found, marks=legs.marks, warnings=legs.warnings)
 
     @classmethod
@@ -250,15 +256,24 @@ class ArmMotion:
         if not (np.diff(places) > 0.0).all() or not np.isfinite(places).all():
             raise InvalidParameterError("knots", "increase", places.tolist())
         curve = JointCurve.spline(places, poses)
-        return cls._of(arm, [curve], [0.0, 0.0], _limits(arm, velocity, acceleration))
+        limits = _limits(arm, velocity, acceleration)
+        return cls._of(arm, [curve], [0.0, 0.0], limits, (velocity, acceleration))
 
     @classmethod
-    def _of(cls, arm: Arm, curves: list[JointCurve], dwells: list[float], limits: tuple[Array, Array]) -> Self:
+    def _of(
+        cls,
+        arm: Arm,
+        curves: list[JointCurve],
+        dwells: list[float],
+        limits: tuple[Array, Array],
+        given: tuple[object, object],
+    ) -> Self:
         for name in arm.base_joints:
-            driven = np.abs(np.concatenate([each.coefficients[..., arm.joint_names.index(name)] for each in curves]))
-            if driven.max() > STANDS:
-                rule = "stay at 0: a program is that of an arm whose base is parked, free to roll when it is pushed"
-                raise InvalidParameterError(f"joint {name}", rule, Shown("a base that drives"))
+            driven = _slope(arm, curves, name)
+            for label, values in zip(("velocity", "acceleration"), given, strict=True):
+                if driven > STANDS and (values is None or (isinstance(values, Mapping) and name not in values)):
+                    rule = "be given: the base drives"
+                    raise InvalidParameterError(f"{label}.{name}", rule, Shown("nothing"), "in m/s or rad/s, and per s")
         stops = np.cumsum([len(each.coefficients) for each in curves])[:-1].tolist()
         velocity, acceleration = limits
         return cls(
@@ -269,6 +284,11 @@ class ArmMotion:
             velocity=velocity,
             acceleration=acceleration,
         )
+
+    @property
+    def drives(self) -> bool:
+        """Whether the base of the arm drives on the path."""
+        return any(_slope(self.arm, [self.curve], name) > STANDS for name in self.arm.base_joints)
 
     def refined(self, intervals: int = INTERVALS) -> ArmMotion:
         """Return the same motion with intervals of about even length.
@@ -359,6 +379,12 @@ class ArmMotion:
             standstill=found["standstill"],
             warnings=_doubts(found["status"], found["largest_share"]),
         )
+
+
+def _slope(arm: Arm, curves: Sequence[JointCurve], joint: str) -> float:
+    """Return the largest coefficient of a power of s in the path of a joint, 0 where it stands."""
+    column = arm.joint_names.index(joint)
+    return max(float(np.abs(each.coefficients[:, 1:, column]).max()) for each in curves)
 
 
 def _doubts(status: str, share: float) -> tuple[ResultWarning, ...]:
@@ -487,7 +513,7 @@ class Retimed(Table):
         return time, self.motion.curve.at(nodes[at] + way, at)[0]
 
     def columns(self) -> Columns:
-        """Return the joint log of this motion with a step of 4 ms.
+        """Return the joint log of this motion with a step of 4 ms; of a base that rolls its poses on the floor.
 
         Returns
         -------
@@ -495,7 +521,12 @@ class Retimed(Table):
             Time and a column for each joint.
         """
         time, joints = self.sampled()
-        return {"time": time} | dict(zip(self.motion.arm.joint_names, joints.T, strict=True))
+        arm = self.motion.arm
+        columns = dict(zip(arm.joint_names, joints.T, strict=True))
+        if isinstance(arm.base, RollingBase):
+            ways = [columns.get(name, np.zeros(len(time))) for name in BASE_JOINTS]
+            columns |= dict(zip(BASE_JOINTS, arm.base.on_floor(np.column_stack(ways)).T, strict=True))
+        return {"time": time} | columns
 
 
 def _limits(arm: Arm, velocity: object, acceleration: object) -> tuple[Array, Array]:

@@ -15,6 +15,7 @@ from hrsafety import records
 from hrsafety._arguments import Array, numbers, vector
 from hrsafety.arms import Arm
 from hrsafety.arms.inputs import poses_of
+from hrsafety.arms.rolling import BASE_JOINTS, RollingBase
 from hrsafety.errors import FileError, InvalidParameterError, ShapeError, Shown
 from hrsafety.plausibility import ResultWarning
 from hrsafety.program.curves import JointCurve
@@ -40,17 +41,31 @@ FULL_SPEED = 0.1
 """Time in s to the full speed of a joint whose acceleration has no limit."""
 MOVING = 0.1
 """Share of the fastest recorded rate at which a robot moves where its log begins or ends."""
+PLACES = ("tcp_x", "tcp_y", "tcp_z")
+"""Columns of a log that hold the place of the tool center point in m; ``tcp_speed`` holds its speed in m/s."""
+FASTER = 1.1
+"""Share of the velocity of a joint that no drive exceeds."""
 SAME = 1e-9
 """Poses that are no farther apart are the same."""
 
 
 class JointLog(NamedTuple):
-    """A recorded motion: instants in s, joint values (m, joints) with their rates, and the digest of its file."""
+    """A recorded motion: instants in s, joint values (m, joints) with their rates, and the digest of its file.
+
+    Attributes
+    ----------
+    base_recorded : bool
+        Whether the log shows what a base that rolls does.
+    tool_speed : ndarray (m,) or None
+        Speed of the tool center point in m/s as the controller recorded it.
+    """
 
     time: Array
     joints: Array
     rates: Array
     sha256: str = ""
+    base_recorded: bool = True
+    tool_speed: Array | None = None
 
 
 class FollowedLog(NamedTuple):
@@ -84,10 +99,14 @@ def read_log(path: str | PathLike[str], arm: Arm) -> JointLog:
     """
     record = records.load(path)
     name = Path(path).name
+    driven = _driven(arm, record.columns, name)
     columns = []
     for joint in arm.joint_names:
+        if joint in arm.base_joints:
+            columns.append(np.zeros(len(record.time)) if driven is None else driven[:, BASE_JOINTS.index(joint)])
+            continue
         if joint not in record.columns:
-            if joint in (*arm.locked, *arm.base_joints):
+            if joint in arm.locked:
                 columns.append(np.zeros(len(record.time)))
                 continue
             remedy = f"name a column {joint}, in rad or m"
@@ -101,7 +120,41 @@ def read_log(path: str | PathLike[str], arm: Arm) -> JointLog:
         log = checked_log(arm, record.time, np.column_stack(columns), f"{name}, column ")
     except InvalidParameterError as error:
         raise error.renamed(f"{name}, column of times") if error.argument == "time" else error from None
-    return log._replace(sha256=record.source.sha256)
+    return log._replace(
+        sha256=record.source.sha256,
+        base_recorded=driven is not None or not arm.base_joints,
+        tool_speed=_tool_speed(record.columns, record.time),
+    )
+
+
+def _tool_speed(columns: Mapping[str, Array], time: Array) -> Array | None:
+    """Return the speed of the tool center point as it is recorded, or of its recorded places."""
+    if "tcp_speed" in columns:
+        return np.abs(columns["tcp_speed"])
+    if not all(name in columns for name in PLACES):
+        return None
+    places = np.column_stack([columns[name] for name in PLACES])
+    return np.asarray(np.linalg.norm(np.gradient(places, time, axis=0, edge_order=2), axis=1))
+
+
+def _driven(arm: Arm, columns: Mapping[str, Array], name: str) -> Array | None:
+    """Return the ways that the base drives by the poses of its root on the floor; ``None`` if none are recorded."""
+    given = [joint for joint in BASE_JOINTS if joint in columns]
+    if not isinstance(arm.base, RollingBase):
+        for joint in given:
+            if joint not in arm.joint_names and np.ptp(columns[joint]) > FOLLOWS:
+                rule = "stand still: the robot has no base that rolls"
+                raise FileError(f"{name}, column {joint}", rule, Shown("a base that drives"), "give its base and mass")
+        return None
+    if not given:
+        return None
+    if len(given) < len(BASE_JOINTS):
+        rule = f"have all columns of a base or none: {', '.join(BASE_JOINTS)}, its pose on the floor in m and rad"
+        raise FileError(name, rule, Shown(", ".join(given)))
+    try:
+        return arm.base.ways(np.column_stack([columns[joint] for joint in BASE_JOINTS]))
+    except InvalidParameterError as error:
+        raise error.renamed(f"{name}, columns {', '.join(BASE_JOINTS)}") from None
 
 
 def _checked_others(arm: Arm, columns: Mapping[str, Array], own: Mapping[str, Array], name: str) -> None:
@@ -161,18 +214,34 @@ def checked_log(arm: Arm, time: object, joints: object, prefix: str = "joints.")
     return JointLog(clock, poses, np.gradient(poses, clock, axis=0, edge_order=2))
 
 
-def doubts_of_log(log: JointLog, velocity: Array, acceleration: Array) -> Iterator[ResultWarning]:
-    """Yield what a log may not show: swings between its samples, and motion before its begin or behind its end.
+def doubts_of_log(log: JointLog, arm: Arm, velocity: Array, acceleration: Array) -> Iterator[ResultWarning]:
+    """Yield what a log may not show, as swings between its samples, and what its joints cannot have done.
 
     Parameters
     ----------
     log : JointLog
         Recorded motion.
+    arm : Arm
+        Its joints have velocities: what is faster is hardly the motion of the joint that a column is named by.
     velocity, acceleration : ndarray (joints,)
         Limits of the joints: between two samples a rate may leave what is seen by a quarter of the acceleration times
         the step.
     """
-    shares = np.abs(log.rates / velocity).max(axis=1)
+    if not log.base_recorded:
+        message = (
+            "the log has no columns base_x, base_y and base_turn: the base is taken to be parked, and what it adds to "
+            "the speeds of contacts is not seen"
+        )
+        yield ResultWarning("base_taken_as_parked", "motion.log", message)
+    shares = np.abs(log.rates / velocity)
+    for column in np.flatnonzero(shares.max(axis=0) > FASTER).tolist():
+        joint = arm.joint_names[column]
+        message = (
+            f"{joint} is recorded at {shares[:, column].max():.3g} times its velocity: is it the column of another "
+            "joint, or is its velocity another one?"
+        )
+        yield ResultWarning("faster_than_drive", f"motion.log.{joint}", message)
+    shares = shares.max(axis=1)
     fastest = float(shares.max())
     if fastest == 0.0:
         return

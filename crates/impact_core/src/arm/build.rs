@@ -7,7 +7,7 @@ use super::body::{Body, LEAST_GYRATION, ROUNDING, Symmetric};
 use super::description::{Description, JointType, LinkText, about};
 use super::model::{Arm, ArmJoint, JointKind, Link, MOST_MOVING, Projected, Segment, sized};
 use super::pose;
-use super::sources::Base;
+use super::sources::{BASE_JOINTS, Base};
 use super::survey::Survey;
 use super::tree::Tree;
 
@@ -212,6 +212,7 @@ impl<'a> Builder<'a> {
             rotation: turned.into_inner(),
             offset: stands.translation.vector,
             kind,
+            of_base: self.options.base.is_some() && BASE_JOINTS.contains(&joint.name.as_str()),
             source: value,
             multiplier,
             addend,

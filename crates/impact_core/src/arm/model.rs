@@ -74,6 +74,8 @@ pub struct Segment {
     pub offset: Vector3<f64>,
     /// Type of motion of its joint.
     pub kind: JointKind,
+    /// Whether it is one of a base: its value is a way driven and places nothing, for poses are told from the base.
+    pub of_base: bool,
     /// The joint whose value it takes.
     pub source: usize,
     /// Factor of that value.

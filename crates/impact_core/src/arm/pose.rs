@@ -99,7 +99,11 @@ impl<'a, const N: usize> Pose<'a, N> {
     /// Rotations and origins of all segments from the base outwards.
     fn place_segments(&mut self, joints: &[f64]) {
         for (index, segment) in self.arm.segments.iter().enumerate() {
-            let value = segment.multiplier * joints[segment.source] + segment.addend;
+            let value = if segment.of_base {
+                0.0
+            } else {
+                segment.multiplier * joints[segment.source] + segment.addend
+            };
             let (placed, rest) = self.frames.split_at_mut(index);
             let (mut rotation, mut origin) = match segment.parent {
                 Some(parent) => {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from hrsafety import __version__
@@ -97,7 +97,7 @@ def _values(
             "confirmation": CONFIRM,
             "audit": {
                 "hrsafety": __version__,
-                "versions": versions("numpy", "matplotlib", "jinja2"),
+                "versions": versions("numpy", "jinja2"),
                 "command": command,
                 "inputs_sha256": sha256_of(inputs),
                 "files_sha256": dict(program.files),
@@ -176,11 +176,23 @@ def _masses(study: DrawnStudy) -> ReportTable:
 def _facts(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     robot = values["robot"]
     yield "robot", f"{robot['name']}, ISO/TS 15066 mass {robot['iso_mass']:.3f} kg ({robot['mass_rule']})"
+    if robot["base"] is not None:
+        yield "base", f"{robot['base']['kind']}, {robot['base']['mass']:g} kg on wheels{_held(values.get('rows', []))}"
     yield "limits", f"{values['limits']['title']}, edition {values['limits']['edition']}"
     yield "verdict", VERDICT_WORDS[values["verdict"]]
     for each in values["answer"]:
         yield "", each
     yield "", CONFIRM
+
+
+def _held(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Return the mass of the row that is heaviest if a base stands, and that with the base free to roll."""
+    known = [each for each in rows if isinstance(each.get("mass_if_base_stands"), float)]
+    if not known:
+        return ""
+    heavy = max(known, key=lambda each: float(each["mass_if_base_stands"]))
+    masses = f"{heavy['mass_along_motion']:.3f} kg along its motion, {heavy['mass_if_base_stands']:.3f} kg"
+    return f"; {heavy['point']}: {masses} if the base stood still"
 
 
 def _answer(study: ProgramStudy) -> Iterator[str]:
