@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -13,9 +13,6 @@ from hrsafety._arguments import Array
 from hrsafety.arms.link_doubts import FAR, SMALL, links_with_verb, several, subject_of
 from hrsafety.arms.payload import Payload
 from hrsafety.plausibility import ResultWarning
-
-if TYPE_CHECKING:
-    from hrsafety.arms.arm import Arm
 
 __all__ = [
     "DIRECTIONAL",
@@ -27,7 +24,6 @@ __all__ = [
     "doubts_of_point",
     "doubts_of_poses",
     "doubts_of_reading",
-    "doubts_of_tool",
     "for_rule",
     "governs",
 ]
@@ -45,8 +41,6 @@ MOST_MOTOR = 10.0
 """A motor inertia of so many times the largest inertia that any joint moves is hardly meant."""
 LEAST_PAYLOAD = 0.005
 """A payload below this, in kg, is hardly worth telling."""
-TOOL = 0.05
-"""A point farther than this from the flange, in m, is on a tool."""
 BEYOND_TURN = 7.0
 """Joints that turn are hardly beyond this, in rad."""
 BEYOND_SLIDE = 10.0
@@ -295,46 +289,6 @@ def doubts_of_point(point: object, reach: float) -> tuple[ResultWarning, ...]:
         return ()
     message = f"point is {farthest:g} m off its link, more than {most:.3g} m: mm or cm given for m?"
     return (ResultWarning("implausible", "point", message),)
-
-
-def doubts_of_tool(arm: Arm, link: str, point: object) -> tuple[ResultWarning, ...]:
-    """Return the doubt about a point beyond the flange of an arm that carries nothing there.
-
-    Parameters
-    ----------
-    arm : Arm
-        Without a payload there is a doubt.
-    link : str
-        Of the point; one with a mass is a tool that is known.
-    point : array_like (3,)
-        In the frame of the link, in m.
-
-    Returns
-    -------
-    tuple of ResultWarning
-        One at most.
-    """
-    facts = arm._facts
-    names, masses, parents, bodies = (
-        arm.link_names,
-        *(facts[each] for each in ("link_masses", "parents", "segments")),
-    )
-    here = names.index(link)
-    if arm.payload_mass > 0.0 or masses[here] > 0.0:
-        return ()
-    flange = here
-    while (before := parents[flange]) is not None and bodies[before] == bodies[here] and masses[before] == 0.0:
-        flange = before
-    places = ((link, point), (names[flange], np.zeros(3)))
-    ends = [arm.position(link=name, point=place, check_limits=False) for name, place in places]
-    away = float(np.linalg.norm(ends[0] - ends[1]))
-    if away <= TOOL:
-        return ()
-    message = (
-        f"the point on {link} is {1e3 * away:.0f} mm off the flange, where nothing weighs: give the tool and what it "
-        "holds as payload"
-    )
-    return (ResultWarning("tool_without_mass", "payload", message),)
 
 
 def doubts_of_reading(facts: Mapping[str, Any]) -> Iterator[ResultWarning]:
