@@ -174,11 +174,11 @@ class RollingBase:
 
 def links_of_base(urdf: str) -> tuple[str, ...]:
     """Return the root of a URDF and the links that are fixed to it."""
-    joints = []
+    joints: list[tuple[str, str, str]] = []
     for joint in ElementTree.fromstring(urdf).iter("joint"):
-        ends = [joint.find(name) for name in ("parent", "child")]
-        if None not in ends:
-            joints.append((joint.get("type"), *("" if end is None else end.get("link", "") for end in ends)))
+        parent, child = joint.find("parent"), joint.find("child")
+        if parent is not None and child is not None:
+            joints.append((joint.get("type", ""), parent.get("link", ""), child.get("link", "")))
     children = {child for _, _, child in joints}
     found = [parent for _, parent, _ in joints if parent not in children][:1]
     for link in found:
