@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 from hrsafety import contact
@@ -13,13 +12,11 @@ from hrsafety.contact.cell.study import verdicts_of
 from hrsafety.errors import InvalidParameterError
 from hrsafety.pages.report import ReportTable, Section
 
-__all__ = ["predicted", "prediction_section"]
+__all__ = ["planned_row", "prediction_section"]
 
 
-def predicted(
-    path: str, row: int | None, load: str, measured: Sequence[float], device_uncertainty: float
-) -> contact.MeasurementPlan:
-    """Return the row of the measurement plan of a cell or a program that records are about, with what they measured.
+def planned_row(path: str, row: int | None, load: str) -> contact.PlannedMeasurement:
+    """Return the row of the measurement plan of a cell or a program that records are about.
 
     Parameters
     ----------
@@ -29,15 +26,11 @@ def predicted(
         Number of the row on its page, from 1; ``None`` for a plan of one row.
     load : {"force", "pressure"}
         Load of the records.
-    measured : sequence of float
-        Largest load of each record, in N or Pa.
-    device_uncertainty : float
-        Standard uncertainty of the device in that unit.
 
     Returns
     -------
-    MeasurementPlan
-        One row.
+    PlannedMeasurement
+        The row.
 
     Raises
     ------
@@ -55,7 +48,7 @@ def predicted(
     if chosen.load != load:
         rule = f"be a row of {load}: what governs there is the {chosen.load}"
         raise InvalidParameterError("--plan-row", rule, number)
-    return contact.MeasurementPlan(rows=(chosen,)).filled({0: measured}, device_uncertainty=device_uncertainty)
+    return chosen
 
 
 def _planned(path: str) -> tuple[contact.PlannedMeasurement, ...]:

@@ -12,8 +12,8 @@ import numpy as np
 from hrsafety import records
 from hrsafety.cli import output, terminal, verdict
 from hrsafety.cli.output import decimal
-from hrsafety.cli.prediction import predicted, prediction_section
-from hrsafety.contact.plan import MeasurementPlan
+from hrsafety.cli.prediction import planned_row, prediction_section
+from hrsafety.contact import MeasurementPlan, PlannedMeasurement
 from hrsafety.errors import InvalidParameterError
 from hrsafety.pages.report import Report, ReportCell, ReportTable, Section
 from hrsafety.plausibility import ResultWarning
@@ -54,10 +54,12 @@ def judge_records(options: argparse.Namespace) -> None:
         Of ``hrsafety record``.
     """
     output.check_targets(options)
-    limits = _limits(options)
+    limits, row = _limits(options), _row(options)
+    if row is not None and not limits:
+        limits = _limits_of(row, options)
     judged = [_judged(path, options, limits) for path in options.files]
     word, repeated = _verdict(judged, options, limits)
-    plan = _plan(options, judged)
+    plan = None if row is None else _filled(row, options, judged)
     report = _report(options, judged, word, repeated, limits, plan)
     print(terminal.told(report))
     written: list[Path] = []
@@ -135,17 +137,34 @@ def _verdict(
     return strictest(words), repeated
 
 
-def _plan(options: argparse.Namespace, judged: list[_Judged]) -> MeasurementPlan | None:
-    """Return the row of the measurement plan that the records are about, filled."""
+def _row(options: argparse.Namespace) -> PlannedMeasurement | None:
+    """Return the row of the measurement plan that the records are about."""
     if options.predict is None:
         if options.plan_row is not None:
             raise InvalidParameterError("--plan-row", "come with --predict", options.plan_row)
         return None
     if options.kind == "head":
         raise InvalidParameterError("--predict", "go with --kind force or pressure", options.predict)
+    row = planned_row(options.predict, options.plan_row, options.kind)
+    if options.kind == "force" and options.free != (row.setup == "free"):
+        rule = f"be {'left out' if options.free else 'given'}: the row of the plan is a {row.setup} contact"
+        raise InvalidParameterError("--free", rule, options.free)
+    return row
+
+
+def _limits_of(row: PlannedMeasurement, options: argparse.Namespace) -> dict[str, float]:
+    """Return the limit of a row of the plan for every load of its records: a clamped peak is held against it, too."""
+    if row.limit is None:
+        return {}
+    names = ("pressure",) if options.kind == "pressure" else ("transient", "quasi_static")
+    return dict.fromkeys(names[:1] if options.free else names, row.limit)
+
+
+def _filled(row: PlannedMeasurement, options: argparse.Namespace, judged: list[_Judged]) -> MeasurementPlan:
+    """Return a row of the measurement plan with what was measured."""
     load = "peak" if options.kind == "force" else "patch" if options.patch else "cell"
     values = [float(getattr(each.loads, load)) for each in judged]
-    return predicted(options.predict, options.plan_row, options.kind, values, _uncertainty(options))
+    return MeasurementPlan(rows=(row,)).filled({0: values}, device_uncertainty=_uncertainty(options))
 
 
 def _uncertainty(options: argparse.Namespace) -> float:
@@ -197,7 +216,9 @@ def _report(
     if plan is not None:
         sections.append(prediction_section(plan))
     more = {} if plan is None else {"prediction": {"cell": options.predict, **plan.fields()[0]}}
-    shown = ", ".join(f"{name} {limit:g}" for name, limit in limits.items())
+    shown = ", ".join(f"{name.replace('_', '-')} {limit:g}" for name, limit in limits.items())
+    if plan is not None and not _limits(options):
+        shown = f"{shown}, those of the plan of {options.predict}" if shown else shown
     return Report(
         title=f"Measured records: {KINDS[options.kind]}",
         facts=[

@@ -89,6 +89,14 @@ def test_a_prediction_stands_beside_the_records(tmp_path: Path, monkeypatch: pyt
         or "nothing was tuned" in Path("out/summary.html").read_text()
     )
     assert main([*command, "--plan-row", "1"]) != 0
+    # The limit of the row counts where none is given; the contact is that of the row.
+    without = ["record", *names, "--kind", "force", "--json", "row.json", "--predict", "cell.toml", "--plan-row", "1"]
+    assert main(without) == 0
+    row = json.loads(Path("row.json").read_text())
+    assert row["limits"] == {"transient": 140.0, "quasi_static": 140.0}
+    assert row["verdict"] == "within_limits"
+    assert main([*without, "--free"]) != 0
+    assert main([*without, "--transient", "90", "--quasi-static", "90"]) == 3
 
 
 def test_the_same_records_give_the_same_bytes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

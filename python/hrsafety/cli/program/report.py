@@ -59,7 +59,7 @@ def report_of_draws(path: str, study: DrawnStudy, *, command: str, date: str | N
     values = _values(study, list(_answer_of_draws(study)), command, date, {})
     return Report(
         title=program.title,
-        facts=[("robot", path), *_facts(values)],
+        facts=[("file", path), *_facts(values)],
         said=VERDICT_WORDS[study.verdict],
         good=study.verdict == "within_limits",
         sections=[
