@@ -148,6 +148,10 @@ struct Run<'a, const N: usize> {
     rates: CollisionState<N>,
     local: Local,
     peaks: [Peak; PEAKS],
+    /// Whether `eps` has peaked since the set point rests.
+    peaked: bool,
+    /// Whether all loads have peaked.
+    done: bool,
     nodes: Option<Vec<MotionSample>>,
     evaluations: usize,
 }
@@ -219,6 +223,8 @@ impl<'a, const N: usize> Run<'a, N> {
             rates,
             local,
             peaks: [Peak::NONE; PEAKS],
+            peaked: false,
+            done: false,
             evaluations: 1,
         }
     }
@@ -335,7 +341,12 @@ impl<'a, const N: usize> Run<'a, N> {
                     };
                     (until, changes) = following;
                 }
-                Some(event) => self.pass(event),
+                Some(event) => {
+                    self.pass(event);
+                    if self.is_past_its_peaks(event) {
+                        return CollisionStatus::Horizon;
+                    }
+                }
                 None => (),
             }
             let growth = (0.9 * excess.max(1e-10).powf(-0.2)).min(5.0);
@@ -347,6 +358,25 @@ impl<'a, const N: usize> Run<'a, N> {
             }
         }
         CollisionStatus::Unfinished
+    }
+
+    /// Whether the loads of a drive that rests have been their largest: from then on energy is only lost, so that no later
+    /// peak is above the first one. A covering whose force depends on its rate is followed to the horizon.
+    fn is_past_its_peaks(&mut self, event: CollisionEvent) -> bool {
+        let collision = self.mechanics.collision;
+        let (Some(stop), Some(_), None) = (collision.stop, collision.driven, &self.nodes) else {
+            return false;
+        };
+        let rest = self.past.stop_time + collision.closing_speed / stop.deceleration;
+        let clamped = collision.body.mass == f64::INFINITY && self.mechanics.is_in_step();
+        if !clamped || self.time < rest {
+            return false;
+        }
+        let turned = event == CollisionEvent::Turn;
+        self.done =
+            self.peaked && (event == CollisionEvent::Release || turned && self.past.loading);
+        self.peaked |= turned && !self.past.loading;
+        self.done
     }
 
     /// Largest error over its tolerance.

@@ -453,3 +453,59 @@ fn a_force_that_starts_infinitely_steep_and_falls_has_a_peak() {
     assert_eq!(found.status, CollisionStatus::Released);
     assert!(found.peak_force >= 9e3 && found.peak_force < 9.01e3);
 }
+
+#[test]
+fn a_drive_that_rests_has_pressed_its_hardest_before_it_is_left_alone() {
+    let moving = Wanted {
+        nodes: true,
+        ..Wanted::default()
+    };
+    let pads: Vec<Pad> = coverings()
+        .into_iter()
+        .map(|covering| covering.prepared().unwrap())
+        .collect();
+    let bare = std::iter::once(None);
+    let (mut fewer, mut all) = (0, 0);
+    for pad in bare.chain(pads.iter().map(Some)) {
+        for (region, share) in REGIONS[1..].iter().zip([0.02, 0.5, 20.0]).cycle().take(6) {
+            for (closing_speed, detection_force) in [(0.03, 2.0), (0.12, 8.0), (0.3, 0.0)] {
+                let mut collision = Collision {
+                    region: *region,
+                    pad,
+                    closing_speed,
+                    ..slow(4.0)
+                };
+                collision.robot.mass = 9.0;
+                collision.robot.stiffness = 20e3 * share;
+                collision.stop = Some(super::Braking {
+                    time: 0.02,
+                    deceleration: 4.0,
+                });
+                collision.driven = Some(super::Driven {
+                    detection_force,
+                    push_limit: f64::INFINITY,
+                });
+                let whole = simulate(&collision, moving, &|| false);
+                let found = simulate(&collision, Wanted::default(), &|| false);
+                assert!(!found.rising || whole.rising);
+                assert_eq!(found.status, whole.status);
+                if found.status != CollisionStatus::Horizon {
+                    continue;
+                }
+                all += 1;
+                fewer += usize::from(2 * found.evaluations < whole.evaluations);
+                for ((name, value), (_, expected)) in
+                    loads_of(&found).into_iter().zip(loads_of(&whole))
+                {
+                    let peak = !["release", "rebound", "end"].contains(&name);
+                    let off = (value / expected - 1.0).abs();
+                    assert!(
+                        !peak || value.is_nan() || off < 1e-5,
+                        "{name} {off:e} {collision:?}"
+                    );
+                }
+            }
+        }
+    }
+    assert!(3 * fewer > all, "{fewer} of {all}");
+}

@@ -107,6 +107,7 @@ impl<const N: usize> Run<'_, N> {
             end_force: self.local.force,
             // The acceleration of the body is a force over its mass, or less.
             rising: status == CollisionStatus::Horizon
+                && !self.done
                 && self.peaks[..PEAKS - 1]
                     .iter()
                     .any(|best| best.time >= self.time),
