@@ -30,6 +30,8 @@ SLOWEST = 1e-4
 SCANS = 49
 SCAN_STEP, SCAN_BLOCK = 1.08, 8
 """Ratio of neighboring speeds of a scan where a force has to be detected, and how many are simulated together."""
+COARSE, SURELY = 1e-5, 0.9
+"""Tolerance of a first look, and the share of a limit below which its loads, within 0.02, surely keep it."""
 PRECISE = 1e-12
 SIMULATED = 1e-5
 """Nearness of loads to their limits, from formulas and from simulations."""
@@ -198,8 +200,13 @@ class _Pressing(DrivenContact):
         stiffness = self.rest.stiffness * STIFFNESSES
         for first in range(0, len(speeds), SCAN_BLOCK):
             block = speeds[first : first + SCAN_BLOCK]
-            rows = self._simulated(np.repeat(block, len(stiffness)), np.tile(stiffness, len(block)))
-            shares = np.array([self._shared(each)[0] for each in rows]).reshape(len(block), -1).max(axis=1)
+            pairs = np.repeat(block, len(stiffness)), np.tile(stiffness, len(block))
+            shares = np.array([self._shared(each)[0] for each in self._simulated(*pairs, tolerance=COARSE)])
+            near = np.flatnonzero(shares > SURELY)
+            if len(near):
+                rows = self._simulated(*(each[near] for each in pairs))
+                shares[near] = [self._shared(each)[0] for each in rows]
+            shares = shares.reshape(len(block), -1).max(axis=1)
             beyond = np.flatnonzero(shares > 1.0)
             if len(beyond):
                 return float(block[beyond[0]])

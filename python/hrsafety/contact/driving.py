@@ -165,7 +165,9 @@ class DrivenContact:
         """Return the loads with each stiffness of the scan."""
         return self._simulated(np.full(len(STIFFNESSES), speed), self.rest.stiffness * STIFFNESSES)
 
-    def _simulated(self, speed: Array, stiffness: Array, longer: float = 1.0) -> list[DrivenLoads]:
+    def _simulated(
+        self, speed: Array, stiffness: Array, longer: float = 1.0, tolerance: float | None = None
+    ) -> list[DrivenLoads]:
         """Return the loads with some drives by the equation of motion, each with its own horizon."""
         drive = self.drive
         brakes = np.asarray(drive.braking(speed))
@@ -191,7 +193,8 @@ class DrivenContact:
         if drive.push_limit is not None:
             values["push_limit"] = drive.push_limit
         values |= {"force_limit": math.nan, "pressure_limit": math.nan, "max_strain": math.nan}
-        rows = impacts_of(self.given._replace(values=values, limits=None), arrays, False, None, None)
+        shared = self.given.shared | ({} if tolerance is None else {"tolerance": tolerance})
+        rows = impacts_of(self.given._replace(shared=shared, values=values, limits=None), arrays, False, None, None)
         known = np.isfinite(rows.peak_force) & ~rows.rising & (rows.status == "horizon") & ~beyond
         found = []
         for row in range(len(speed)):
@@ -210,7 +213,8 @@ class DrivenContact:
         # An oscillation at rest whose peak happens to be at the horizon has none later: another horizon shows it.
         again = np.flatnonzero(rows.rising & np.isfinite(rows.peak_force) & ~beyond).tolist()
         if len(again) and longer < LONGER**4:
-            for row, loads in zip(again, self._simulated(speed[again], stiffness[again], LONGER * longer), strict=True):
+            more = self._simulated(speed[again], stiffness[again], LONGER * longer, tolerance)
+            for row, loads in zip(again, more, strict=True):
                 found[row] = loads
         return found
 
