@@ -103,9 +103,9 @@ def test_every_law_has_its_path_and_its_name(runs):
     assert legend_words(figure)[: len(LAWS)] == list(LAWS)
 
 
-def test_nine_laws_have_nine_colors_that_color_blind_people_tell_apart():
+def test_laws_have_colors_that_color_blind_people_tell_apart():
     colors = list(law_looks.LAW_COLORS.values())
-    assert set(law_looks.LAW_COLORS) == {type(law) for law in LAWS.values()}
+    assert set(law_looks.LAW_COLORS) >= {type(law) for law in LAWS.values()}
     # Red and green seen as one: lightness and blue against yellow are left.
     seen = [np.array([0.3 * r + 0.6 * g + 0.1 * b, b - (r + g) / 2]) for r, g, b in map(to_rgb, colors)]
     assert all(np.hypot(*(one - other)) > LEAST_DIFFERENCE for one, other in itertools.combinations(seen, 2))

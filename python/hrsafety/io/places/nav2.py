@@ -101,7 +101,7 @@ class Nav2Settings:
         Control period in s: the inverse of ``controller_frequency``, 20 Hz by default.
     monitor : mapping of str to dict
         Polygons of the collision monitor that slow the robot in time, by their names: ``time_before_collision`` and
-        ``simulation_time_step`` in s.
+        ``simulation_time_step``, both in seconds.
     ignored : tuple of str
         Keys of controller server, local costmap and collision monitor that nothing here uses, with their paths.
     warnings : tuple of ResultWarning
