@@ -5,6 +5,7 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 use vff_core::laws::Stop;
 use vff_core::laws::guide::{self, LocalGoal};
+use vff_core::laws::safe::Plans;
 use vff_core::sensing::lidar;
 use vff_core::sensing::sonar::ranging::Normals;
 use vff_core::world::frame::Frame;
@@ -38,9 +39,9 @@ fn two_columns(py: Python<'_>, points: impl Iterator<Item = [f64; 2]>) -> PyResu
     flat.into_pyarray(py).reshape([rows, 2])
 }
 
-/// Map of everything that stands still.
+/// Map of everything that stands still, and the plans that were made in it: laws with the same map share them.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
-pub struct StaticMap(pub map::StaticMap);
+pub struct StaticMap(pub map::StaticMap, pub Plans);
 
 #[pymethods]
 impl StaticMap {
@@ -90,7 +91,7 @@ impl StaticMap {
                 }
             })?;
         }
-        Ok(Self(py.detach(|| shapes.map())))
+        Ok(Self(py.detach(|| shapes.map()), Plans::default()))
     }
 
     /// Distances of points, zero inside.

@@ -6,7 +6,7 @@ use vff_core::lanes::Vector2;
 use vff_core::laws::filters;
 use vff_core::laws::foresight;
 use vff_core::laws::guide::TakeoverOptions;
-use vff_core::laws::safe::SafeNavigation;
+use vff_core::laws::safe::{Plans, SafeNavigation};
 use vff_core::laws::shield::{
     self, BlindCorner, CornerEdge, Friendly, Guard, KnownVelocity, Person, ShieldLimits,
     StaticObstacles, TrackingError, View,
@@ -250,7 +250,13 @@ pub fn guarded_law(law: &Law, given: Option<Keywords<'_>>) -> PyResult<Law> {
     let map: Option<PyRef<'_, StaticMap>> = given.take("map")?;
     let guide: Option<PyRef<'_, Guide>> = given.take("guide")?;
     let (progress, window) = given.take("takeover_rule")?;
+    // Who reckons with people whom he does not see plans ways of his own.
+    let unseen = shield
+        .as_ref()
+        .is_some_and(|shield| shield.0.unseen.is_some());
+    let shared = map.as_ref().filter(|_| !unseen);
     let family = taken!(given: SafeNavigation {
+        plans = shared.map_or_else(Plans::default, |map| map.1.clone()),
         map = map.map(|map| map.0.clone()), guide = guide.map(|guide| guide.0),
         rule = TakeoverOptions { progress, window }, shield = shield.map(|shield| shield.0),
         filter = filter.map(|filter| filter.0), yielding = yielding.map(|yielding| yielding.0),

@@ -4,11 +4,13 @@
 use std::f64::consts::PI;
 
 use crate::local_planning::{
-    Choice, Gaps, Mode, Pose, Prediction, TwistFamily, TwistPlanner, View, arc, evenly, numbers,
-    wrap,
+    Choice, Each, EachVector, LaneGaps, Mode, Prediction, TwistFamily, TwistPlanner, View, WIDTH,
+    all, arc, evenly, numbers, wrap,
 };
 use navigation_world::arguments::{Arguments, Named};
+use numeric::elementary::cosine_and_sine;
 use numeric::error::{Result, not_negative, positive};
+use numeric::lanes::{Number, Planar, Real, Truth, Vector2, vectors};
 
 /// Arcs are followed for so many m, `D`.
 const REACH: f64 = 3.0;
@@ -16,6 +18,8 @@ const REACH: f64 = 3.0;
 const TOUCH: f64 = 0.001;
 /// Slower robots turn in place, in m/s.
 const STILL: f64 = 1e-9;
+/// Half turns below this are straight, in rad: the arc differs by less than its rounding.
+const STRAIGHT: f64 = 1e-9;
 /// Scores nearer than this are equal.
 const EQUAL: f64 = 1e-12;
 /// Speeds and turn rates that are tried.
@@ -85,33 +89,57 @@ impl DynamicWindow {
         positive("max_turn_rate", self.max_turn_rate)?;
         Ok(self)
     }
+}
 
-    /// Distance along an arc in m up to a contact, `D` at most.
-    fn free(
-        &self,
-        gaps: &Gaps<'_>,
-        pose: &Pose,
-        [speed, turn_rate]: [f64; 2],
-        fastest: f64,
-    ) -> f64 {
-        let gap = gaps.at(pose.position, 0.0, self.prediction);
+/// Arcs of a speed side by side.
+struct Arcs<'a> {
+    gaps: LaneGaps<'a>,
+    position: EachVector,
+    front: EachVector,
+    /// Speed of the fastest person in m/s.
+    fastest: f64,
+    /// Gap where the robot is, in m.
+    here: f64,
+}
+
+impl Arcs<'_> {
+    /// Distances along the arcs of a speed and turn rates, in m, up to a contact, `D` at most.
+    #[inline(always)]
+    fn free(&self, speed: f64, turn_rates: Each) -> Each {
         if speed <= STILL {
-            return if gap > TOUCH { REACH } else { 0.0 };
+            return Each::splat(if self.here > TOUCH { REACH } else { 0.0 });
         }
-        let front = pose.front();
-        let (per_meter, approach) = (turn_rate / speed, 1.0 + fastest / speed);
-        let (mut length, mut gap) = (0.0, gap);
+        let (touch, reach, straight) = (
+            Each::splat(TOUCH),
+            Each::splat(REACH),
+            Each::splat(STRAIGHT),
+        );
+        let half_turn = turn_rates * (0.5 / speed);
+        let per_approach = Each::splat(1.0 / (1.0 + self.fastest / speed));
+        let mut length = Each::splat(0.0);
+        let mut gap = Each::splat(self.here);
+        let mut going = all(true);
         for _ in 0..MOST_STEPS {
             // A gap that is no number is none.
-            if gap.is_nan() || gap <= TOUCH {
-                return length;
+            going = going & gap.gt(touch);
+            length = Each::select(going, length + gap * per_approach, length);
+            let over = length.ge(reach);
+            length = Each::select(over, reach, length);
+            going = going & !over;
+            if !going.any() {
+                break;
             }
-            length += gap / approach;
-            if length >= REACH {
-                return REACH;
-            }
-            let place = pose.position + arc(front, length, per_meter * length);
-            gap = gaps.at(place, length / speed, self.prediction);
+            // The chord of the arc, half way through the turn.
+            let half = half_turn * length;
+            let [cosine, sine] = cosine_and_sine(half);
+            let bent = length * sine / half;
+            let chord = Each::select(half.abs().lt(straight), length, bent);
+            let way = EachVector::new(
+                self.front.x * cosine - self.front.y * sine,
+                self.front.x * sine + self.front.y * cosine,
+            );
+            let times = length * (1.0 / speed);
+            gap = self.gaps.at(self.position + way * chord, times, going);
         }
         length
     }
@@ -119,41 +147,97 @@ impl DynamicWindow {
 
 impl TwistPlanner for DynamicWindow {
     fn choose(&mut self, view: &View<'_>) -> Choice {
+        let search = Search { law: self, view };
+        match vectors() {
+            Some(vectors) => pulp::Simd::vectorize(vectors, search),
+            None => search.run(),
+        }
+    }
+}
+
+/// A search among all twists, in vectors of the processor where it has them.
+struct Search<'a, 'v> {
+    law: &'a DynamicWindow,
+    view: &'a View<'v>,
+}
+
+impl pulp::NullaryFnOnce for Search<'_, '_> {
+    type Output = Choice;
+
+    #[inline(always)]
+    fn call(self) -> Choice {
+        self.run()
+    }
+}
+
+impl Search<'_, '_> {
+    #[inline(always)]
+    fn run(self) -> Choice {
+        let Self { law, view } = self;
         let (period, most) = (view.period, view.max_speed);
         let [speed, _, turn_rate] = view.twist;
-        let slowest = (speed - self.acceleration * period).max(0.0).min(most);
-        let fastest = (speed + self.acceleration * period).min(most).max(slowest);
-        let (limit, change) = (self.max_turn_rate, self.turn_acceleration * period);
+        let slowest = (speed - law.acceleration * period).max(0.0).min(most);
+        let fastest = (speed + law.acceleration * period).min(most).max(slowest);
+        let (limit, change) = (law.max_turn_rate, law.turn_acceleration * period);
         let [right, left] =
             [turn_rate - change, turn_rate + change].map(|rate| rate.clamp(-limit, limit));
         let (pose, front) = (&view.pose, view.pose.front());
-        let people = view.gaps.fastest(self.prediction);
+        let arcs = Arcs {
+            gaps: LaneGaps::new(view.gaps, law.prediction, f64::INFINITY),
+            position: EachVector::splat(pose.position.into()),
+            front: EachVector::splat(front.into()),
+            fastest: view.gaps.fastest(law.prediction),
+            here: view.gaps.at(pose.position, 0.0, law.prediction),
+        };
+        let mut rates = [left; TURN_RATES.next_multiple_of(WIDTH)];
+        for (rate, value) in rates.iter_mut().zip(evenly(right, left, TURN_RATES)) {
+            *rate = value;
+        }
         let mut best = Choice::BLOCKED;
         for speed in evenly(slowest, fastest, SPEEDS) {
-            for turn_rate in evenly(right, left, TURN_RATES) {
-                let free = self.free(view.gaps, pose, [speed, turn_rate], people);
-                let stops = speed <= (2.0 * free * self.braking).sqrt()
-                    && turn_rate.abs() <= (2.0 * free * self.turn_braking).sqrt();
-                if free < REACH && !stops {
-                    continue;
-                }
-                let turn = turn_rate * period;
-                let place = pose.position + arc(front, speed * period, turn);
-                let to = view.local_goal - place;
-                let halt = turn_rate * turn_rate.abs() / (2.0 * self.turn_braking);
-                let error = wrap(to.y.atan2(to.x) - (pose.heading + turn + halt));
-                let score = self.heading * (1.0 - error.abs() / PI)
-                    + self.dist * free / REACH
-                    + self.velocity * speed / most;
-                if best.score.is_none_or(|known| score > known + EQUAL) {
-                    best = Choice {
-                        twist: [speed, 0.0, turn_rate],
-                        score: Some(score),
-                        mode: Mode::Track,
-                    };
+            for (block, rates) in rates.chunks(WIDTH).enumerate() {
+                let free = arcs.free(speed, Each::from_fn(|lane| rates[lane]));
+                for (lane, &turn_rate) in rates.iter().enumerate() {
+                    if block * WIDTH + lane < TURN_RATES {
+                        law.weigh(view, front, [speed, turn_rate], free.lane(lane), &mut best);
+                    }
                 }
             }
         }
         best
+    }
+}
+
+impl DynamicWindow {
+    /// Takes a twist with a distance that is free if it is admissible and better than the best.
+    #[inline(always)]
+    fn weigh(
+        &self,
+        view: &View<'_>,
+        front: Vector2<f64>,
+        [speed, turn_rate]: [f64; 2],
+        free: f64,
+        best: &mut Choice,
+    ) {
+        let stops = speed <= (2.0 * free * self.braking).sqrt()
+            && turn_rate.abs() <= (2.0 * free * self.turn_braking).sqrt();
+        if free < REACH && !stops {
+            return;
+        }
+        let (pose, turn) = (&view.pose, turn_rate * view.period);
+        let place = pose.position + arc(front, speed * view.period, turn);
+        let to = view.local_goal - place;
+        let halt = turn_rate * turn_rate.abs() / (2.0 * self.turn_braking);
+        let error = wrap(to.y.atan2(to.x) - (pose.heading + turn + halt));
+        let score = self.heading * (1.0 - error.abs() / PI)
+            + self.dist * free / REACH
+            + self.velocity * speed / view.max_speed;
+        if best.score.is_none_or(|known| score > known + EQUAL) {
+            *best = Choice {
+                twist: [speed, 0.0, turn_rate],
+                score: Some(score),
+                mode: Mode::Track,
+            };
+        }
     }
 }

@@ -7,6 +7,7 @@
 mod gaps;
 mod law;
 mod motion;
+mod side_by_side;
 #[cfg(test)]
 mod tests;
 mod way;
@@ -15,6 +16,7 @@ pub use gaps::{Gaps, Inflation, MovingShape, Prediction, Walls};
 pub use law::{Steered, Tuned, TwistFamily};
 pub(crate) use law::{finite_number, numbers};
 pub use motion::{AxisLimits, Pose, arc, evenly, wrap};
+pub(crate) use side_by_side::{Each, EachVector, LaneGaps, WIDTH, all};
 pub use way::Way;
 
 use numeric::lanes::Vector2;

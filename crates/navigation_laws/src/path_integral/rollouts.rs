@@ -1,16 +1,10 @@
 //! Samples of controls side by side, where they lead, and what they cost.
 
 use super::{Control, PathIntegral};
-use crate::local_planning::{Gaps, Inflation, Prediction, View, wrap};
-use navigation_world::world::shape::Shape;
+use crate::local_planning::{Each, EachVector, Inflation, LaneGaps, View, WIDTH, all, wrap};
 use numeric::elementary::{cosine_and_sine, fading, logarithm};
-use numeric::lanes::{Lanes, Number, Planar, Real, Truth, Vector2, vectors};
+use numeric::lanes::{Number, Planar, Real, Truth, Vector2, vectors};
 use numeric::philox::side_by_side;
-
-/// Samples side by side.
-const WIDTH: usize = 8;
-type Each = Lanes<WIDTH>;
-type EachVector = Vector2<Each>;
 
 /// Second word of the key of all draws.
 const KEY: u32 = 0x4D50_5049;
@@ -128,76 +122,42 @@ impl pulp::NullaryFnOnce for Job<'_, '_> {
     }
 }
 
-/// A rectangle in every lane.
-struct WideShape {
-    shape: Shape<Each>,
-    center: Vector2<f64>,
-    velocity: Vector2<f64>,
-}
-
-/// What the samples are looked at by.
-struct Critics<'a> {
-    gaps: &'a Gaps<'a>,
-    shapes: Vec<WideShape>,
-    prediction: Prediction,
-    inflation: Inflation,
-}
-
-impl Critics<'_> {
-    /// The gap at places and a time in s.
-    #[inline(always)]
-    fn gap(&self, places: EachVector, time: f64) -> Each {
-        let most = self.inflation.inflation_radius.max(self.gaps.radius) + 1.0;
-        let mut least = Each::splat(most);
-        let moving = self.prediction == Prediction::ConstantVelocity;
-        let time = if moving { time } else { 0.0 };
-        for person in self.gaps.people {
-            let at = person.position + person.velocity * time;
-            let to = places - EachVector::splat(at.into());
-            let away = to.dot(&to).sqrt() - Each::splat(person.radius);
-            least = away.min(least);
-        }
-        for wall in &self.shapes {
-            let at = wall.center + wall.velocity * time;
-            let off = wall.shape.offset(places - EachVector::splat(at.into()));
-            least = off.dot(&off).sqrt().min(least);
-        }
-        if let Some(map) = self.gaps.walls.map {
-            least = Each::from_fn(|lane| {
-                let known = least.lane(lane);
-                known.min(map.clearance_up_to(places.lane(lane).into(), known.max(0.0)))
-            });
-        }
-        least - Each::splat(self.gaps.radius)
-    }
-
-    /// Costs of gaps that are open.
-    #[inline(always)]
-    fn cost(&self, gap: Each) -> Each {
-        let near = gap.le(Each::splat(
-            self.inflation.inflation_radius - self.gaps.radius,
-        ));
-        let cost = fading(gap * Each::splat(-self.inflation.cost_scaling_factor)) * 252.0;
-        Each::select(near, cost, Each::splat(0.0))
-    }
-}
-
-/// Three draws of a standard normal distribution for every lane.
+/// Costs of gaps that are open.
 #[inline(always)]
-fn normals(words: [[u32; WIDTH]; 4], sideways: bool) -> [Each; 3] {
-    let unit = |words: [u32; WIDTH]| {
-        Each::from_fn(|lane| (f64::from(words[lane]) + 0.5) * (1.0 / 4_294_967_296.0))
-    };
-    let [first, second, third, fourth] = words;
-    let radius = |words| (logarithm(unit(words)) * -2.0).sqrt();
-    let turn = |words| cosine_and_sine(unit(words) * std::f64::consts::TAU);
-    let (length, [cosine, sine]) = (radius(first), turn(second));
+fn cost(inflation: &Inflation, radius: f64, gap: Each) -> Each {
+    let near = gap.le(Each::splat(inflation.inflation_radius - radius));
+    let cost = fading(gap * Each::splat(-inflation.cost_scaling_factor)) * 252.0;
+    Each::select(near, cost, Each::splat(0.0))
+}
+
+/// Number between 0 and 1 of a random word, in every lane.
+#[inline(always)]
+fn unit(words: [u32; WIDTH]) -> Each {
+    let mut numbers = [0.0; WIDTH];
+    for (number, word) in numbers.iter_mut().zip(words) {
+        *number = (f64::from(word) + 0.5) * (1.0 / 4_294_967_296.0);
+    }
+    Each::from_fn(|lane| numbers[lane])
+}
+
+/// Length and direction of two draws of a standard normal distribution.
+#[inline(always)]
+fn polar(length: [u32; WIDTH], turn: [u32; WIDTH]) -> [Each; 2] {
+    let length = (logarithm(unit(length)) * -2.0).sqrt();
+    let [cosine, sine] = cosine_and_sine(unit(turn) * std::f64::consts::TAU);
+    [length * cosine, length * sine]
+}
+
+/// Draws of a standard normal distribution for every lane: forward, to the left if there is any, turning.
+#[inline(always)]
+fn normals([first, second, third, fourth]: [[u32; WIDTH]; 4], sideways: bool) -> [Each; 3] {
+    let [ahead, turning] = polar(first, second);
     let left = if sideways {
-        radius(third) * turn(fourth)[0]
+        polar(third, fourth)[0]
     } else {
         Each::splat(0.0)
     };
-    [length * cosine, left, length * sine]
+    [ahead, left, turning]
 }
 
 #[inline(always)]
@@ -221,30 +181,11 @@ impl Job<'_, '_> {
         rollouts.places.clear();
         rollouts.headings.clear();
         rollouts.free = false;
-        let critics = Critics {
-            gaps: view.gaps,
-            shapes: view
-                .gaps
-                .walls
-                .shapes
-                .iter()
-                .map(|wall| {
-                    let mut shape = Shape::Disc {
-                        radius: Each::splat(0.0),
-                    };
-                    for lane in 0..WIDTH {
-                        shape.set_lane(lane, &wall.placed.shape);
-                    }
-                    WideShape {
-                        shape,
-                        center: wall.placed.center,
-                        velocity: wall.velocity,
-                    }
-                })
-                .collect(),
-            prediction: settings.prediction,
-            inflation: settings.inflation(),
-        };
+        let inflation = settings.inflation();
+        let radius = view.gaps.radius;
+        // Beyond the inflation radius gaps cost nothing.
+        let most = inflation.inflation_radius.max(radius) + 1.0;
+        let gaps = LaneGaps::new(view.gaps, settings.prediction, most);
         let limits = settings.limits().map(|limits| limits.map(Each::splat));
         let deviations = settings.deviations();
         let sideways = settings.vy_max > 0.0;
@@ -261,7 +202,7 @@ impl Job<'_, '_> {
             let mut place = EachVector::splat(view.pose.position.into());
             let mut heading = Each::splat(view.pose.heading);
             let zero = Each::splat(0.0);
-            let (mut near, mut hit) = (zero, Each::splat(0.0).lt(Each::splat(0.0)));
+            let (mut near, mut hit) = (zero, all(false));
             let (mut to_goal, mut backward, mut control_cost) = (zero, zero, zero);
             let (mut along, mut off, mut last_place) = (zero, zero, place);
             for (number, planned) in (0_u32..).zip(self.plan) {
@@ -291,11 +232,12 @@ impl Job<'_, '_> {
                 place.y += (ahead * sine + left * cosine) * step;
                 heading += turn_rate * step;
                 if index.is_multiple_of(COST_STRIDE) {
-                    let gap = critics.gap(place, (index + 1) as f64 * step);
+                    let time = Each::splat((index + 1) as f64 * step);
+                    let gap = gaps.at(place, time, all(true));
                     // A gap that is no number is none.
                     let open = gap.gt(zero);
                     hit = hit | !open;
-                    near += critics.cost(gap);
+                    near += cost(&inflation, radius, gap);
                 }
                 if length <= GOAL_FROM {
                     let way = place - goal_lanes;
@@ -315,22 +257,22 @@ impl Job<'_, '_> {
             }
             let touched = Each::splat(COLLISION_COST);
             let near = if away < NEAR_GOAL { zero } else { near };
-            let mut cost =
+            let mut total =
                 Each::select(hit, touched, near) * (settings.cost_weight / LARGEST_COST / looked);
-            cost += control_cost;
+            total += control_cost;
             if length <= GOAL_FROM {
-                cost += to_goal * (settings.goal_weight / steps as f64);
+                total += to_goal * (settings.goal_weight / steps as f64);
             }
             if aligned > 0 {
-                cost += off * (settings.path_align_weight / aligned as f64);
+                total += off * (settings.path_align_weight / aligned as f64);
             }
             if away >= NEAR_GOAL {
-                cost += backward * (settings.prefer_forward_weight * step);
+                total += backward * (settings.prefer_forward_weight * step);
             }
             for lane in 0..WIDTH {
                 rollouts.free |= block * WIDTH + lane < settings.batch_size && !hit.lane(lane);
             }
-            rollouts.costs.push(cost);
+            rollouts.costs.push(total);
             rollouts.places.push(place);
             rollouts.headings.push(heading);
         }

@@ -1,4 +1,4 @@
-//! Plans of many runs: one for each robot, start and goal.
+//! Plans of many runs in one map: one for each guide, robot, start and goal.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -17,9 +17,9 @@ type Key = [u64; 9];
 /// Cells of places, with the corners of the places.
 type Grounds = Vec<([[u64; 2]; 2], Arc<Ground>)>;
 
-/// Plans that were made, and cells for people who are not seen, shared by all copies.
+/// Plans that were made in one map, and cells for people who are not seen, shared by all copies.
 #[derive(Clone, Debug, Default)]
-pub struct Plans(Arc<Mutex<Vec<(Key, Plan)>>>, Arc<Mutex<Grounds>>);
+pub struct Plans(Arc<Mutex<Vec<(Key, Guide, Plan)>>>, Arc<Mutex<Grounds>>);
 
 impl Plans {
     /// The plan of a guide in a map, for a robot, from a start to a goal.
@@ -40,13 +40,14 @@ impl Plans {
         let [e, f, g] = pace.as_ref().map_or([0.0; 3], slow);
         let key = [robot.least, robot.turning, a, b, c, d, e, f, g].map(f64::to_bits);
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, plan)) = kept.iter().find(|(known, _)| *known == key) {
+        let same = |(known, by, _): &&(Key, Guide, Plan)| *known == key && by == guide;
+        if let Some((.., plan)) = kept.iter().find(same) {
             return Ok(plan.clone());
         }
         let map = map.cloned().unwrap_or_else(|| MapShapes::new().map());
         let plan = guide.paced_plan(&map, robot, ends, pace, Stop::never())?;
         if kept.len() < MOST_KEPT {
-            kept.push((key, plan.clone()));
+            kept.push((key, *guide, plan.clone()));
         }
         Ok(plan)
     }
