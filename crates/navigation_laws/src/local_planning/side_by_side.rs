@@ -21,7 +21,7 @@ struct WideShape {
 struct WidePerson {
     position: EachVector,
     velocity: EachVector,
-    radius: Each,
+    radius: f64,
 }
 
 /// Gaps to people and walls in every lane.
@@ -41,8 +41,10 @@ impl<'a> LaneGaps<'a> {
         let people = gaps.people.iter().map(|person| WidePerson {
             position: wide(person.position),
             velocity: wide(person.velocity),
-            radius: Each::splat(person.radius),
+            radius: person.radius,
         });
+        let mut people: Vec<WidePerson> = people.collect();
+        people.sort_by(|one, other| one.radius.total_cmp(&other.radius));
         let shapes = gaps.walls.shapes.iter().map(|wall| {
             let mut shape = Shape::Disc {
                 radius: Each::splat(0.0),
@@ -58,7 +60,7 @@ impl<'a> LaneGaps<'a> {
         });
         Self {
             gaps,
-            people: people.collect(),
+            people,
             shapes: shapes.collect(),
             moving: prediction == Prediction::ConstantVelocity,
             most: Each::splat(most + gaps.radius),
@@ -70,22 +72,32 @@ impl<'a> LaneGaps<'a> {
     #[inline(always)]
     pub fn at(&self, places: EachVector, times: Each, asked: EachTruth) -> Each {
         let mut least = self.most;
-        for person in &self.people {
-            let mut to = places - person.position;
-            if self.moving {
-                to -= person.velocity * times;
+        let beyond = Each::splat(f64::INFINITY);
+        // Of people with the same radius the nearest counts: one root for all of them, and one for all walls.
+        for alike in self
+            .people
+            .chunk_by(|one, other| one.radius == other.radius)
+        {
+            let mut squared = beyond;
+            for person in alike {
+                let mut to = places - person.position;
+                if self.moving {
+                    to -= person.velocity * times;
+                }
+                squared = to.dot(&to).min(squared);
             }
-            let away = to.dot(&to).sqrt() - person.radius;
-            least = away.min(least);
+            least = (squared.sqrt() - Each::splat(alike[0].radius)).min(least);
         }
+        let mut squared = beyond;
         for wall in &self.shapes {
             let mut to = places - wall.center;
             if self.moving {
                 to -= wall.velocity * times;
             }
             let off = wall.shape.offset(to);
-            least = off.dot(&off).sqrt().min(least);
+            squared = off.dot(&off).min(squared);
         }
+        least = squared.sqrt().min(least);
         if let Some(map) = self.gaps.walls.map {
             for lane in 0..WIDTH {
                 if asked.lane(lane) {
