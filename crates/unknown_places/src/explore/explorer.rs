@@ -111,6 +111,7 @@ pub struct Explorer {
     search: Search,
     plan: TimeToGo,
     planned: bool,
+    searched: bool,
     since: usize,
     rollouts: Rollouts,
     recovery: Recovery,
@@ -173,6 +174,7 @@ impl Explorer {
             search: Search::new(options.guide, size),
             plan: TimeToGo::default(),
             planned: false,
+            searched: false,
             since: 0,
             rollouts: Rollouts::new(reach),
             recovery: Recovery::new(robot.period, reach.periods as f64, options.seed),
@@ -415,11 +417,13 @@ impl Explorer {
         if !self.search.running() {
             return;
         }
-        let nodes = if self.planned {
+        // The first search goes to its end, as the robot stands; others take several periods.
+        let nodes = if self.searched {
             self.options.nodes
         } else {
             usize::MAX
         };
+        self.searched = true;
         match self.search.go_on(place, nodes) {
             Progress::Running => {}
             Progress::Found => {

@@ -198,36 +198,60 @@ impl Cells {
         }
     }
 
-    /// Distance transform: first along columns, then along rows.
+    /// Columns of the window within reach of which something is occupied.
+    fn columns_of_interest(&self) -> Option<(usize, usize)> {
+        let mut all = vec![0_u64; self.words];
+        for row in self.occupied.chunks_exact(self.words) {
+            for (all, word) in all.iter_mut().zip(row) {
+                *all |= word;
+            }
+        }
+        let first = all.iter().position(|word| *word != 0)?;
+        let last = all.iter().rposition(|word| *word != 0)?;
+        let wide = self.far.unsigned_abs() as usize;
+        let low = first * WORD + all[first].trailing_zeros() as usize;
+        let high = last * WORD + WORD - all[last].leading_zeros() as usize;
+        Some((low.saturating_sub(wide), (high + wide).min(self.size)))
+    }
+
+    /// Distance transform: first along columns, then along rows; far from everything nothing is computed.
     fn transform(&mut self) {
         let (size, far) = (self.size, self.far);
+        self.squares.fill(far * far);
+        let Some((low, high)) = self.columns_of_interest() else {
+            return;
+        };
         let mut last = vec![far; size];
         for up in [true, false] {
             last.fill(far);
             for place in 0..size {
                 let row = if up { place } else { size - 1 - place };
                 let words = &self.occupied[row * self.words..(row + 1) * self.words];
-                let cells = &mut self.columns[row * size..(row + 1) * size];
-                for ((column, last), cell) in last.iter_mut().enumerate().zip(cells) {
+                let cells = &mut self.columns[row * size + low..row * size + high];
+                let columns = low..high;
+                for ((column, last), cell) in columns.zip(&mut last[low..high]).zip(cells) {
                     let hit = words[column / WORD] >> (column % WORD) & 1;
                     *last = (*last + 1).min(far) * (1 - hit as i16);
                     *cell = if up { *last } else { (*cell).min(*last) };
                 }
             }
         }
-        let wide = far.unsigned_abs() as usize;
-        let mut squared = vec![far * far; size + 2 * wide];
+        let (wide, width) = (far.unsigned_abs() as usize, high - low);
+        let mut squared = vec![far * far; width + 2 * wide];
         for row in 0..size {
-            let column = &self.columns[row * size..(row + 1) * size];
-            for (square, away) in squared[wide..wide + size].iter_mut().zip(column) {
+            let column = &self.columns[row * size + low..row * size + high];
+            if column.iter().all(|away| *away == far) {
+                continue;
+            }
+            for (square, away) in squared[wide..wide + width].iter_mut().zip(column) {
                 *square = away * away;
             }
-            let out = &mut self.squares[row * size..(row + 1) * size];
-            out.copy_from_slice(&squared[wide..wide + size]);
+            let out = &mut self.squares[row * size + low..row * size + high];
+            out.copy_from_slice(&squared[wide..wide + width]);
             for off in 1..far {
                 let (square, step) = (off * off, off.unsigned_abs() as usize);
-                let left = &squared[wide - step..wide - step + size];
-                let right = &squared[wide + step..wide + step + size];
+                let left = &squared[wide - step..wide - step + width];
+                let right = &squared[wide + step..wide + step + width];
                 for ((least, one), other) in out.iter_mut().zip(left).zip(right) {
                     *least = (*least).min((*one).min(*other) + square);
                 }

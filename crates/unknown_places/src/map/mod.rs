@@ -2,6 +2,8 @@
 
 mod cells;
 mod rolling;
+#[cfg(test)]
+mod tests;
 mod walk;
 
 pub use cells::{Cells, Kind, Known};
