@@ -161,7 +161,7 @@ impl Explorer {
                 Given::Number(options.map.reach),
             ));
         }
-        let map = RollingMap::new(options.map)?;
+        let mut map = RollingMap::new(options.map)?;
         let far = (outer + options.margin + 0.02 + 0.3).max(options.guide.near_distance);
         let size = Size {
             inner: chassis.footprint.inner_radius(),
@@ -169,10 +169,10 @@ impl Explorer {
             max_speed: limits.max_speed,
         };
         Ok(Self {
-            cells: Cells::new(&map, far),
+            cells: Cells::new(&mut map, far),
+            search: Search::new(options.guide, size, map.size() * map.size()),
+            plan: TimeToGo::with_room(map.size() * map.size()),
             map,
-            search: Search::new(options.guide, size),
-            plan: TimeToGo::default(),
             planned: false,
             searched: false,
             since: 0,
@@ -234,7 +234,7 @@ impl Explorer {
     /// Decides for the next control period from a pose; all scans until now have been entered.
     pub fn decide(&mut self, robot: &Frame) -> Decision {
         self.follow(robot);
-        self.cells.read(&self.map);
+        self.cells.read(&mut self.map);
         self.guide(robot.position);
         let present = self.look(robot);
         let time_to_go = if self.planned {
@@ -339,7 +339,7 @@ impl Explorer {
     /// Forgets what was seen, as the pose from which it was seen is not true any more; the plan runs on.
     pub fn forget(&mut self) {
         self.map.clear();
-        self.cells.read(&self.map);
+        self.cells.read(&mut self.map);
         self.planned = false;
         self.started = false;
         self.search.stop();

@@ -1,7 +1,5 @@
 //! Commands that are tried, each rolled out on two arcs, and what the places that they lead to are worth.
 
-use std::f64::consts::PI;
-
 use nalgebra::Vector2;
 use navigation_world::robots::differential::Twist;
 use navigation_world::world::footprint::Footprint;
@@ -97,7 +95,9 @@ pub struct Rollouts {
 struct Turn {
     chord: Vector2<f64>,
     heading: Vector2<f64>,
-    angle: f64,
+    /// Whether the pose after it is looked at, and whether it is judged.
+    looked: bool,
+    judged: bool,
 }
 
 /// A rollout under way.
@@ -129,10 +129,10 @@ impl Judge<'_> {
         if away > self.outer + most + self.off {
             return Some(0.0);
         }
-        if self.least >= 0.0 && away < self.inner - self.off {
+        if away + self.off < self.inner + self.least {
             return None;
         }
-        let mut nearest = f64::INFINITY;
+        let mut nearest = most;
         let pose = Frame {
             position: place,
             direction: heading,
@@ -142,18 +142,24 @@ impl Judge<'_> {
             if self.footprint.beyond(seen) < nearest {
                 nearest = nearest.min(self.footprint.signed_distance(seen));
             }
+            nearest >= self.least
         });
-        (nearest >= self.least).then(|| (1.0 - (nearest - self.least) / NEAR).max(0.0))
+        (nearest >= self.least).then(|| {
+            if nearest < most {
+                1.0 - (nearest - self.least) / NEAR
+            } else {
+                0.0
+            }
+        })
     }
 
     /// Time from a pose to the goal, with the price of the turn.
-    fn value(&mut self, place: Vector2<f64>, angle: f64) -> Option<f64> {
+    fn value(&mut self, place: Vector2<f64>, heading: Vector2<f64>) -> Option<f64> {
         let outlook = self.plan.outlook(place)?;
-        let off = outlook.direction.map_or(0.0, |direction| {
-            let apart = (direction - angle).rem_euclid(2.0 * PI);
-            apart.min(2.0 * PI - apart)
-        });
-        Some(outlook.time + TURN_PRICE * off)
+        let off = outlook
+            .ahead
+            .map_or(0.0, |ahead| heading.perp(&ahead).atan2(heading.dot(&ahead)));
+        Some(outlook.time + TURN_PRICE * off.abs())
     }
 }
 
@@ -198,8 +204,8 @@ impl Rollouts {
             least: (chassis.margin + 0.02).max(DISTANCE).min(present - LESS),
             off: DIAGONAL * cells.cell(),
         };
-        let first = FIRST_PARTS * reach.periods;
-        let angle = pose.angle();
+        let part = reach.periods;
+        let first = FIRST_PARTS * part;
         self.rated.clear();
         self.rated.resize(
             COMMANDS,
@@ -212,12 +218,11 @@ impl Rollouts {
         for (turn, share) in FIRST.iter().enumerate() {
             let wanted = share * reach.max_turn_rate;
             turns.clear();
-            let rate = turned(
+            let after = turned(
                 &mut turns,
-                angle,
-                twist.turn_rate,
+                (pose.direction, twist.turn_rate),
                 [wanted, turn_step, period],
-                first,
+                (first, part),
             );
             let begun: [Option<Rolled>; SPEEDS.len()] = std::array::from_fn(|speed| {
                 let mut rolled = Rolled {
@@ -230,19 +235,13 @@ impl Rollouts {
                 self.roll(&mut judge, &mut rolled, wanted, &turns, 0)
                     .then_some(rolled)
             });
-            let after = turns.last().map_or(angle, |turn| turn.angle);
             let mut best = begun.map(|rolled| rolled.map_or(f64::INFINITY, |rolled| rolled.score));
             if begun.iter().any(Option::is_some) {
                 for share in SECOND {
                     turns.truncate(first);
-                    let rest = (PARTS - FIRST_PARTS) * reach.periods;
-                    turned(
-                        &mut turns,
-                        after,
-                        rate,
-                        [share * reach.max_turn_rate, turn_step, period],
-                        rest,
-                    );
+                    let wanted = share * reach.max_turn_rate;
+                    let rest = (PARTS - FIRST_PARTS) * part;
+                    turned(&mut turns, after, [wanted, turn_step, period], (rest, part));
                     for (speed, rolled) in begun.iter().enumerate() {
                         if let Some(rolled) = rolled {
                             let wanted = SPEEDS[speed] * reach.max_speed;
@@ -284,57 +283,57 @@ impl Rollouts {
         turns: &[Turn],
         from: usize,
     ) -> bool {
-        let (stride, [step, period]) = (self.stride(), self.rates);
+        let [step, period] = self.rates;
+        let long = period * if self.reach.periods > 1 { 2.0 } else { 1.0 };
         for (at, turn) in turns.iter().enumerate().skip(from) {
             let speed = toward(rolled.speed, wanted, step);
             rolled.place += turn.chord * (0.5 * (rolled.speed + speed) * period);
             rolled.speed = speed;
-            let done = at + 1;
-            if done % stride == 0 {
+            if turn.looked {
                 let Some(share) = judge.nearness(rolled.place, turn.heading) else {
                     return false;
                 };
-                rolled.cost += share * period * stride as f64;
+                rolled.cost += share * long;
             }
-            if JUDGED
-                .iter()
-                .any(|parts| parts * self.reach.periods == done)
-                && let Some(value) = judge.value(rolled.place, turn.angle)
+            if turn.judged
+                && let Some(value) = judge.value(rolled.place, turn.heading)
             {
-                rolled.score = rolled.score.min(done as f64 * period + value + rolled.cost);
+                let done = (at + 1) as f64 * period;
+                rolled.score = rolled.score.min(done + value + rolled.cost);
             }
         }
         true
     }
-
-    /// Periods between two poses that are looked at.
-    fn stride(&self) -> usize {
-        if self.reach.periods > 1 { 2 } else { 1 }
-    }
 }
 
-/// Adds the turns of some periods with a turn rate that approaches a wanted one; returns the turn rate then.
+/// Adds the turns of some periods with a turn rate that approaches a wanted one; returns heading and turn rate then.
 fn turned(
     turns: &mut Vec<Turn>,
-    mut angle: f64,
-    mut rate: f64,
+    (mut heading, mut rate): (Vector2<f64>, f64),
     [wanted, step, period]: [f64; 3],
-    periods: usize,
-) -> f64 {
+    (periods, part): (usize, usize),
+) -> (Vector2<f64>, f64) {
+    // Between two poses that are looked at there are two periods, where a part has several.
+    let stride = if part > 1 { 2 } else { 1 };
     for _ in 0..periods {
         let next = toward(rate, wanted, step);
-        let turn = 0.5 * (rate + next) * period;
-        let (chord, _) = moved(1.0, turn);
-        let (sin, cos) = angle.sin_cos();
-        let along = Vector2::new(cos * chord.x - sin * chord.y, sin * chord.x + cos * chord.y);
-        angle += turn;
-        let (sin, cos) = angle.sin_cos();
-        turns.push(Turn {
-            chord: along,
-            heading: Vector2::new(cos, sin),
-            angle,
-        });
+        let (chord, turn) = moved(1.0, 0.5 * (rate + next) * period);
+        let rotated = |vector: Vector2<f64>| {
+            Vector2::new(
+                heading.x * vector.x - heading.y * vector.y,
+                heading.y * vector.x + heading.x * vector.y,
+            )
+        };
+        let (chord, after) = (rotated(chord), rotated(turn));
+        heading = after;
         rate = next;
+        let done = turns.len() + 1;
+        turns.push(Turn {
+            chord,
+            heading,
+            looked: done % stride == 0,
+            judged: JUDGED.iter().any(|parts| parts * part == done),
+        });
     }
-    rate
+    (heading, rate)
 }

@@ -78,12 +78,12 @@ impl Piece {
 /// Way in the frame at the start of an arc, and the direction at its end.
 pub(super) fn moved(distance: f64, angle: f64) -> (Vector2<f64>, Vector2<f64>) {
     let half = 0.5 * angle;
+    let (sin, cos) = half.sin_cos();
     let chord = if half == 0.0 {
         distance
     } else {
-        distance * half.sin() / half
+        distance * sin / half
     };
-    let (sin, cos) = half.sin_cos();
     let turn = Vector2::new(cos * cos - sin * sin, 2.0 * sin * cos);
     (Vector2::new(cos, sin) * chord, turn)
 }

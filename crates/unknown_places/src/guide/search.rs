@@ -67,6 +67,18 @@ pub struct Size {
     pub max_speed: f64,
 }
 
+/// From a node to one of its neighbors.
+#[derive(Clone, Copy, Debug)]
+struct Link {
+    step: i64,
+    columns: i64,
+    /// Half of the time at the largest speed in s.
+    half: f32,
+}
+
+/// Nodes that a link crosses along an axis at most.
+const STRIDE: usize = 2;
+
 /// A search under way.
 #[derive(Clone, Debug)]
 pub struct Search {
@@ -74,11 +86,14 @@ pub struct Search {
     size: Size,
     goal: Vector2<f64>,
     plan: TimeToGo,
-    settled: Vec<bool>,
+    settled: Vec<u64>,
+    /// Price of each node, and infinite where there is none.
     cost: Vec<f32>,
     queue: Buckets,
-    links: Vec<(i64, i64, f32)>,
-    squares: Vec<i16>,
+    links: Vec<Link>,
+    /// Square of the distance of each node, and so many more if it is unknown.
+    ground: Vec<i16>,
+    unknown: i16,
     /// Which of the least distances is tried.
     attempt: usize,
     /// End of the search, once the robot was met.
@@ -98,19 +113,20 @@ pub enum Progress {
 }
 
 impl Search {
-    /// A search for a robot, none under way.
+    /// A search for a robot over so many nodes, none under way.
     #[must_use]
-    pub fn new(options: GuideOptions, size: Size) -> Self {
+    pub fn new(options: GuideOptions, size: Size, nodes: usize) -> Self {
         Self {
             options,
             size,
             goal: Vector2::zeros(),
-            plan: TimeToGo::default(),
+            plan: TimeToGo::with_room(nodes),
             settled: Vec::new(),
-            cost: Vec::new(),
+            cost: vec![f32::INFINITY; nodes],
             queue: Buckets::default(),
             links: Vec::new(),
-            squares: Vec::new(),
+            ground: vec![1; nodes],
+            unknown: 0,
             attempt: 0,
             until: f32::INFINITY,
             running: false,
@@ -153,49 +169,65 @@ impl Search {
         for (x, y) in [(1, 0), (1, 1), (2, 1), (1, 2)] {
             let time = ((x * x + y * y) as f32).sqrt() * step;
             for (x, y) in [(x, y), (-y, x), (-x, -y), (y, -x)] {
-                self.links.push((x + y * width, x, time));
+                self.links.push(Link {
+                    step: x + y * width,
+                    columns: x,
+                    half: time * 0.5,
+                });
             }
         }
-        self.squares.clear();
-        self.squares.extend_from_slice(cells.squares());
+        self.unknown = cells.farthest() + 1;
+        self.ground.clear();
+        self.ground.extend_from_slice(cells.squares());
+        for (ground, known) in self.ground.chunks_mut(64).zip(cells.known()) {
+            if known == 0 {
+                ground.iter_mut().for_each(|square| *square += self.unknown);
+            } else if known != u64::MAX {
+                for (bit, square) in ground.iter_mut().enumerate() {
+                    *square += self.unknown * i16::from(known >> bit & 1 == 0);
+                }
+            }
+        }
         self.attempt = 0;
         self.running = true;
-        self.price(cells);
         self.begin();
     }
 
-    /// Prices of all nodes; what is too near to an occupied cell for any attempt costs nothing and is no node.
-    fn price(&mut self, cells: &Cells) {
-        let (options, size) = (self.options, self.size);
+    /// Prices of all nodes for the least distance that is tried; what is nearer to an occupied cell is none.
+    fn price(&mut self) {
+        let (options, size, cell) = (self.options, self.size, self.plan.cell);
         let turning = size.outer + 0.03;
+        let least = self.least_square();
         let factor = |square: i16| {
-            let away = f64::from(square).sqrt() * cells.cell();
+            if square < least {
+                return f32::INFINITY;
+            }
+            let away = f64::from(square).sqrt() * cell;
             let narrow = ((turning - away) / (turning - size.inner)).max(0.0);
             let near = ((options.near_distance - away) / 0.3).max(0.0);
             (1.0 + options.narrow_weight * narrow + options.near_weight * near) as f32
         };
-        let table: Vec<f32> = (0..=cells.farthest()).map(factor).collect();
-        let unknown = options.unknown_weight as f32;
+        let mut table: Vec<f32> = (0..self.unknown).map(factor).collect();
+        let more = options.unknown_weight as f32;
+        table.extend_from_within(..);
+        for price in &mut table[self.unknown.unsigned_abs() as usize..] {
+            *price += more;
+        }
         self.cost.clear();
+        let priced = self.ground.iter();
         self.cost
-            .extend(self.squares.iter().enumerate().map(|(node, square)| {
-                let known = table[square.unsigned_abs() as usize];
-                if cells.is_unknown(node) {
-                    known + unknown
-                } else {
-                    known
-                }
-            }));
+            .extend(priced.map(|ground| table[ground.unsigned_abs() as usize]));
     }
 
     /// Puts the goal into the queue, for the least distance that is tried.
     fn begin(&mut self) {
+        self.price();
         let size = self.plan.size;
         self.plan.time.clear();
         self.plan.time.resize(size * size, f32::INFINITY);
         self.plan.next.resize(size * size, NONE);
         self.settled.clear();
-        self.settled.resize(size * size, false);
+        self.settled.resize((size * size).div_ceil(64), 0);
         self.queue
             .restart((self.plan.cell / self.size.max_speed) as f32);
         self.until = f32::INFINITY;
@@ -238,7 +270,7 @@ impl Search {
 
     #[inline]
     fn is_node(&self, node: usize) -> bool {
-        self.squares[node] >= self.least_square()
+        self.cost[node] < f32::INFINITY
     }
 
     fn least_square(&self) -> i16 {
@@ -280,7 +312,7 @@ impl Search {
             self.running = false;
             return Progress::NoWay;
         };
-        let mut least = self.least_square();
+        let inner = STRIDE..size - STRIDE;
         loop {
             if left == 0 {
                 return Progress::Running;
@@ -295,34 +327,35 @@ impl Search {
                     return Progress::NoWay;
                 }
                 self.begin();
-                least = self.least_square();
                 continue;
             };
             let node = node as usize;
-            if self.settled[node] {
+            let (word, bit) = (node / 64, 1 << (node % 64));
+            if self.settled[word] & bit != 0 {
                 continue;
             }
             let time = self.plan.time[node];
             if time > self.until {
                 break;
             }
-            self.settled[node] = true;
+            self.settled[word] |= bit;
             left -= 1;
             if self.until.is_infinite() && robot.contains(&node) {
                 self.until = time + self.options.beyond as f32;
             }
-            let (column, cost) = ((node % size) as i64, self.cost[node]);
-            for (step, across, length) in &self.links {
-                let (there, beside) = (node as i64 + step, column + across);
-                if beside < 0 || beside >= size as i64 || there < 0 || there >= (size * size) as i64
-                {
-                    continue;
+            let (column, cost) = (node % size, self.cost[node]);
+            let inside = inner.contains(&column) && inner.contains(&(node / size));
+            for link in &self.links {
+                let there = node as i64 + link.step;
+                if !inside {
+                    let beside = column as i64 + link.columns;
+                    let nodes = 0..(size * size) as i64;
+                    if !(0..size as i64).contains(&beside) || !nodes.contains(&there) {
+                        continue;
+                    }
                 }
                 let there = there as usize;
-                if self.squares[there] < least {
-                    continue;
-                }
-                let reached = time + length * 0.5 * (cost + self.cost[there]);
+                let reached = time + link.half * (cost + self.cost[there]);
                 if reached < self.plan.time[there] {
                     self.plan.time[there] = reached;
                     self.plan.next[there] = index(node);
@@ -348,15 +381,20 @@ impl Search {
 
     /// Gives what was found for what was found before, whose room it takes over.
     pub fn exchange(&mut self, plan: &mut TimeToGo) {
-        for (time, settled) in self.plan.time.iter_mut().zip(&self.settled) {
-            if !settled {
-                *time = f32::INFINITY;
+        for (times, settled) in self.plan.time.chunks_mut(64).zip(&self.settled) {
+            if *settled == 0 {
+                times.fill(f32::INFINITY);
+            } else if *settled != u64::MAX {
+                for (bit, time) in times.iter_mut().enumerate() {
+                    if settled >> bit & 1 == 0 {
+                        *time = f32::INFINITY;
+                    }
+                }
             }
         }
         self.plan.ahead.clear();
         self.plan.ahead.resize(self.plan.time.len(), NONE);
         std::mem::swap(&mut self.plan, plan);
-        self.plan.next.resize(plan.next.len(), NONE);
     }
 }
 

@@ -28,11 +28,22 @@ pub struct TimeToGo {
 pub struct Outlook {
     /// In s.
     pub time: f64,
-    /// Direction of the plan in rad; `None` beside the end of the plan.
-    pub direction: Option<f64>,
+    /// Way to the place that the plan looks ahead to in m; `None` beside the end of the plan.
+    pub ahead: Option<Vector2<f64>>,
 }
 
 impl TimeToGo {
+    /// Nothing, with room for so many nodes.
+    #[must_use]
+    pub fn with_room(nodes: usize) -> Self {
+        Self {
+            time: vec![f32::INFINITY; nodes],
+            next: vec![NONE; nodes],
+            ahead: vec![NONE; nodes],
+            ..Self::default()
+        }
+    }
+
     fn middle(&self, node: usize) -> Vector2<f64> {
         let axis = |place: usize, low: i64| ((place as i64 + low) as f64 + 0.5) * self.cell;
         Vector2::new(
@@ -47,7 +58,9 @@ impl TimeToGo {
         let most = self.size as f64 - 1.0;
         let axis = |index: usize| {
             let found = place[index] / self.cell - self.low[index] as f64 - 0.5;
-            (found >= 0.0 && found < most).then(|| (found.floor() as usize, found - found.floor()))
+            // Cut off, a number that is not negative is rounded down.
+            let node = found as i64;
+            (found >= 0.0 && found < most).then_some((node as usize, found - node as f64))
         };
         let ((column, x), (row, y)) = (axis(0)?, axis(1)?);
         let node = row * self.size + column;
@@ -97,8 +110,8 @@ impl TimeToGo {
         let (time, node) = self.weighed(place)?;
         let ahead = self.look_ahead(node);
         let toward = self.middle(ahead) - place;
-        let direction = (toward.norm_squared() >= NEAR * NEAR).then(|| toward.y.atan2(toward.x));
-        Some(Outlook { time, direction })
+        let ahead = (toward.norm_squared() >= NEAR * NEAR).then_some(toward);
+        Some(Outlook { time, ahead })
     }
 
     fn look_ahead(&mut self, node: usize) -> usize {

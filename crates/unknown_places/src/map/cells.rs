@@ -4,6 +4,9 @@ use nalgebra::Vector2;
 
 use super::rolling::{RollingMap, WORD};
 
+/// Cells of a row whose distances are computed together.
+const BLOCK: usize = 32;
+
 /// Kind of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -44,9 +47,10 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// No cells yet; distances are known up to `far` in m.
+    /// No cells yet, of the only reader of the map; distances are known up to `far` in m.
     #[must_use]
-    pub fn new(map: &RollingMap, far: f64) -> Self {
+    pub fn new(map: &mut RollingMap, far: f64) -> Self {
+        map.all_changed();
         let (size, cell) = (map.size(), map.options().cell);
         let far = ((far / cell).ceil() + 1.0).min(100.0) as i16;
         Self {
@@ -121,8 +125,9 @@ impl Cells {
     #[must_use]
     pub fn index_of(&self, place: Vector2<f64>) -> Option<usize> {
         let axis = |index: usize| {
-            let found = (place[index] / self.cell).floor() - self.low[index] as f64;
-            (found >= 0.0 && found < self.size as f64).then_some(found as usize)
+            let found = place[index] / self.cell - self.low[index] as f64;
+            // Cut off, a number that is not negative is rounded down.
+            (found >= 0.0 && found < self.size as f64).then_some(found as i64 as usize)
         };
         Some(axis(1)? * self.size + axis(0)?)
     }
@@ -137,36 +142,49 @@ impl Cells {
         )
     }
 
-    /// Reads the cells of the map again.
-    pub fn read(&mut self, map: &RollingMap) {
+    /// Reads the cells of the map again that changed.
+    pub fn read(&mut self, map: &mut RollingMap) {
         self.low = map.low();
-        let (share, least) = (
-            map.options().hit_share as f32,
-            map.options().least_hits as f32,
-        );
-        let half = 0.5 * self.cell as f32;
-        for (word, chunk) in map.evidence().chunks_exact(WORD).enumerate() {
-            let (mut occupied, mut free) = (0_u64, 0_u64);
-            for (bit, cell) in chunk.iter().enumerate() {
-                let hit = cell.hits >= least && cell.hits >= share * (cell.hits + cell.passes);
-                occupied |= u64::from(hit) << bit;
-                free |= u64::from(!hit && cell.passes > 0.0) << bit;
-            }
-            self.occupied[word] = occupied;
-            self.free[word] = free;
-            let mut left = occupied;
+        for row in 0..self.size {
+            let mut left = map.take_changed(row);
             while left != 0 {
-                let bit = left.trailing_zeros() as usize;
+                let word = left.trailing_zeros() as usize;
                 left &= left - 1;
-                let (cell, index) = (&chunk[bit], word * WORD + bit);
-                let corner = [index % self.size, index / self.size];
-                self.points[index] = [0, 1].map(|axis: usize| {
-                    corner[axis] as f32 * self.cell as f32 + half + cell.sum[axis] / cell.hits
-                });
+                if word >= self.words {
+                    break;
+                }
+                self.read_word(map, row * self.words + word);
             }
         }
         self.find_front();
         self.transform();
+    }
+
+    fn read_word(&mut self, map: &RollingMap, word: usize) {
+        let (share, least) = (
+            map.options().hit_share as f32,
+            map.options().least_hits as f32,
+        );
+        let chunk = &map.evidence()[word * WORD..(word + 1) * WORD];
+        let (mut occupied, mut free) = (0_u64, 0_u64);
+        for (bit, cell) in chunk.iter().enumerate() {
+            let hit = cell.hits >= least && cell.hits >= share * (cell.hits + cell.passes);
+            occupied |= u64::from(hit) << bit;
+            free |= u64::from(!hit && cell.passes > 0.0) << bit;
+        }
+        self.occupied[word] = occupied;
+        self.free[word] = free;
+        let half = 0.5 * self.cell as f32;
+        let mut left = occupied;
+        while left != 0 {
+            let bit = left.trailing_zeros() as usize;
+            left &= left - 1;
+            let (cell, index) = (&chunk[bit], word * WORD + bit);
+            let corner = [index % self.size, index / self.size];
+            self.points[index] = [0, 1].map(|axis: usize| {
+                corner[axis] as f32 * self.cell as f32 + half + cell.sum[axis] / cell.hits
+            });
+        }
     }
 
     /// Finds unknown cells with a free neighbor.
@@ -226,74 +244,107 @@ impl Cells {
             last.fill(far);
             for place in 0..size {
                 let row = if up { place } else { size - 1 - place };
-                let words = &self.occupied[row * self.words..(row + 1) * self.words];
+                for each in &mut last[low..high] {
+                    *each = (*each + 1).min(far);
+                }
+                for word in low / WORD..=(high - 1) / WORD {
+                    let mut left = self.occupied[row * self.words + word];
+                    while left != 0 {
+                        last[word * WORD + left.trailing_zeros() as usize] = 0;
+                        left &= left - 1;
+                    }
+                }
                 let cells = &mut self.columns[row * size + low..row * size + high];
-                let columns = low..high;
-                for ((column, last), cell) in columns.zip(&mut last[low..high]).zip(cells) {
-                    let hit = words[column / WORD] >> (column % WORD) & 1;
-                    *last = (*last + 1).min(far) * (1 - hit as i16);
-                    *cell = if up { *last } else { (*cell).min(*last) };
+                if up {
+                    cells.copy_from_slice(&last[low..high]);
+                } else {
+                    for (cell, last) in cells.iter_mut().zip(&last[low..high]) {
+                        *cell = (*cell).min(*last);
+                    }
                 }
             }
         }
-        let (wide, width) = (far.unsigned_abs() as usize, high - low);
-        let mut squared = vec![far * far; width + 2 * wide];
+        let wide = far.unsigned_abs() as usize;
+        let mut squared = vec![far * far; size + 2 * wide];
         for row in 0..size {
-            let column = &self.columns[row * size + low..row * size + high];
-            if column.iter().all(|away| *away == far) {
+            let column = &self.columns[row * size..(row + 1) * size];
+            if column[low..high].iter().all(|away| *away == far) {
                 continue;
             }
-            for (square, away) in squared[wide..wide + width].iter_mut().zip(column) {
+            for (square, away) in squared[wide + low..wide + high]
+                .iter_mut()
+                .zip(&column[low..high])
+            {
                 *square = away * away;
             }
-            let out = &mut self.squares[row * size + low..row * size + high];
-            out.copy_from_slice(&squared[wide..wide + width]);
-            for off in 1..far {
-                let (square, step) = (off * off, off.unsigned_abs() as usize);
-                let left = &squared[wide - step..wide - step + width];
-                let right = &squared[wide + step..wide + step + width];
-                for ((least, one), other) in out.iter_mut().zip(left).zip(right) {
-                    *least = (*least).min((*one).min(*other) + square);
+            let blocks = self.squares[row * size..(row + 1) * size]
+                .as_chunks_mut::<BLOCK>()
+                .0;
+            for (block, out) in blocks.iter_mut().enumerate() {
+                let first = wide + block * BLOCK;
+                if first + BLOCK <= wide + low || first >= wide + high {
+                    continue;
                 }
+                let mut least = [0; BLOCK];
+                least.copy_from_slice(&squared[first..first + BLOCK]);
+                for off in 1..far {
+                    let (square, step) = (off * off, off.unsigned_abs() as usize);
+                    let left = &squared[first - step..first - step + BLOCK];
+                    let right = &squared[first + step..first + step + BLOCK];
+                    for ((least, one), other) in least.iter_mut().zip(left).zip(right) {
+                        *least = (*least).min((*one).min(*other) + square);
+                    }
+                }
+                *out = least;
             }
         }
     }
 
-    /// Hands over the points of the occupied cells in a square of half a side in m around a place.
+    /// Hands over the points of the occupied cells in a square of half a side in m around a place, until one is answered
+    /// by `false`.
     #[inline]
     pub fn occupied_near(
         &self,
         place: Vector2<f64>,
         half: f64,
-        mut visit: impl FnMut(Vector2<f64>),
+        mut visit: impl FnMut(Vector2<f64>) -> bool,
     ) {
         let corner = Vector2::new(self.low[0] as f64, self.low[1] as f64) * self.cell;
         self.near(&self.occupied, place, half, |index| {
             let [x, y] = self.points[index];
-            visit(corner + Vector2::new(f64::from(x), f64::from(y)));
+            visit(corner + Vector2::new(f64::from(x), f64::from(y)))
         });
     }
 
     /// Hands over everything that a plan may not touch in a square of half a side in m around a place: points of
     /// occupied cells, and the front of the unknown.
     pub fn known_near(&self, place: Vector2<f64>, half: f64, mut visit: impl FnMut(Known)) {
-        self.occupied_near(place, half, |place| visit(Known { place, radius: 0.0 }));
+        self.occupied_near(place, half, |place| {
+            visit(Known { place, radius: 0.0 });
+            true
+        });
         let radius = 0.5 * self.cell;
         self.near(&self.front, place, half, |index| {
             visit(Known {
                 place: self.middle(index),
                 radius,
             });
+            true
         });
     }
 
     #[inline]
-    fn near(&self, bits: &[u64], place: Vector2<f64>, half: f64, mut visit: impl FnMut(usize)) {
+    fn near(
+        &self,
+        bits: &[u64],
+        place: Vector2<f64>,
+        half: f64,
+        mut visit: impl FnMut(usize) -> bool,
+    ) {
         let most = self.size as f64 - 1.0;
         let bound = |axis: usize, off: f64| {
-            ((place[axis] + off) / self.cell - self.low[axis] as f64)
-                .floor()
-                .clamp(0.0, most) as usize
+            ((place[axis] + off) / self.cell - self.low[axis] as f64).clamp(0.0, most) as i64
+                as usize
         };
         let (first, last) = (bound(0, -half), bound(0, half));
         for row in bound(1, -half)..=bound(1, half) {
@@ -308,17 +359,17 @@ impl Cells {
                 while left != 0 {
                     let bit = left.trailing_zeros() as usize;
                     left &= left - 1;
-                    visit(row * self.size + word * WORD + bit);
+                    if !visit(row * self.size + word * WORD + bit) {
+                        return;
+                    }
                 }
             }
         }
     }
 
-    /// Whether any unknown cell is in the row-major index.
-    #[inline]
-    #[must_use]
-    pub fn is_unknown(&self, index: usize) -> bool {
-        let word = index / WORD;
-        (self.occupied[word] | self.free[word]) >> (index % WORD) & 1 == 0
+    /// Which cells are not unknown, 64 of a row in a word.
+    pub fn known(&self) -> impl Iterator<Item = u64> {
+        let words = self.occupied.iter().zip(&self.free);
+        words.map(|(occupied, free)| occupied | free)
     }
 }

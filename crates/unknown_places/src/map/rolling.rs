@@ -134,6 +134,8 @@ pub struct RollingMap {
     /// The cell at the lowest corner of the window.
     low: [i64; 2],
     evidence: Vec<Evidence>,
+    /// Words of each row whose evidence changed since its reader asked, one bit each.
+    changed: Vec<u16>,
     /// Set once the window was placed around the robot.
     placed: bool,
 }
@@ -148,6 +150,12 @@ pub(super) struct Evidence {
 }
 
 impl Evidence {
+    /// Whether another beam that passes changes nothing: so many passed, and nothing was hit.
+    #[inline]
+    fn passed_for_long(&self) -> bool {
+        self.passes == MOST_EVIDENCE && self.hits == 0.0
+    }
+
     /// Scales evidence down that would be too much with another beam.
     #[inline]
     fn forget(&mut self) {
@@ -175,6 +183,7 @@ impl RollingMap {
             size,
             low: [0; 2],
             evidence: vec![Evidence::default(); size * size],
+            changed: vec![u16::MAX; size],
             placed: false,
         })
     }
@@ -201,9 +210,20 @@ impl RollingMap {
         &self.evidence
     }
 
+    /// Lets everything be read again.
+    pub(super) fn all_changed(&mut self) {
+        self.changed.fill(u16::MAX);
+    }
+
+    /// Words of a row whose evidence changed since this was asked, one bit each.
+    pub(super) fn take_changed(&mut self, row: usize) -> u16 {
+        std::mem::take(&mut self.changed[row])
+    }
+
     /// Forgets everything.
     pub fn clear(&mut self) {
         self.evidence.fill(Evidence::default());
+        self.all_changed();
         self.placed = false;
     }
 
@@ -241,6 +261,7 @@ impl RollingMap {
 
     /// Moves what is known by cells of the window; what leaves it is forgotten.
     fn shift(&mut self, by: [i64; 2]) {
+        self.all_changed();
         let size = self.size as i64;
         if by.iter().any(|axis| axis.abs() >= size) {
             self.evidence.fill(Evidence::default());
@@ -272,8 +293,16 @@ impl RollingMap {
 
     /// Counts what lies under the outline, and up to a margin in m around it, as free: the robot stands there.
     pub fn stands(&mut self, footprint: &Footprint, pose: &Frame, margin: f64) {
-        for row in 0..self.size {
-            for column in 0..self.size {
+        self.all_changed();
+        let reach = footprint.outer_radius() + margin + self.options.cell;
+        let most = self.size as f64 - 1.0;
+        let bounds = [-reach, reach].map(|off| {
+            let corner = pose.position + Vector2::new(off, off);
+            self.in_cells(corner)
+                .map(|axis| axis.clamp(0.0, most) as usize)
+        });
+        for row in bounds[0][1]..=bounds[1][1] {
+            for column in bounds[0][0]..=bounds[1][0] {
                 let middle = self.middle(column, row);
                 if footprint.signed_distance(pose.inward(middle - pose.position)) <= margin {
                     let cell = &mut self.evidence[row * self.size + column];
@@ -323,14 +352,18 @@ impl RollingMap {
     /// Enters a beam: cells before its end are passed, and the last is hit or left as it is.
     fn beam(&mut self, from: [f64; 2], end: Vector2<f64>, hit: bool) {
         let to = self.in_cells(end);
-        let (size, cells) = (self.size as i64, &mut self.evidence);
+        let size = self.size as i64;
         let last = to.map(|axis| axis.floor() as i64);
+        let (evidence, changed) = (&mut self.evidence[..], &mut self.changed[..]);
         walk(from, to, |[column, row]| {
-            let inside = (0..size).contains(&column) && (0..size).contains(&row);
+            let inside = (column as u64) < size as u64 && (row as u64) < size as u64;
             if inside && [column, row] != last {
-                let cell = &mut cells[(row * size + column) as usize];
-                cell.forget();
-                cell.passes += 1.0;
+                let cell = &mut evidence[(row * size + column) as usize];
+                if !cell.passed_for_long() {
+                    cell.forget();
+                    cell.passes += 1.0;
+                    changed[row as usize] |= 1 << (column as usize / WORD);
+                }
             }
         });
         if hit && last.iter().all(|axis| (0..size).contains(axis)) {
@@ -341,6 +374,7 @@ impl RollingMap {
             cell.hits += 1.0;
             cell.sum[0] += from_middle.x as f32;
             cell.sum[1] += from_middle.y as f32;
+            self.changed[row] |= 1 << (column / WORD);
         }
     }
 }

@@ -35,7 +35,7 @@ fn turn(map: &mut RollingMap, place: [f64; 2], ranges: &[f64]) {
     map.enter(scan).unwrap();
 }
 
-fn read(map: &RollingMap) -> Cells {
+fn read(map: &mut RollingMap) -> Cells {
     let mut cells = Cells::new(map, 0.6);
     cells.read(map);
     cells
@@ -51,7 +51,7 @@ proptest! {
         let mut map = small();
         turn(&mut map, [x, y], &ranges);
         turn(&mut map, [x, y], &ranges);
-        let cells = read(&map);
+        let cells = read(&mut map);
         let size = cells.size();
         let kind = |column: i64, row: i64| {
             let inside = (0..size as i64).contains(&column) && (0..size as i64).contains(&row);
@@ -84,15 +84,42 @@ proptest! {
     }
 
     #[test]
+    fn cells_that_are_read_again_are_those_of_a_new_reading(
+        ways in prop::collection::vec((-0.9..0.9f64, -0.9..0.9f64, 0.2..1.9f64), 2..8)
+    ) {
+        let mut map = small();
+        let mut cells = Cells::new(&mut map, 0.6);
+        for (x, y, range) in ways {
+            let ranges: Vec<f64> = (0..60).map(|beam| range * (1.0 + 0.3 * f64::from(beam % 7))).collect();
+            for _ in 0..30 {
+                turn(&mut map, [x, y], &ranges);
+            }
+            cells.read(&mut map);
+            let again = read(&mut map.clone());
+            prop_assert_eq!(cells.squares(), again.squares());
+            for at in 0..cells.size() * cells.size() {
+                let (column, row) = (at % cells.size(), at / cells.size());
+                prop_assert_eq!(cells.kind(column, row), again.kind(column, row));
+            }
+            let points = |cells: &Cells| {
+                let mut found = Vec::new();
+                cells.known_near(Vector2::new(x, y), 100.0, |known| found.push(known));
+                found
+            };
+            prop_assert_eq!(points(&cells), points(&again));
+        }
+    }
+
+    #[test]
     fn a_window_that_moves_keeps_what_stays_in_it(
         ranges in prop::collection::vec(0.3..1.9f64, 40), x in -0.9..0.9f64, y in -0.9..0.9f64
     ) {
         let mut map = small();
         turn(&mut map, [0.0, 0.0], &ranges);
         turn(&mut map, [0.0, 0.0], &ranges);
-        let before = read(&map);
+        let before = read(&mut map);
         map.follow(Vector2::new(x, y));
-        let after = read(&map);
+        let after = read(&mut map);
         let size = after.size() as i64;
         for row in 0..size {
             for column in 0..size {
@@ -111,17 +138,17 @@ proptest! {
 #[test]
 fn a_hit_stands_until_enough_beams_have_passed() {
     let mut map = small();
-    let cell = |map: &RollingMap| {
+    let cell = |map: &mut RollingMap| {
         let cells = read(map);
         let index = cells.index_of(Vector2::new(1.02, 0.02)).unwrap();
         cells.kind(index % cells.size(), index / cells.size())
     };
     turn(&mut map, [0.02, 0.02], &[1.0]);
-    assert_eq!(cell(&map), Kind::Unknown);
+    assert_eq!(cell(&mut map), Kind::Unknown);
     turn(&mut map, [0.02, 0.02], &[1.0]);
-    assert_eq!(cell(&map), Kind::Occupied);
+    assert_eq!(cell(&mut map), Kind::Occupied);
     let mut passes = 0;
-    while cell(&map) == Kind::Occupied {
+    while cell(&mut map) == Kind::Occupied {
         turn(&mut map, [0.02, 0.02], &[1.9]);
         passes += 1;
     }
@@ -133,7 +160,7 @@ fn a_hit_stands_until_enough_beams_have_passed() {
 fn what_reads_nothing_tells_nothing_and_what_hits_nothing_frees_the_way() {
     let mut map = small();
     turn(&mut map, [0.0, 0.0], &[f64::NAN, f64::INFINITY]);
-    let cells = read(&map);
+    let cells = read(&mut map);
     let kind = |x: f64| {
         let index = cells.index_of(Vector2::new(x, 0.0)).unwrap();
         cells.kind(index % cells.size(), index / cells.size())

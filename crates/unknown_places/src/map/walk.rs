@@ -4,6 +4,7 @@
 ///
 /// The number of cells is that of the lines of the grid between the ends, and one: rounding may choose the
 /// other of two cells at a corner, but neither loses the last cell nor goes beyond it.
+#[inline]
 pub fn walk(from: [f64; 2], to: [f64; 2], mut visit: impl FnMut([i64; 2])) {
     walk_while(from, to, |cell| {
         visit(cell);
@@ -20,22 +21,40 @@ pub fn walk_while(from: [f64; 2], to: [f64; 2], mut visit: impl FnMut([i64; 2]) 
     let step = [(last[0] - cell[0]).signum(), (last[1] - cell[1]).signum()];
     let mut left = [(last[0] - cell[0]).abs(), (last[1] - cell[1]).abs()];
     let gap = [0, 1].map(|axis: usize| 1.0 / (to[axis] - from[axis]).abs());
+    // Where no line of an axis is left, the next one is never met.
     let mut next = [0, 1].map(|axis: usize| {
         let line = if step[axis] > 0 {
             cell[axis] as f64 + 1.0
         } else {
             cell[axis] as f64
         };
-        (line - from[axis]).abs() * gap[axis]
+        if left[axis] == 0 {
+            f64::INFINITY
+        } else {
+            (line - from[axis]).abs() * gap[axis]
+        }
     });
     if !visit(cell) {
         return;
     }
     for _ in 0..left[0] + left[1] {
-        let axis = usize::from(left[0] == 0 || (left[1] > 0 && next[1] < next[0]));
-        cell[axis] += step[axis];
-        left[axis] -= 1;
-        next[axis] += gap[axis];
+        if next[1] < next[0] {
+            cell[1] += step[1];
+            left[1] -= 1;
+            next[1] = if left[1] == 0 {
+                f64::INFINITY
+            } else {
+                next[1] + gap[1]
+            };
+        } else {
+            cell[0] += step[0];
+            left[0] -= 1;
+            next[0] = if left[0] == 0 {
+                f64::INFINITY
+            } else {
+                next[0] + gap[0]
+            };
+        }
         if !visit(cell) {
             return;
         }
