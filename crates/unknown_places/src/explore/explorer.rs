@@ -52,7 +52,7 @@ impl Default for ExplorerOptions {
             guide: GuideOptions::default(),
             margin: 0.03,
             replan: 3,
-            nodes: 8000,
+            nodes: 4000,
             verify: true,
             seed: 0,
         }
@@ -177,7 +177,7 @@ impl Explorer {
             searched: false,
             since: 0,
             rollouts: Rollouts::new(reach),
-            recovery: Recovery::new(robot.period, reach.periods as f64, options.seed),
+            recovery: Recovery::new(robot.period, (reach.periods as f64).sqrt(), options.seed),
             goal: finite_pair("goal", goal)?.into(),
             from: Twist::default(),
             twist: Twist::default(),

@@ -284,7 +284,9 @@ impl Rollouts {
         from: usize,
     ) -> bool {
         let [step, period] = self.rates;
-        let long = period * if self.reach.periods > 1 { 2.0 } else { 1.0 };
+        // A rollout of longer parts pays no more for being near: against its time the prices of turns and rest stand.
+        let stride = if self.reach.periods > 1 { 2.0 } else { 1.0 };
+        let long = period * stride / self.reach.periods as f64;
         for (at, turn) in turns.iter().enumerate().skip(from) {
             let speed = toward(rolled.speed, wanted, step);
             rolled.place += turn.chord * (0.5 * (rolled.speed + speed) * period);

@@ -30,8 +30,8 @@ pub struct GuideOptions {
 impl Default for GuideOptions {
     fn default() -> Self {
         Self {
-            clearance: 0.025,
-            narrow_weight: 4.0,
+            clearance: 0.06,
+            narrow_weight: 16.0,
             near_weight: 0.8,
             near_distance: 0.55,
             unknown_weight: 0.3,
@@ -145,10 +145,11 @@ impl Search {
     }
 
     /// Least distances of nodes from occupied cells in m, one tried after the other.
-    fn least_distances(&self) -> [f64; 4] {
+    fn least_distances(&self) -> [f64; 5] {
         let inner = self.size.inner;
         [
             inner + self.options.clearance,
+            inner + 0.4 * self.options.clearance,
             inner,
             0.84 * inner,
             0.465 * inner,

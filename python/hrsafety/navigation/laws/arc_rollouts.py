@@ -70,14 +70,14 @@ class ArcRollouts(Parameters):
 
     map: UnknownMap = field(default_factory=UnknownMap)
     margin: Annotated[float, "m"] = 0.03
-    clearance: Annotated[float, "m"] = 0.025
-    narrow_weight: float = 4.0
+    clearance: Annotated[float, "m"] = 0.06
+    narrow_weight: float = 16.0
     near_weight: float = 0.8
     near_distance: Annotated[float, "m"] = 0.55
     unknown_weight: float = 0.3
     beyond: Annotated[float, "s"] = 0.8
     replan: int = 3
-    nodes: int = 8000
+    nodes: int = 4000
     verify: bool = True
     seed: int = 0
     _native: _hrsafety.ArcRollouts = field(init=False, repr=False, compare=False)
