@@ -52,9 +52,8 @@ impl Footprint {
             distance: arc.0,
             angle: arc.1,
         };
-        each(py, &points, |[x, y]: &[f64; 2]| {
-            self.0.swept_point(Vector2::new(*x, *y), arc)
-        })
+        let places = points.as_slice()?.as_chunks::<2>().0;
+        Ok(self.0.swept_points(places, arc).into_pyarray(py))
     }
 
     /// Distances of segments as rows (x, y, x, y) from the outline on an arc (distance, angle).

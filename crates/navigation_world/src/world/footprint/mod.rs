@@ -5,6 +5,7 @@
 mod advancing;
 mod contact;
 mod sweep;
+mod swept_points;
 #[cfg(test)]
 mod tests;
 

@@ -26,7 +26,7 @@ impl From<Arc> for Sweep {
 
 impl Sweep {
     /// Center of the turn in coordinates of the body, in m.
-    fn center(&self) -> Vector2<f64> {
+    pub(super) fn center(&self) -> Vector2<f64> {
         Vector2::new(-self.way.y, self.way.x) / self.angle
     }
 }
@@ -97,44 +97,6 @@ fn between_segments(one: [Vector2<f64>; 2], other: [Vector2<f64>; 2]) -> f64 {
 }
 
 impl Footprint {
-    /// Least distance in m of a point from the outline on an arc, from its start in the body frame; zero if the outline
-    /// reaches it.
-    #[must_use]
-    pub fn swept_point(&self, point: Vector2<f64>, motion: impl Into<Sweep>) -> f64 {
-        let sweep = motion.into();
-        if sweep.angle == 0.0 {
-            return self.distance_from_segment([point, point - sweep.way]);
-        }
-        // Seen from the body the point moves back on a circle around the center of the turn.
-        let center = sweep.center();
-        let path = ArcPiece::new(center, point, -sweep.angle);
-        let mut least = self.distance(point).min(self.distance(path.ends()[1]));
-        for corner in &self.corners {
-            let from = corner - center;
-            if path.holds(from.y.atan2(from.x)) {
-                least = least.min((path.radius - from.norm()).abs());
-            }
-        }
-        for side in &self.sides {
-            let (normal, beyond) = (side.normal, side.normal.dot(&(side.start - center)));
-            let outward = normal.y.atan2(normal.x);
-            if beyond <= -path.radius {
-                if path.holds(outward + PI) {
-                    least = least.min(self.distance(path.at(outward + PI)));
-                }
-            } else if beyond <= path.radius {
-                let half = (beyond / path.radius).acos();
-                for direction in [outward + half, outward - half] {
-                    let along = (path.at(direction) - side.start).dot(&side.along);
-                    if path.holds(direction) && (0.0..=side.length).contains(&along) {
-                        return 0.0;
-                    }
-                }
-            }
-        }
-        least
-    }
-
     /// Least distance in m of a segment from the outline on an arc, from its start in the body frame; zero if the
     /// outline reaches it.
     #[must_use]

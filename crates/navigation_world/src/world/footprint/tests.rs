@@ -104,12 +104,23 @@ proptest! {
 
     #[test]
     fn swept_distances_of_points_are_least_along_the_arc(
-        outline in outlines(), x in -2.0..2.0f64, y in -2.0..2.0f64, distance in -1.5..1.5f64, angle in -7.0..7.0f64
+        outline in outlines(), x in -2.0..2.0f64, y in -2.0..2.0f64, distance in -1.5..1.5f64,
+        angle in prop_oneof![Just(0.0), -1e-9..1e-9f64, -1.6..1.6f64, -7.0..7.0f64]
     ) {
         let (point, arc) = (Vector2::new(x, y), Arc { distance, angle });
         let (found, sampled) = (outline.swept_point(point, arc), sampled_point(&outline, point, arc));
         let step = (distance.abs() + angle.abs() * point.norm().max(2.0)) / 4000.0;
         prop_assert!(found <= sampled + 1e-9 && sampled <= found + step, "{} {}", found, sampled);
+    }
+
+    #[test]
+    fn points_side_by_side_have_the_distances_of_each(
+        outline in outlines(), points in prop::collection::vec(prop::array::uniform2(-2.0..2.0f64), 0..20),
+        distance in -1.5..1.5f64, angle in prop_oneof![Just(0.0), -7.0..7.0f64]
+    ) {
+        let arc = Arc { distance, angle };
+        let alone: Vec<f64> = points.iter().map(|point| outline.swept_point((*point).into(), arc)).collect();
+        prop_assert_eq!(outline.swept_points(&points, arc), alone);
     }
 
     #[test]

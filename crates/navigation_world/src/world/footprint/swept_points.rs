@@ -1,0 +1,302 @@
+//! Least distances between an outline on an arc and points, several points side by side.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use nalgebra::Vector2;
+use numeric::lanes::{Number, OnEight, on_eight};
+use pulp::{Simd, WithSimd};
+
+use super::{Footprint, Sweep};
+
+/// Points side by side.
+const WIDTH: usize = 8;
+/// Sine of an angle beyond the end of an arc that counts as on it.
+const ROUNDING: f64 = 1e-15;
+/// Whoever turns by no more than this in rad drives straight: no place of the outline is farther off than nanometres.
+const STRAIGHT: f64 = 1e-9;
+
+/// Coordinates of points side by side.
+type Points<R> = [R; 2];
+
+impl Footprint {
+    /// Least distance in m of a point from the outline on an arc, from its start in the body frame; zero if the outline
+    /// reaches it.
+    #[must_use]
+    pub fn swept_point(&self, point: Vector2<f64>, motion: impl Into<Sweep>) -> f64 {
+        Motion::of(motion.into()).distances(self, point.into())
+    }
+
+    /// Least distances in m of points, each as [`Self::swept_point`].
+    #[must_use]
+    pub fn swept_points(&self, points: &[[f64; 2]], motion: impl Into<Sweep>) -> Vec<f64> {
+        let mut found = vec![0.0; points.len()];
+        let work = Several {
+            footprint: self,
+            motion: Motion::of(motion.into()),
+            points,
+            found: &mut found,
+        };
+        if let Err(work) = on_eight(true, work) {
+            for (found, point) in work.found.iter_mut().zip(points) {
+                *found = work.motion.distances(self, *point);
+            }
+        }
+        found
+    }
+}
+
+/// Many points against one sweep.
+struct Several<'a> {
+    footprint: &'a Footprint,
+    motion: Motion,
+    points: &'a [[f64; 2]],
+    found: &'a mut [f64],
+}
+
+impl OnEight for Several<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn on_eight<S: Simd, R: Number>(self, simd: S, zero: R) {
+        simd.vectorize(SideBySide {
+            several: self,
+            zero,
+        });
+    }
+}
+
+struct SideBySide<'a, R> {
+    several: Several<'a>,
+    zero: R,
+}
+
+impl<R: Number> WithSimd for SideBySide<'_, R> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let (several, zero) = (self.several, self.zero);
+        let parts = several.points.chunks(WIDTH);
+        for (part, found) in parts.zip(several.found.chunks_mut(WIDTH)) {
+            let (mut x, mut y) = ([0.0; WIDTH], [0.0; WIDTH]);
+            for (lane, point) in part.iter().enumerate() {
+                [x[lane], y[lane]] = *point;
+            }
+            let points = [
+                zero.like_each(|lane| x[lane]),
+                zero.like_each(|lane| y[lane]),
+            ];
+            let distances = several.motion.distances(several.footprint, points);
+            distances.write(found);
+        }
+    }
+}
+
+/// A sweep as it is seen by points: they move back.
+#[derive(Clone, Copy)]
+enum Motion {
+    /// Along a vector in m.
+    Straight(Vector2<f64>),
+    /// Around a center.
+    Turn {
+        center: Vector2<f64>,
+        /// Way of the outline in m, and cosine and sine of the angle by which points turn.
+        way: Vector2<f64>,
+        turn: Vector2<f64>,
+        /// +1 where points move to the left around the center.
+        side: f64,
+        /// Size of the angle in rad.
+        size: f64,
+    },
+}
+
+impl Motion {
+    fn of(sweep: Sweep) -> Self {
+        if sweep.angle.abs() <= STRAIGHT {
+            return Self::Straight(-sweep.way);
+        }
+        let half = 0.5 * sweep.angle;
+        let (sin, cos) = half.sin_cos();
+        let along = sweep.way * (sin / half);
+        Self::Turn {
+            center: sweep.center(),
+            way: Vector2::new(cos * along.x - sin * along.y, sin * along.x + cos * along.y),
+            turn: Vector2::new(cos * cos - sin * sin, -2.0 * sin * cos),
+            side: -sweep.angle.signum(),
+            size: sweep.angle.abs(),
+        }
+    }
+
+    #[inline(always)]
+    fn distances<R: Number>(&self, footprint: &Footprint, points: Points<R>) -> R {
+        let (center, way, turn, side, size) = match *self {
+            Self::Straight(way) => return straight(footprint, points, way),
+            Self::Turn {
+                center,
+                way,
+                turn,
+                side,
+                size,
+            } => (center, way, turn, side, size),
+        };
+        let start = [points[0] - center.x, points[1] - center.y];
+        let left = [points[0] - way.x, points[1] - way.y];
+        let last = [
+            left[0] * turn.x - left[1] * turn.y,
+            left[1] * turn.x + left[0] * turn.y,
+        ];
+        let arc = Around {
+            start,
+            end: [last[0] - center.x, last[1] - center.y],
+            radius: (start[0] * start[0] + start[1] * start[1]).sqrt(),
+            side,
+            size,
+        };
+        let ends = squared(footprint, points)
+            .min(squared(footprint, last))
+            .sqrt();
+        arc.distances(footprint, points, center, ends)
+    }
+}
+
+/// Arcs of points around a center, seen from it.
+struct Around<R> {
+    start: Points<R>,
+    end: Points<R>,
+    radius: R,
+    side: f64,
+    size: f64,
+}
+
+impl<R: Number> Around<R> {
+    /// Whether directions, as long as given, lie on the arcs.
+    #[inline(always)]
+    fn holds(&self, way: Points<R>, length: R) -> R::Mask {
+        let zero = self.radius.like(0.0);
+        if self.size >= TAU {
+            return zero.truth(true);
+        }
+        let (start, end) = (self.start, self.end);
+        let after = (start[0] * way[1] - start[1] * way[0]) * self.side;
+        let before = (way[0] * end[1] - way[1] * end[0]) * self.side;
+        let least = -(self.radius * length * ROUNDING);
+        let (after, before) = (after.ge(least), before.ge(least));
+        if self.size > PI {
+            return after | before;
+        }
+        if self.size > FRAC_PI_2 {
+            return after & before;
+        }
+        let ahead = (start[0] * way[0] + start[1] * way[1]).ge(zero);
+        after & before & ahead
+    }
+
+    /// Differences of radii are those of their squares by their sum: radii of slight turns are large.
+    #[inline(always)]
+    fn distances(
+        &self,
+        footprint: &Footprint,
+        points: Points<R>,
+        center: Vector2<f64>,
+        ends: R,
+    ) -> R {
+        let (zero, radius, mut least) = (self.radius.like(0.0), self.radius, ends);
+        for corner in &footprint.corners {
+            let from = corner - center;
+            let away = zero.like(from.norm());
+            let apart = [points[0] - corner.x, points[1] - corner.y];
+            let squares = apart[0] * (self.start[0] + zero.like(from.x))
+                + apart[1] * (self.start[1] + zero.like(from.y));
+            let nearer = squares.abs() / (radius + away);
+            let held = self.holds([zero.like(from.x), zero.like(from.y)], away);
+            // Both may be the center.
+            least = R::select(held & nearer.lt(least), nearer, least);
+        }
+        for side in &footprint.sides {
+            let (normal, along) = (side.normal, side.along);
+            let (beyond, place) = (
+                normal.dot(&(side.start - center)),
+                along.dot(&(center - side.start)),
+            );
+            let across = self.start[0] * along.x + self.start[1] * along.y;
+            let outside = self.start[0] * normal.x + self.start[1] * normal.y;
+            let apart =
+                (points[0] - side.start.x) * normal.x + (points[1] - side.start.y) * normal.y;
+            // Square of the radius less that of the distance of the line from the center.
+            let left = across * across + apart * (outside + zero.like(beyond));
+            // The circle comes nearest to the line in the direction against the normal.
+            if beyond < 0.0 && (0.0..=side.length).contains(&place) {
+                let inward = [zero.like(-normal.x), zero.like(-normal.y)];
+                let away = -left / (radius + zero.like(-beyond));
+                let nearer = self.holds(inward, zero.like(1.0)) & away.ge(zero) & away.lt(least);
+                least = R::select(nearer, away, least);
+            }
+            let half = left.max(zero).sqrt();
+            let foot = [zero.like(normal.x * beyond), zero.like(normal.y * beyond)];
+            for sign in [1.0, -1.0] {
+                let half = half * sign;
+                let at = half + place;
+                let crossing = [half * along.x + foot[0], half * along.y + foot[1]];
+                let within = zero.le(at) & at.le(zero.like(side.length));
+                let meets = left.ge(zero) & within & self.holds(crossing, radius);
+                least = R::select(meets, zero, least);
+            }
+        }
+        least
+    }
+}
+
+/// Squares of the distances of points from the outline, zero inside.
+#[inline(always)]
+fn squared<R: Number>(footprint: &Footprint, points: Points<R>) -> R {
+    let zero = points[0].like(0.0);
+    let (mut most, mut least) = (zero.like(f64::NEG_INFINITY), zero.like(f64::INFINITY));
+    for side in &footprint.sides {
+        let way = [points[0] - side.start.x, points[1] - side.start.y];
+        most = most.max(way[0] * side.normal.x + way[1] * side.normal.y);
+        let share = way[0] * side.along.x + way[1] * side.along.y;
+        let share = share.max(zero).min(zero.like(side.length));
+        let left = [way[0] - share * side.along.x, way[1] - share * side.along.y];
+        least = least.min(left[0] * left[0] + left[1] * left[1]);
+    }
+    R::select(most.le(zero), zero, least)
+}
+
+/// Distances of the outline from points that move along a vector.
+#[inline(always)]
+fn straight<R: Number>(footprint: &Footprint, points: Points<R>, way: Vector2<f64>) -> R {
+    let zero = points[0].like(0.0);
+    let last = [points[0] + way.x, points[1] + way.y];
+    let mut least = squared(footprint, points)
+        .min(squared(footprint, last))
+        .sqrt();
+    let length = way.norm();
+    if length == 0.0 {
+        return least;
+    }
+    let along = way / length;
+    for corner in &footprint.corners {
+        let from = [
+            zero.like(corner.x) - points[0],
+            zero.like(corner.y) - points[1],
+        ];
+        let share = from[0] * along.x + from[1] * along.y;
+        let away = (from[0] * along.y - from[1] * along.x).abs();
+        let nearer = zero.le(share) & share.le(zero.like(length)) & away.lt(least);
+        least = R::select(nearer, away, least);
+    }
+    // The way is cut by the line of each side; what is left of it lies within the outline.
+    let (mut enters, mut leaves, mut meets) = (zero, zero.like(length), zero.truth(true));
+    for side in &footprint.sides {
+        let (normal, rate) = (side.normal, side.normal.dot(&along));
+        let outside = points[0] * normal.x + points[1] * normal.y - side.offset;
+        if rate == 0.0 {
+            meets = meets & outside.le(zero);
+        } else if rate > 0.0 {
+            leaves = leaves.min(-outside * (1.0 / rate));
+        } else {
+            enters = enters.max(-outside * (1.0 / rate));
+        }
+    }
+    R::select(meets & enters.le(leaves), zero, least)
+}
