@@ -1,13 +1,11 @@
 //! Static maps, plans through them, and lidars among them.
 
-use numeric::random::Stream;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 use vff_core::laws::Stop;
 use vff_core::laws::guide::{self, LocalGoal};
 use vff_core::laws::safe::Plans;
-use vff_core::sensing::lidar;
-use vff_core::sensing::sonar::ranging::Normals;
+use vff_core::sensing::lidar::{self, ScanNoise};
 use vff_core::world::frame::Frame;
 use vff_core::world::map::distance_transform::distances;
 use vff_core::world::map::{self, GridPlace, MapShapes};
@@ -262,9 +260,10 @@ value_class! {
     /// Lidar on a robot.
     Lidar(lidar::Lidar) of given {
         let map: Option<PyRef<'_, StaticMap>> = given.take("map")?;
+        let mounting = frame(given.take("mounting")?);
         taken!(given: lidar::Lidar {
-            map = map.map(|map| map.0.clone()).unwrap_or_default(), beams, field_of_view, range_min,
-            range_max, range_noise, sees_obstacles, kappa, influence, reach, max_speed,
+            map = map.map(|map| map.0.clone()).unwrap_or_default(), beams, mounting = mounting, field_of_view, angle_min,
+            range_min, range_max, range_noise, dropout, sees_obstacles, kappa, influence, reach, max_speed,
         })
     }
 
@@ -281,7 +280,7 @@ value_class! {
             .map(|[x, y, radius]| PlacedShape::disc([*x, *y], *radius))
             .collect();
         let mut ranges = Vec::with_capacity(self.0.beams);
-        let mut noise = Normals::new(Stream::new(seed, 0));
+        let mut noise = ScanNoise::new(seed, 0);
         self.0.scan(&frame(pose), &shapes, &mut noise, &mut ranges);
         Ok(ranges)
     }

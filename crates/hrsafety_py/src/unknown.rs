@@ -11,7 +11,6 @@ use vff_core::unknown::explore::{
 use vff_core::unknown::guide::GuideOptions;
 use vff_core::unknown::map::{Kind, MapOptions};
 use vff_core::unknown::trial::{Ended, Moment, Trial};
-use vff_core::world::frame::Frame;
 
 use crate::arrays::fields;
 use crate::errors::CoreError;
@@ -84,7 +83,7 @@ impl ScanController {
         footprint: &Footprint,
         limits: Limits,
         period: f64,
-        lidars: Vec<(PyRef<'_, Lidar>, [f64; 3])>,
+        lidars: Vec<PyRef<'_, Lidar>>,
         given: Option<Keywords<'_>>,
     ) -> PyResult<Self> {
         let given = given.unwrap_or_default();
@@ -92,8 +91,8 @@ impl ScanController {
             taken!(given: Trust { scan_timeout, oldest_scan, position_tracking, heading_tracking });
         let goal = (given.take("goal")?, given.take("arrival_tolerance")?);
         given.done()?;
-        let scanner = |(lidar, [x, y, heading]): &(PyRef<'_, Lidar>, [f64; 3])| Scanner {
-            mounting: Frame::at([*x, *y], *heading),
+        let scanner = |lidar: &PyRef<'_, Lidar>| Scanner {
+            mounting: lidar.0.mounting,
             bearings: (0..lidar.0.beams)
                 .map(|beam| lidar.0.bearing(beam))
                 .collect(),
@@ -203,10 +202,10 @@ pub fn unknown_trial<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let given = given.unwrap_or_default();
     let timed: bool = given.take("timed")?;
+    let lidar: PyRef<'_, Lidar> = given.take("lidar")?;
     let trial = taken!(given: Trial {
         robot = robot(footprint, limits, period), options = rollouts.0, place = place.0.clone(), start, heading, goal,
-        tolerance as arrival_tolerance, time_limit, beams, field_of_view, range as range_max, noise as range_noise,
-        length_drift, heading_drift, late, seed,
+        tolerance as arrival_tolerance, time_limit, lidar = lidar.0.clone(), length_drift, heading_drift, late, seed,
     });
     given.done()?;
     let (outcome, times) = here(py, Report::none(), |_| {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 use navigation_world::robots::differential::{Integration, Twist};
-use navigation_world::sensing::sonar::ranging::Normals;
+use navigation_world::sensing::lidar::{Lidar, ScanNoise};
 use navigation_world::world::footprint::{Arc, Footprint};
 use navigation_world::world::frame::Frame;
 use navigation_world::world::map::StaticMap;
@@ -18,8 +18,7 @@ use crate::map::Scan;
 const SAMPLES: usize = 20;
 /// An episode is timed from where the robot leaves this distance from its start, in m.
 const LEFT: f64 = 0.1;
-/// Most beams of a scan, and most control periods of an episode.
-const MOST_BEAMS: usize = 100_000;
+/// Most control periods of an episode.
 const MOST_PERIODS: f64 = 1e6;
 /// Streams of noise, and of the signs of the drift.
 const NOISE: u64 = 1;
@@ -44,14 +43,8 @@ pub struct Trial {
     pub tolerance: f64,
     /// Longest episode in s.
     pub time_limit: f64,
-    /// Beams of the lidar at its middle, over a field of view in rad, the first and the last one at its ends.
-    pub beams: usize,
-    /// In rad.
-    pub field_of_view: f64,
-    /// Largest range in m.
-    pub range: f64,
-    /// Standard deviation of ranges in m.
-    pub noise: f64,
+    /// Its lidar, whatever map it has.
+    pub lidar: Lidar,
     /// Share by which lengths of the odometry are wrong.
     pub length_drift: f64,
     /// Angle by which its heading is wrong in rad/m.
@@ -169,27 +162,9 @@ impl Trial {
         finite("heading", self.heading)?;
         positive("arrival_tolerance", self.tolerance)?;
         positive("time_limit", self.time_limit)?;
-        positive("range_max", self.range)?;
-        not_negative("range_noise", self.noise)?;
         not_negative("length_drift", self.length_drift)?;
         not_negative("heading_drift", self.heading_drift)?;
-        at_most("beams", self.beams, MOST_BEAMS)?;
         at_most("late", self.late, 100)?;
-        if self.beams < 2 {
-            return Err(Failure::invalid(
-                "beams",
-                "be at least 2",
-                Given::Count(self.beams as u64),
-            ));
-        }
-        if !(self.field_of_view > 0.0 && self.field_of_view < std::f64::consts::TAU) {
-            let rule = "be above 0 and below a whole turn, 2 pi rad";
-            return Err(Failure::invalid(
-                "field_of_view",
-                rule,
-                Given::Number(self.field_of_view),
-            ));
-        }
         if self.time_limit / self.robot.period > MOST_PERIODS {
             let rule = format!("be at most {MOST_PERIODS} control periods");
             return Err(Failure::invalid(
@@ -228,15 +203,20 @@ impl Trial {
     /// A number is not allowed.
     pub fn run(&self, watch: &mut dyn FnMut(Moment<'_>)) -> Result<Outcome> {
         self.checked()?;
+        let lidar = Lidar {
+            map: self.place.clone(),
+            ..self.lidar.clone()
+        }
+        .checked()
+        .map_err(|error| error.within("lidar"))?;
         let mut explorer = Explorer::new(&self.robot, self.options, self.goal)?;
-        let beams: Vec<Vector2<f64>> = (0..self.beams)
+        let beams: Vec<Vector2<f64>> = (0..lidar.beams)
             .map(|beam| {
-                let share = beam as f64 / (self.beams - 1) as f64 - 0.5;
-                let (sin, cos) = (share * self.field_of_view).sin_cos();
+                let (sin, cos) = lidar.bearing(beam).sin_cos();
                 Vector2::new(cos, sin)
             })
             .collect();
-        let mut noise = Normals::new(Stream::new(self.seed, NOISE));
+        let mut noise = ScanNoise::new(self.seed, NOISE);
         let mut signs = Stream::new(self.seed, DRIFT);
         let mut sign = || if signs.bits() & 1 == 0 { 1.0 } else { -1.0 };
         let odometry = Odometry {
@@ -275,20 +255,19 @@ impl Trial {
             outcome
                 .poses
                 .push([truth.pose.position.x, truth.pose.position.y, truth.angle]);
-            scans.push_back((
-                truth.odometry.pose,
-                self.scan(&truth.pose, &beams, &mut noise),
-            ));
+            let mut ranges = Vec::with_capacity(lidar.beams);
+            lidar.scan(&truth.pose, &[], &mut noise, &mut ranges);
+            scans.push_back((truth.odometry.pose, ranges));
             watch(Moment::Scanned);
             if scans.len() > self.late
                 && let Some((pose, ranges)) = scans.pop_front()
             {
                 let scan = Scan {
-                    pose,
+                    pose: pose.carrying(&lidar.mounting),
                     beams: &beams,
                     ranges: &ranges,
-                    range_min: 0.0,
-                    range_max: self.range,
+                    range_min: lidar.range_min,
+                    range_max: lidar.range_max,
                 };
                 explorer.see(&truth.odometry.pose, scan)?;
             }
@@ -322,24 +301,6 @@ impl Trial {
         outcome.recoveries = explorer.recoveries();
         outcome.time = outcome.end_time - left.unwrap_or(0.0);
         Ok(outcome)
-    }
-
-    fn scan(&self, pose: &Frame, beams: &[Vector2<f64>], noise: &mut Normals) -> Vec<f64> {
-        let read = |beam: &Vector2<f64>| {
-            let exact = self
-                .place
-                .ray_up_to(pose.position, pose.outward(*beam), self.range);
-            if exact >= self.range {
-                return self.range;
-            }
-            let error = if self.noise > 0.0 {
-                self.noise * noise.draw()
-            } else {
-                0.0
-            };
-            (exact + error).clamp(0.0, self.range)
-        };
-        beams.iter().map(read).collect()
     }
 }
 

@@ -33,7 +33,7 @@ BEAMS, FIELD_OF_VIEW, RANGE = 720, 1.5 * math.pi, 10.0
 LENGTH_DRIFT, HEADING_DRIFT = 0.01, math.radians(0.5)
 """Of an odometry with a drift of 1: share of lengths, and rad for each m."""
 DEAD_ENDS = 30
-SETTINGS = ("acceleration", "turn_acceleration", "noise", "drift", "late", "margin", "range", "verify")
+SETTINGS = ("acceleration", "turn_acceleration", "noise", "dropout", "drift", "late", "margin", "range", "verify")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -52,6 +52,8 @@ class RolloutEntry(Entry):
         Largest ones in m/s^2 and rad/s^2.
     noise : float
         Standard deviation of ranges in m.
+    dropout : float
+        Share of beams that read nothing.
     drift : float
         Multiple of an odometry that is 1 % wrong in lengths and 0.5 degrees in each m.
     late : int
@@ -64,6 +66,7 @@ class RolloutEntry(Entry):
     acceleration: float
     turn_acceleration: float
     noise: float
+    dropout: float
     drift: float
     late: int
     range: float
@@ -106,6 +109,7 @@ def rollout_entry(word: str) -> RolloutEntry:
         acceleration=acceleration,
         turn_acceleration=values.get("turn_acceleration", max(4.0, 2.0 * acceleration)),
         noise=values.get("noise", 0.01),
+        dropout=values.get("dropout", 0.0),
         drift=values.get("drift", 0.0),
         late=int(late),
         range=values.get("range", RANGE),
@@ -144,15 +148,19 @@ def trial(entry: RolloutEntry, place: nav.StaticMap, seed: int, *, timed: bool =
         **{"start": START, "heading": HEADING, "goal": GOAL, "arrival_tolerance": 1.0, "time_limit": barn.LIMIT},
         **ends,
     }
-    return unknown_trial(
-        replace(entry.law, seed=seed),
-        robot,
-        place,
-        control_period=PERIOD,
+    lidar = nav.Lidar(
         beams=BEAMS,
         field_of_view=FIELD_OF_VIEW,
         range_max=entry.range,
         range_noise=entry.noise,
+        dropout=entry.dropout,
+    )
+    return unknown_trial(
+        replace(entry.law, seed=seed),
+        robot,
+        place,
+        lidar,
+        control_period=PERIOD,
         length_drift=LENGTH_DRIFT * entry.drift,
         heading_drift=HEADING_DRIFT * entry.drift,
         late=entry.late,

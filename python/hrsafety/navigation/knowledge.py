@@ -171,7 +171,7 @@ def warnings_of(scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:
                 f"seen too late; give a larger {sensor.RANGE} or a smaller max_speed",
             )
         covered = least_reach(scenario.robot)
-        if isinstance(sensor, Lidar) and sensor.range_min > covered:
+        if isinstance(sensor, Lidar) and sensor.range_min > max(covered - math.hypot(*sensor.mounting[:2]), 0.0):
             yield ResultWarning(
                 BLIND_NEARBY,
                 f"sensors[{index}].range_min",

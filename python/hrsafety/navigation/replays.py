@@ -234,19 +234,19 @@ def scanner_of(run: Run, bodies: Bodies | None = None) -> PlayedLidar | None:
         Who can move; those of a scenario when ``None``.
     """
     lidar = next((each for each in (() if run.built is None else run.built.sensors) if isinstance(each, Lidar)), None)
-    if lidar is None or run.obstacle_position is None:
+    # Players draw beams from the center of the robot.
+    if lidar is None or run.obstacle_position is None or any(lidar.mounting[:2]):
         return None
     bodies = _moving(run) if bodies is None else bodies
-    exact = replace(lidar, range_noise=0.0)
-    half = 0.5 * lidar.field_of_view
-    last = half - (2.0 * half / lidar.beams if lidar.field_of_view >= 2.0 * math.pi else 0.0)
+    exact = replace(lidar, range_noise=0.0, dropout=0.0)
+    first, last = (lidar.mounting[2] + lidar.bearings[[0, -1]]).tolist()
 
     def ranges(row: int) -> Array:
         discs = [(*run.obstacle_position[row, column], size) for column, _, _, size, box in bodies if box is None]
         there = [each for each in discs if math.isfinite(each[0])] if lidar.sees_obstacles else []
         return np.asarray(exact.scan(run.position[row], float(run.heading[row]), people=there))
 
-    return PlayedLidar(-half, last, lidar.range_max, ranges)
+    return PlayedLidar(first, last, lidar.range_max, ranges)
 
 
 def _clearance(

@@ -155,10 +155,7 @@ class ScanController:
     goal : (float, float)
         In the frame of the odometry, in m.
     lidars : sequence of Lidar
-        Beams and ranges of each.
-    mountings : sequence of (float, float, float) or None
-        Pose of each lidar on the robot: x, y in m, heading in rad; ``None``: all at the middle of the axle, looking
-        ahead.
+        Mounting, beams and ranges of each.
     control_period : float
         Time between updates in s.
     arrival_tolerance : float
@@ -199,7 +196,6 @@ class ScanController:
         goal: npt.ArrayLike,
         *,
         lidars: Sequence[Lidar],
-        mountings: Sequence[Sequence[float]] | None = None,
         control_period: float = 0.05,
         arrival_tolerance: float = 0.2,
         scan_timeout: float = 0.3,
@@ -220,7 +216,7 @@ class ScanController:
             outline_of(body)._native,
             twist_limits(body),
             positive("control_period", control_period),
-            [(lidar._lidar, pose) for lidar, pose in zip(self._lidars, self._poses(mountings), strict=True)],
+            [lidar._lidar for lidar in self._lidars],
             goal=self._goal,
             arrival_tolerance=number("arrival_tolerance", arrival_tolerance),
             scan_timeout=number("scan_timeout", scan_timeout),
@@ -228,20 +224,6 @@ class ScanController:
             position_tracking=number("position_tracking", position_tracking),
             heading_tracking=number("heading_tracking", heading_tracking),
         )
-
-    def _poses(self, mountings: Sequence[Sequence[float]] | None) -> list[list[float]]:
-        if mountings is None:
-            return [[0.0, 0.0, 0.0] for _ in self._lidars]
-        given = sequence("mountings", "be a sequence of (x, y, heading)", mountings)
-        if len(given) != len(self._lidars):
-            raise ShapeError("mountings", f"({len(self._lidars)}, 3)", (len(given),))
-        found = []
-        for index, pose in enumerate(given):
-            row = numbers(f"mountings[{index}]", pose)
-            if row.shape != (3,):
-                raise ShapeError(f"mountings[{index}]", "(3,)", row.shape)
-            found.append([finite(f"mountings[{index}]", value) for value in row.tolist()])
-        return found
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:

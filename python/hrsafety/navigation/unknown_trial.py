@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -11,6 +10,7 @@ from hrsafety.navigation.laws.arc_rollouts import ArcRollouts
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot
 from hrsafety.navigation.scan_controller import outline_of, twist_limits
+from hrsafety.navigation.sensing.lidar import Lidar
 
 __all__ = ["unknown_trial"]
 
@@ -19,6 +19,7 @@ def unknown_trial(
     rollouts: ArcRollouts,
     robot: DifferentialDriveRobot,
     place: StaticMap,
+    lidar: Lidar,
     *,
     start: Sequence[float],
     heading: float,
@@ -26,10 +27,6 @@ def unknown_trial(
     control_period: float = 0.05,
     arrival_tolerance: float = 1.0,
     time_limit: float = 100.0,
-    beams: int = 720,
-    field_of_view: float = 1.5 * math.pi,
-    range_max: float = 10.0,
-    range_noise: float = 0.01,
     length_drift: float = 0.0,
     heading_drift: float = 0.0,
     late: int = 0,
@@ -46,18 +43,18 @@ def unknown_trial(
         Its speeds, accelerations and footprint.
     place : StaticMap
         What is there, of which the robot knows what its lidar shows.
+    lidar : Lidar
+        Mounting, beams, noise and dropouts; its own map does not count.
     start, heading, goal : (float, float), float, (float, float)
         In m and rad; the goal in the frame of the odometry.
     control_period, arrival_tolerance, time_limit : float
         In s, m and s.
-    beams, field_of_view, range_max, range_noise : int and float
-        Of the lidar at the middle of the axle; standard deviation of ranges in m.
     length_drift, heading_drift : float
         Share by which lengths of the odometry are wrong, and rad in each m; signs are drawn.
     late : int
         Control periods by which scans come late.
     seed : int
-        Of noise and signs.
+        Of noise, dropouts and signs.
     timed : bool
         Whether decisions are timed.
 
@@ -78,10 +75,7 @@ def unknown_trial(
         goal=goal,
         arrival_tolerance=arrival_tolerance,
         time_limit=time_limit,
-        beams=beams,
-        field_of_view=field_of_view,
-        range_max=range_max,
-        range_noise=range_noise,
+        lidar=lidar._lidar,
         length_drift=length_drift,
         heading_drift=heading_drift,
         late=late,

@@ -184,9 +184,10 @@ class LawNode:
         width = step * (beams - 1)
         turns = math.isfinite(width) and width + 1.5 * step > math.tau
         try:
-            lidar = Lidar(beams=beams, field_of_view=math.tau if turns else width, range_max=most)
-            if np.abs(lidar.bearings - (message.angle_min + step * np.arange(beams))).max() > 0.5 * abs(step):
-                raise InvalidParameterError("angle_min", "look as much to the left as to the right", message.angle_min)
+            first = float(message.angle_min)
+            lidar = Lidar(beams=beams, field_of_view=math.tau if turns else width, angle_min=first, range_max=most)
+            if np.abs(lidar.bearings - (first + step * np.arange(beams))).max() > 0.5 * abs(step):
+                raise InvalidParameterError("angle_increment", "divide a whole turn evenly", step)
             self._lidar = lidar
             self._controller = self._made(self._poses[-1].pose[:2] if self._poses else None)
         except HrsafetyError as error:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from hrsafety._arguments import Array
+from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.ros.floor import Crowd
 from hrsafety.ros.messages import Pose
@@ -33,8 +34,11 @@ class Scanner:
     def __init__(self, lidar: Lidar) -> None:
         self.lidar = lidar
         bearings = lidar.bearings
-        # Noise is drawn for all beams at once.
-        parts = 1 if lidar.range_noise > 0.0 or len(bearings) < 2 * _BEAMS else len(bearings) // _BEAMS
+        if any(lidar.mounting):
+            raise InvalidParameterError("lidar.mounting", "be (0, 0, 0) in a bridge", lidar.mounting)
+        # Noise and dropouts are drawn for all beams at once.
+        drawn = max(lidar.range_noise, lidar.dropout) > 0.0
+        parts = 1 if drawn or len(bearings) < 2 * _BEAMS else len(bearings) // _BEAMS
         self._sectors = (
             [(lidar, 0.0)] if parts == 1 else [_sector(lidar, each) for each in np.array_split(bearings, parts)]
         )
@@ -64,4 +68,4 @@ class Scanner:
 def _sector(lidar: Lidar, bearings: Array) -> tuple[Lidar, float]:
     """Return a lidar with a part of the beams, and where it looks, in rad."""
     first, last = float(bearings[0]), float(bearings[-1])
-    return replace(lidar, beams=len(bearings), field_of_view=last - first), 0.5 * (first + last)
+    return replace(lidar, beams=len(bearings), field_of_view=last - first, angle_min=None), 0.5 * (first + last)

@@ -53,18 +53,12 @@ def clearance(pose: tuple[float, float, float]) -> float:
 
 def test_it_drives_around_walls_that_only_scans_of_two_mounted_lidars_show() -> None:
     front, back = (0.2, 0.1, 0.3), (-0.2, 0.0, math.pi)
-    lidar = nav.Lidar(map=ROOM, beams=270, field_of_view=1.5 * math.pi, range_noise=0.01)
-    robot = controller(lidars=[lidar, lidar], mountings=[front, back])
+    seen = {"map": ROOM, "beams": 270, "field_of_view": 1.5 * math.pi, "range_noise": 0.01}
+    lidars = [nav.Lidar(mounting=front, **seen), nav.Lidar(mounting=back, angle_min=-0.7 * math.pi, dropout=0.1, **seen)]
+    robot = controller(lidars=lidars)
     pose, twist = (0.0, 0.0, 0.0), (0.0, 0.0)
     for step in range(400):
-        scans = []
-        for index, (ahead, left, turned) in enumerate((front, back)):
-            x, y, angle = pose
-            place = (
-                x + ahead * math.cos(angle) - left * math.sin(angle),
-                y + ahead * math.sin(angle) + left * math.cos(angle),
-            )
-            scans.append(lidar.scan(place, angle + turned, seed=2 * step + index))
+        scans = [lidar.scan(pose[:2], pose[2], seed=2 * step + index) for index, lidar in enumerate(lidars)]
         command = robot.update(step * PERIOD, pose[:2], pose[2], scans)
         if command.arrived and command.speed == 0.0:
             break

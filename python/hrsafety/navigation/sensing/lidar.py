@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, checked_seed, count, empty, flag, instance, number, numbers, pair
+from hrsafety._arguments import Array, checked_seed, count, empty, finite, flag, instance, number, numbers, pair
 from hrsafety._bounds import MOST_RAYS
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
@@ -25,9 +25,10 @@ class Lidar(RobotSensor):
     """A lidar on a robot, which tells a law of walls and people by its scans.
 
     A beam reads the exact distance to the nearest thing along it, with Gaussian noise if wanted; ``range_max``
-    where nothing is hit, 0 inside of something or nearer than ``range_min``. The points of a scan become the few
+    where nothing is hit, 0 inside of something or nearer than ``range_min``, NaN where it drops out. The points of a scan become the few
     boundary points that a law sees (as `StaticMap.boundary_points`): bodies of radius 0 at rest. **What no beam
-    hits is not known to the law**, and a point has no velocity. Contacts with the map count in runs, see
+    hits is not known to the law**, and a point has no velocity; where a beam drops out, what was seen there before
+    stays. Contacts with the map count in runs, see
     ``map_contact_time`` of `Trajectory`.
 
     Parameters
@@ -36,13 +37,19 @@ class Lidar(RobotSensor):
         Walls that it sees.
     beams : int
         Number of beams.
+    mounting : (float, float, float)
+        Pose on the robot: x ahead and y to the left of its center in m, heading in rad.
     field_of_view : float
-        Angle between the first and the last beam in rad, ahead in the middle; a whole turn is divided evenly.
+        Angle between the first and the last beam in rad; a whole turn is divided evenly.
+    angle_min : float or None
+        Bearing of the first beam in rad; ``None``: straight ahead of the lidar is the middle of all beams.
     range_min, range_max : float
         Least and largest range in m. What is nearer than the least one is taken to be at it: where that is
         outside of the robot, results carry the warning ``"blind_nearby"``.
     range_noise : float
         Standard deviation of a range in m.
+    dropout : float
+        Probability with which a beam reads nothing at all.
     sees_obstacles : bool
         Whether it sees people and other obstacles of the scene, too.
     kappa : float
@@ -73,10 +80,13 @@ class Lidar(RobotSensor):
 
     map: StaticMap | None = None
     beams: int = 360
+    mounting: tuple[float, float, float] = (0.0, 0.0, 0.0)
     field_of_view: float = 2.0 * math.pi
+    angle_min: float | None = None
     range_min: float = 0.0
     range_max: float = 10.0
     range_noise: float = 0.0
+    dropout: float = 0.0
     sees_obstacles: bool = True
     kappa: float = 0.5
     influence: float = 0.3
@@ -88,21 +98,27 @@ class Lidar(RobotSensor):
         """Check the values."""
         if self.map is not None:
             instance("map", self.map, StaticMap)
-        if self.reach is not None:
-            self._as_numbers("reach")
-        names = ("field_of_view", "range_min", "range_max", "range_noise", "kappa", "influence", "max_speed")
+        given = [name for name in ("reach", "angle_min") if getattr(self, name) is not None]
+        self._as_numbers(*given)
+        mounting = numbers("mounting", self.mounting)
+        if mounting.shape != (3,):
+            raise ShapeError("mounting", "(3,)", mounting.shape)
+        self._set(mounting=tuple(finite("mounting", value) for value in mounting.tolist()))
+        names = ("field_of_view", "range_min", "range_max", "range_noise", "dropout", "kappa", "influence", "max_speed")
         lidar = _hrsafety.Lidar(
             map=None if self.map is None else self.map._native,
             beams=count("beams", self.beams, most=MOST_RAYS),
             sees_obstacles=flag("sees_obstacles", self.sees_obstacles),
+            mounting=list(self.mounting),
             reach=self.reach,
+            angle_min=self.angle_min,
             **self._as_numbers(*names),
         )
         self._set(_lidar=lidar, _native=_hrsafety.Sensor.lidar(lidar))
 
     @property
     def bearings(self) -> Array:
-        """Angles of the beams from straight ahead in rad, (beams,)."""
+        """Angles of the beams from straight ahead of the lidar in rad, (beams,)."""
         return np.asarray(self._lidar.bearings())
 
     def scan(
@@ -113,18 +129,18 @@ class Lidar(RobotSensor):
         Parameters
         ----------
         position : array_like, shape (2,)
-            Where the lidar is, in m.
+            Where the robot is, in m.
         heading : float
             Where it looks, in rad.
         people : array_like, shape (n, 3)
             Centers and radii of discs beside the map, in m.
         seed : int
-            Of the noise.
+            Of noise and dropouts.
 
         Returns
         -------
         ndarray, shape (beams,)
-            Ranges in m.
+            Ranges in m, NaN of beams that drop out.
 
         Raises
         ------
@@ -151,12 +167,12 @@ class Lidar(RobotSensor):
         heading : float
             Where it takes itself to look, in rad.
         ranges : array_like, shape (beams,)
-            Ranges in m.
+            Ranges in m, NaN where nothing is known.
 
         Returns
         -------
         ndarray, shape (n, 2)
-            Points in m; beams that hit nothing have none, and what was too near to be measured is taken to be at
+            Points in m; beams that hit or read nothing have none, and what was too near to be measured is taken to be at
             the least range.
 
         Raises
@@ -167,8 +183,8 @@ class Lidar(RobotSensor):
         scan = numbers("ranges", ranges)
         if scan.shape != (self.beams,):
             raise ShapeError("ranges", f"({self.beams},)", scan.shape)
-        if not (scan >= 0.0).all():
-            raise InvalidParameterError("ranges", "be numbers, not negative", float(scan[~(scan >= 0.0)][0]))
+        if (scan < 0.0).any():
+            raise InvalidParameterError("ranges", "not be negative", float(scan[scan < 0.0][0]))
         return self._lidar.points(_pose(position, heading), scan.tolist())
 
 

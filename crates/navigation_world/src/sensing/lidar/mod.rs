@@ -2,8 +2,10 @@
 
 mod scans;
 
+use std::f64::consts::{PI, TAU};
+
 use nalgebra::Vector2;
-use numeric::error::at_most;
+use numeric::random::Stream;
 
 use crate::sensing::sensor::{RobotSensor, Sensor};
 use crate::sensing::sonar::ranging::Normals;
@@ -12,7 +14,7 @@ use crate::world::map::{Beyond, MOST_POINTS, StaticMap, checked_kappa};
 use crate::world::obstacle::{Obstacle, PlacedShape, Regions};
 use crate::world::region::{self, Sensing};
 use crate::world::scenario::Scenario;
-use numeric::error::{Failure, Given, Result, not_negative, positive};
+use numeric::error::{Failure, Given, Result, at_most, finite, not_negative, positive};
 
 pub use scans::Scans;
 
@@ -20,29 +22,36 @@ pub use scans::Scans;
 pub const MOST_BEAMS: usize = 100_000;
 /// Force laws brake this near to a boundary point beyond the radius of the robot, in m.
 const AT_THE_WALL: f64 = 0.001;
+/// Streams of dropouts are so far above those of noise.
+const DROPOUTS: u64 = 1 << 59;
 /// Distance along its beam in m of a reading of zero: at the robot itself it would have no
 /// direction, and no law would see it.
 const NEAREST: f64 = 1e-9;
 
 /// A lidar on a robot, and what a law is told of its scans.
 ///
-/// A beam reads `range_max` where nothing is hit, and zero inside of something or nearer than
-/// `range_min`.
+/// A beam reads `range_max` where nothing is hit, zero inside of something or nearer than
+/// `range_min`, and NaN where it drops out. Poses are those of the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lidar {
     /// Static map.
     pub map: StaticMap,
     /// Number of beams.
     pub beams: usize,
-    /// Angle between the first and the last beam in rad, ahead in its middle; a whole turn is
-    /// divided evenly.
+    /// Pose on the robot, in m.
+    pub mounting: Frame,
+    /// Angle between the first and the last beam in rad; a whole turn is divided evenly.
     pub field_of_view: f64,
+    /// Bearing of the first beam in rad; without it straight ahead is the middle of all.
+    pub angle_min: Option<f64>,
     /// Least range in m.
     pub range_min: f64,
     /// Largest range in m.
     pub range_max: f64,
     /// Standard deviation of a range in m.
     pub range_noise: f64,
+    /// Probability with which a beam reads nothing at all.
+    pub dropout: f64,
     /// Set for a lidar that sees the obstacles of the scene, too.
     pub sees_obstacles: bool,
     /// Share `kappa` behind which points are left out.
@@ -60,15 +69,36 @@ impl Default for Lidar {
         Self {
             map: StaticMap::default(),
             beams: 360,
-            field_of_view: std::f64::consts::TAU,
+            mounting: Frame::at([0.0; 2], 0.0),
+            field_of_view: TAU,
+            angle_min: None,
             range_min: 0.0,
             range_max: 10.0,
             range_noise: 0.0,
+            dropout: 0.0,
             sees_obstacles: true,
             kappa: 0.5,
             influence: 0.3,
             reach: None,
             max_speed: 0.0,
+        }
+    }
+}
+
+/// Noise of the ranges of a lidar, and what its dropouts are drawn from.
+#[derive(Clone, Debug)]
+pub struct ScanNoise {
+    ranges: Normals,
+    dropouts: Stream,
+}
+
+impl ScanNoise {
+    /// Noise of a seed, from a stream of it.
+    #[must_use]
+    pub fn new(seed: u64, stream: u64) -> Self {
+        Self {
+            ranges: Normals::new(Stream::new(seed, stream)),
+            dropouts: Stream::new(seed, stream + DROPOUTS),
         }
     }
 }
@@ -83,10 +113,24 @@ impl Lidar {
             return Err(Failure::invalid("beams", "be at least 1", Given::Count(0)));
         }
         at_most("beams", self.beams, MOST_BEAMS)?;
-        if !(self.field_of_view > 0.0 && self.field_of_view <= std::f64::consts::TAU) {
+        if !(self.field_of_view > 0.0 && self.field_of_view <= TAU) {
             let rule = "be above 0 and at most a whole turn, 2 pi rad";
             let given = Given::Number(self.field_of_view);
             return Err(Failure::invalid("field_of_view", rule, given));
+        }
+        self.mounting
+            .checked()
+            .map_err(|error| error.within("mounting"))?;
+        if let Some(first) = self.angle_min {
+            finite("angle_min", first)?;
+        }
+        if !(0.0..=1.0).contains(&self.dropout) {
+            let rule = "be a probability, from 0 to 1";
+            return Err(Failure::invalid(
+                "dropout",
+                rule,
+                Given::Number(self.dropout),
+            ));
         }
         not_negative("range_min", self.range_min)?;
         positive("range_max", self.range_max)?;
@@ -107,20 +151,38 @@ impl Lidar {
     /// Bearing of a beam from straight ahead, in rad.
     #[must_use]
     pub fn bearing(&self, beam: usize) -> f64 {
-        let whole = self.field_of_view >= std::f64::consts::TAU;
+        let whole = self.field_of_view >= TAU;
         let gaps = if whole { self.beams } else { self.beams - 1 };
-        if gaps == 0 {
-            return 0.0;
-        }
-        (beam as f64 / gaps as f64 - 0.5) * self.field_of_view
+        let Some(first) = self.angle_min else {
+            if gaps == 0 {
+                return 0.0;
+            }
+            return (beam as f64 / gaps as f64 - 0.5) * self.field_of_view;
+        };
+        first + beam as f64 / gaps.max(1) as f64 * self.field_of_view
+    }
+
+    /// Direction of a beam in the frame of the lidar.
+    fn along(&self, beam: usize) -> Vector2<f64> {
+        let (sin, cos) = self.bearing(beam).sin_cos();
+        Vector2::new(cos, sin)
     }
 
     /// The beam that looks nearest to a point in the world from a pose; `None` outside the field of view.
-    fn beam_toward(&self, pose: &Frame, point: Vector2<f64>) -> Option<usize> {
-        let whole = self.field_of_view >= std::f64::consts::TAU;
+    fn beam_toward(&self, robot: &Frame, point: Vector2<f64>) -> Option<usize> {
+        let pose = robot.carrying(&self.mounting);
+        let whole = self.field_of_view >= TAU;
         let gaps = if whole { self.beams } else { self.beams - 1 };
         let seen = pose.inward(point - pose.position);
-        let bearing = seen.y.atan2(seen.x);
+        let mut bearing = seen.y.atan2(seen.x);
+        if let Some(first) = self.angle_min {
+            let middle = if gaps == 0 {
+                first
+            } else {
+                first + 0.5 * self.field_of_view
+            };
+            bearing = (bearing - middle + PI).rem_euclid(TAU) - PI;
+        }
         let place = (bearing / self.field_of_view + 0.5) * gaps as f64;
         if gaps == 0 {
             return (bearing.abs() <= 0.5 * self.field_of_view).then_some(0);
@@ -144,22 +206,26 @@ impl Lidar {
         }
     }
 
-    /// Ranges of all beams from a pose, in m, with noise.
+    /// Ranges of all beams from a pose, in m, with noise and dropouts.
     pub fn scan(
         &self,
-        pose: &Frame,
+        robot: &Frame,
         shapes: &[PlacedShape],
-        noise: &mut Normals,
+        noise: &mut ScanNoise,
         ranges: &mut Vec<f64>,
     ) {
+        let pose = robot.carrying(&self.mounting);
         ranges.clear();
         for beam in 0..self.beams {
-            let (sin, cos) = self.bearing(beam).sin_cos();
-            let along = pose.outward(Vector2::new(cos, sin));
+            if self.dropout > 0.0 && noise.dropouts.unit() < self.dropout {
+                ranges.push(f64::NAN);
+                continue;
+            }
+            let along = pose.outward(self.along(beam));
             let exact = self.range(pose.position, along, shapes);
             let hit = exact > 0.0 && exact < self.range_max;
             ranges.push(if self.range_noise > 0.0 && hit {
-                self.reading(exact + self.range_noise * noise.draw())
+                self.reading(exact + self.range_noise * noise.ranges.draw())
             } else {
                 exact
             });
@@ -177,12 +243,12 @@ impl Lidar {
 
     /// Points in the world that a scan hit, as a robot knows them that takes itself to be at a
     /// pose; what is too near to be measured is taken to be at the least range.
-    pub fn points(&self, pose: &Frame, ranges: &[f64], points: &mut Vec<Vector2<f64>>) {
+    pub fn points(&self, robot: &Frame, ranges: &[f64], points: &mut Vec<Vector2<f64>>) {
+        let pose = robot.carrying(&self.mounting);
         points.clear();
         for (beam, range) in ranges.iter().enumerate() {
             if *range < self.range_max {
-                let (sin, cos) = self.bearing(beam).sin_cos();
-                let along = Vector2::new(cos, sin) * range.max(self.range_min).max(NEAREST);
+                let along = self.along(beam) * range.max(self.range_min).max(NEAREST);
                 points.push(pose.position + pose.outward(along));
             }
         }
@@ -213,7 +279,11 @@ impl RobotSensor for Lidar {
     }
 
     fn sight(&self, scenario: &Scenario) -> Result<Option<(Regions, f64)>> {
-        Ok(Some((self.regions(scenario)?, self.range_max)))
+        let off = self.mounting.position.norm();
+        Ok(Some((
+            self.regions(scenario)?,
+            (self.range_max - off).max(0.0),
+        )))
     }
 }
 

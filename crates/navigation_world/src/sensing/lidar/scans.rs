@@ -1,11 +1,9 @@
 //! A lidar at work: what its scans tell a law.
 
 use nalgebra::Vector2;
-use numeric::random::Stream;
 
-use super::{Lidar, boundary_points_of};
+use super::{Lidar, ScanNoise, boundary_points_of};
 use crate::sensing::sensor::{Sensor, Truth};
-use crate::sensing::sonar::ranging::Normals;
 use crate::world::frame::Frame;
 use crate::world::geometry::Body;
 use crate::world::map::MOST_POINTS;
@@ -22,7 +20,7 @@ pub struct Scans {
     options: Lidar,
     obstacles: Vec<PlacedObstacle>,
     reach: f64,
-    noise: Normals,
+    noise: ScanNoise,
     shapes: Vec<PlacedShape>,
     ranges: Vec<f64>,
     points: Vec<Vector2<f64>>,
@@ -53,7 +51,7 @@ impl Scans {
         Ok(Self {
             obstacles: vec![placed; MOST_POINTS],
             reach: options.reach.unwrap_or(regions.active_radius),
-            noise: Normals::new(Stream::new(scenario.seed, LIDAR_STREAM + index)),
+            noise: ScanNoise::new(scenario.seed, LIDAR_STREAM + index),
             shapes: Vec::with_capacity(scenario.obstacles.len()),
             ranges: Vec::with_capacity(options.beams),
             points: Vec::with_capacity(options.beams),
@@ -83,7 +81,11 @@ impl Sensor for Scans {
         let actual = truth.frame();
         let options = &self.options;
         options.scan(&actual, &self.shapes, &mut self.noise, &mut self.ranges);
-        options.points(known, &self.ranges, &mut self.points);
+        if options.dropout > 0.0 {
+            self.keep(truth.time, known);
+        } else {
+            options.points(known, &self.ranges, &mut self.points);
+        }
         self.tell(known, bodies);
     }
 }
@@ -150,7 +152,19 @@ impl Scans {
         }
         self.ranges.clear();
         self.ranges.extend_from_slice(ranges);
-        self.unknown = ranges.iter().filter(|range| range.is_nan()).count();
+        self.keep(time, known);
+        self.tell(known, bodies);
+        let instants = self.boundary.iter().map(|point| {
+            let same = |told: &&(Vector2<f64>, f64)| <[f64; 2]>::from(told.0) == *point;
+            self.told.iter().find(same).map_or(time, |told| told.1)
+        });
+        self.instants = instants.collect();
+        Ok(())
+    }
+
+    /// Points of a scan made at a time in s; where a beam reads nothing at all, what was seen there before stays.
+    fn keep(&mut self, time: f64, known: &Frame) {
+        self.unknown = self.ranges.iter().filter(|range| range.is_nan()).count();
         let kept = self.still_unknown(known);
         let options = &self.options;
         options.points(known, &self.ranges, &mut self.points);
@@ -161,13 +175,6 @@ impl Scans {
         self.points.clear();
         self.points
             .extend(self.told.iter().map(|(point, _)| *point));
-        self.tell(known, bodies);
-        let instants = self.boundary.iter().map(|point| {
-            let same = |told: &&(Vector2<f64>, f64)| <[f64; 2]>::from(told.0) == *point;
-            self.told.iter().find(same).map_or(time, |told| told.1)
-        });
-        self.instants = instants.collect();
-        Ok(())
     }
 
     /// The nearest point that was told of before, for each beam that reads nothing now.
@@ -176,7 +183,8 @@ impl Scans {
             return Vec::new();
         }
         let mut kept: Vec<Option<(Vector2<f64>, f64)>> = vec![None; self.ranges.len()];
-        let away = |point: Vector2<f64>| (point - pose.position).norm_squared();
+        let from = pose.carrying(&self.options.mounting).position;
+        let away = |point: Vector2<f64>| (point - from).norm_squared();
         for told in &self.told {
             let beam = self.options.beam_toward(pose, told.0);
             let Some(beam) = beam.filter(|beam| self.ranges[*beam].is_nan()) else {
@@ -193,13 +201,13 @@ impl Scans {
     /// Whether the last scan saw a place to be empty: beams go through the outline there, and none ends
     /// in or before the disc around it. Nothing is seen beyond the largest range.
     #[must_use]
-    pub fn saw_empty(&self, pose: &Frame, placed: &PlacedShape) -> bool {
+    pub fn saw_empty(&self, robot: &Frame, placed: &PlacedShape) -> bool {
+        let pose = robot.carrying(&self.options.mounting);
         let radius = placed.shape.extent();
         let around = PlacedShape::disc(placed.center.into(), radius);
         let mut through = false;
         for (beam, range) in self.ranges.iter().enumerate() {
-            let (sin, cos) = self.options.bearing(beam).sin_cos();
-            let along = pose.outward(Vector2::new(cos, sin));
+            let along = pose.outward(self.options.along(beam));
             if !around.cast(pose.position, along).is_finite() {
                 continue;
             }

@@ -1,7 +1,5 @@
 //! Ranges, boundary points, and what a scan makes of people.
 
-use numeric::random::Stream;
-
 use super::*;
 use crate::robots::HolonomicRobot;
 use crate::world::map::MapShapes;
@@ -22,7 +20,7 @@ fn room() -> StaticMap {
 
 fn scan(lidar: &Lidar, pose: &Frame, shapes: &[PlacedShape]) -> Vec<f64> {
     let mut ranges = Vec::new();
-    let mut noise = Normals::new(Stream::new(1, 2));
+    let mut noise = ScanNoise::new(1, 2);
     lidar.scan(pose, shapes, &mut noise, &mut ranges);
     ranges
 }
@@ -231,4 +229,62 @@ fn a_rectangle_is_gone_only_where_beams_would_have_hit_it() {
 fn empty_floor() -> Scenario {
     let (robot, rules) = (HolonomicRobot::default(), Rules::default());
     Scenario::new(robot, [0.0; 2], [9.0, 0.0], Vec::new(), rules).unwrap()
+}
+
+#[test]
+fn a_lidar_sees_from_where_it_is_mounted() {
+    let mounted = Lidar {
+        map: room(),
+        beams: 3,
+        field_of_view: std::f64::consts::PI,
+        angle_min: Some(0.0),
+        mounting: Frame::at([0.5, 0.25], -std::f64::consts::FRAC_PI_2),
+        ..Lidar::default()
+    };
+    // The robot looks along y: the lidar is at (-0.25, 0.5) and its first beam looks along x.
+    let pose = Frame::at([0.0, 0.0], std::f64::consts::FRAC_PI_2);
+    let ranges = scan(&mounted, &pose, &[]);
+    for (range, expected) in ranges.iter().zip([2.25, 0.5, 1.75]) {
+        assert!((range - expected).abs() < 1e-12, "{ranges:?}");
+    }
+    let mut points = Vec::new();
+    mounted.points(&pose, &ranges, &mut points);
+    for (point, expected) in points.iter().zip([[2.0, 0.5], [-0.25, 1.0], [-2.0, 0.5]]) {
+        assert!((point - Vector2::from(expected)).norm() < 1e-12);
+        let beam = mounted.beam_toward(&pose, *point).unwrap();
+        assert!((points[beam] - point).norm() < 1e-12);
+    }
+    assert_eq!(mounted.beam_toward(&pose, Vector2::new(-0.25, -1.0)), None);
+}
+
+#[test]
+fn as_many_beams_drop_out_as_are_to_and_the_others_read_as_before() {
+    let whole = Lidar {
+        map: room(),
+        beams: 10_000,
+        range_noise: 0.01,
+        ..Lidar::default()
+    };
+    let pose = Frame::at([0.0, 0.0], 0.0);
+    let exact = Lidar {
+        range_noise: 0.0,
+        ..whole.clone()
+    };
+    let dropped = Lidar {
+        dropout: 0.2,
+        ..exact.clone()
+    };
+    let (all, left) = (scan(&exact, &pose, &[]), scan(&dropped, &pose, &[]));
+    let lost = left.iter().filter(|range| range.is_nan()).count();
+    assert!((1_800..2_200).contains(&lost), "{lost}");
+    for (range, before) in left.iter().zip(&all) {
+        assert!(range.is_nan() || range == before);
+    }
+    for dropout in [-0.1, 1.1, f64::NAN] {
+        let refused = Lidar {
+            dropout,
+            ..Lidar::default()
+        };
+        assert!(refused.checked().is_err());
+    }
 }
