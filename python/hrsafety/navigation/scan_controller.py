@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import _hrsafety
-from hrsafety._arguments import Array, Pair, count, finite, instance, number, numbers, pair, positive, sequence
+from hrsafety._arguments import Array, Pair, count, instance, number, numbers, pair, positive, sequence
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError, SimulationError
 from hrsafety.navigation.laws.arc_rollouts import ArcRollouts
@@ -187,7 +187,7 @@ class ScanController:
     360
     """
 
-    __slots__ = ("_cell", "_goal", "_lidars", "_native", "_rollouts")
+    __slots__ = ("_cell", "_goal", "_lidars", "_native", "_outline", "_rollouts")
 
     def __init__(
         self,
@@ -206,6 +206,7 @@ class ScanController:
         self._rollouts = instance("rollouts", rollouts, ArcRollouts)
         self._cell = rollouts.map.cell
         body = instance("robot", robot, DifferentialDriveRobot)
+        self._outline = outline_of(body)
         self._lidars = tuple(
             instance(f"lidars[{index}]", lidar, Lidar)
             for index, lidar in enumerate(sequence("lidars", "be a sequence of lidars", lidars))
@@ -213,7 +214,7 @@ class ScanController:
         self._goal = pair("goal", goal)
         self._native = _hrsafety.ScanController(
             rollouts._native,
-            outline_of(body)._native,
+            self._outline._native,
             twist_limits(body),
             positive("control_period", control_period),
             [lidar._lidar for lidar in self._lidars],
@@ -233,6 +234,14 @@ class ScanController:
             found.append(
                 ResultWarning("not_verified", "verify", "plans are not verified: nothing keeps the robot from contact")
             )
+        for index, lidar in enumerate(self._lidars):
+            covered = max(0.0, -float(self._outline.distance([lidar.mounting[:2]])[0]))
+            if lidar.range_min > covered:
+                text = (
+                    f"lidars[{index}] reads what is nearer than range_min, {lidar.range_min:.4g} m, as that far away, but "
+                    f"the outline covers {covered:.4g} m around it only: it may touch what no beam tells of"
+                )
+                found.append(ResultWarning("blind_nearby", f"lidars[{index}].range_min", text))
         return tuple(found)
 
     def update(

@@ -54,7 +54,10 @@ def clearance(pose: tuple[float, float, float]) -> float:
 def test_it_drives_around_walls_that_only_scans_of_two_mounted_lidars_show() -> None:
     front, back = (0.2, 0.1, 0.3), (-0.2, 0.0, math.pi)
     seen = {"map": ROOM, "beams": 270, "field_of_view": 1.5 * math.pi, "range_noise": 0.01}
-    lidars = [nav.Lidar(mounting=front, **seen), nav.Lidar(mounting=back, angle_min=-0.7 * math.pi, dropout=0.1, **seen)]
+    lidars = [
+        nav.Lidar(mounting=front, **seen),
+        nav.Lidar(mounting=back, angle_min=-0.7 * math.pi, dropout=0.1, **seen),
+    ]
     robot = controller(lidars=lidars)
     pose, twist = (0.0, 0.0, 0.0), (0.0, 0.0)
     for step in range(400):
@@ -68,6 +71,13 @@ def test_it_drives_around_walls_that_only_scans_of_two_mounted_lidars_show() -> 
     assert command.arrived
     assert robot.known_cells.kinds.shape[0] * robot.known_cells.cell >= 12.0
     assert (robot.known_cells.kinds == 2).sum() > 50
+
+
+def test_a_lidar_that_is_blind_beside_the_outline_is_doubted() -> None:
+    for place, least, doubted in (((0.0, 0.0), 0.19, False), ((0.0, 0.0), 0.21, True), ((0.2, 0.1), 0.06, True)):
+        lidar = nav.Lidar(mounting=(*place, 0.0), range_min=least)
+        codes = [warning.code for warning in controller(lidars=[lidar]).warnings]
+        assert codes == ["blind_nearby"] * doubted
 
 
 def driving() -> tuple[nav.ScanController, nav.Lidar, tuple[float, float, float], tuple[float, float]]:

@@ -177,7 +177,7 @@ impl Explorer {
             searched: false,
             since: 0,
             rollouts: Rollouts::new(reach),
-            recovery: Recovery::new(robot.period, (reach.periods as f64).sqrt(), options.seed),
+            recovery: Recovery::new(robot.period, options.seed),
             goal: finite_pair("goal", goal)?.into(),
             from: Twist::default(),
             twist: Twist::default(),

@@ -41,13 +41,13 @@ fn periods(time: f64, period: f64) -> usize {
 }
 
 impl Recovery {
-    /// Nothing is known yet. `slowness`: how much longer than usual progress may take.
-    pub fn new(period: f64, slowness: f64, seed: u64) -> Self {
+    /// Nothing is known yet.
+    pub fn new(period: f64, seed: u64) -> Self {
         Self {
             times: VecDeque::new(),
-            window: periods(WINDOW * slowness, period),
+            window: periods(WINDOW, period),
             lately: periods(LATELY, period),
-            lasts: periods(LASTS * slowness, period),
+            lasts: periods(LASTS, period),
             left: 0,
             twist: Twist::default(),
             stream: Stream::new(seed, 0),

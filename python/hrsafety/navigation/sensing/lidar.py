@@ -25,11 +25,10 @@ class Lidar(RobotSensor):
     """A lidar on a robot, which tells a law of walls and people by its scans.
 
     A beam reads the exact distance to the nearest thing along it, with Gaussian noise if wanted; ``range_max``
-    where nothing is hit, 0 inside of something or nearer than ``range_min``, NaN where it drops out. The points of a scan become the few
-    boundary points that a law sees (as `StaticMap.boundary_points`): bodies of radius 0 at rest. **What no beam
-    hits is not known to the law**, and a point has no velocity; where a beam drops out, what was seen there before
-    stays. Contacts with the map count in runs, see
-    ``map_contact_time`` of `Trajectory`.
+    where nothing is hit, 0 inside of something or nearer than ``range_min``, NaN where it drops out. The points of a
+    scan become the few boundary points that a law sees (as `StaticMap.boundary_points`): bodies of radius 0 at rest.
+    **What no beam hits is not known to the law**, and a point has no velocity; where a beam drops out, what was seen
+    there before stays. Contacts with the map count in runs, see ``map_contact_time`` of `Trajectory`.
 
     Parameters
     ----------
@@ -172,8 +171,8 @@ class Lidar(RobotSensor):
         Returns
         -------
         ndarray, shape (n, 2)
-            Points in m; beams that hit or read nothing have none, and what was too near to be measured is taken to be at
-            the least range.
+            Points in m; beams that hit or read nothing have none, and what was too near to be measured is taken to
+            be at the least range.
 
         Raises
         ------
