@@ -238,8 +238,8 @@ class ScanController:
             covered = max(0.0, -float(self._outline.distance([lidar.mounting[:2]])[0]))
             if lidar.range_min > covered:
                 text = (
-                    f"lidars[{index}] reads what is nearer than range_min, {lidar.range_min:.4g} m, as that far away, but "
-                    f"the outline covers {covered:.4g} m around it only: it may touch what no beam tells of"
+                    f"lidars[{index}] reads what is nearer than range_min, {lidar.range_min:.4g} m, as that far away, "
+                    f"but the outline covers {covered:.4g} m around it only: it may touch what no beam tells of"
                 )
                 found.append(ResultWarning("blind_nearby", f"lidars[{index}].range_min", text))
         return tuple(found)
