@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from hrsafety.cli.cell.page import CONTACT_WORDS, LOOKS, numbers_in, paths_of, rounded
 from hrsafety.cli.cell.pictures import Drawing
+from hrsafety.cli.program.report import heaviest_held
 from hrsafety.contact.plan import LAYERS
 from hrsafety.standards.verdicts import VERDICT_WORDS
 
@@ -47,6 +48,7 @@ def html(
         up=rounded(values, math.ceil),
         drawings=drawings,
         layers=LAYERS,
+        held=heaviest_held(values["rows"]),
         annex=annex,
         svg=Markup,
         verdict_words=VERDICT_WORDS,

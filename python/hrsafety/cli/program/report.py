@@ -15,7 +15,7 @@ from hrsafety.program import DrawnStudy, ProgramStudy
 from hrsafety.program.draws import LISTED, Quantile
 from hrsafety.standards.verdicts import VERDICT_WORDS
 
-__all__ = ["report_of", "report_of_draws"]
+__all__ = ["heaviest_held", "report_of", "report_of_draws"]
 
 FORMAT = 1
 CLASSES = {"quasi_static": "clamped", "transient": "free"}
@@ -185,12 +185,18 @@ def _facts(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     yield "", CONFIRM
 
 
+def heaviest_held(rows: Sequence[Mapping[str, Any]]) -> int | None:
+    """Return the number of the row that is heaviest if a base that rolls stands, ``None`` where none is known."""
+    known = [place for place, each in enumerate(rows) if isinstance(each.get("mass_if_base_stands"), float)]
+    return max(known, key=lambda place: float(rows[place]["mass_if_base_stands"]), default=None)
+
+
 def _held(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Return the mass of the row that is heaviest if a base stands, and that with the base free to roll."""
-    known = [each for each in rows if isinstance(each.get("mass_if_base_stands"), float)]
-    if not known:
+    """Return what the row that is heaviest if a base stands weighs with the base free to roll, and if it stands."""
+    place = heaviest_held(rows)
+    if place is None:
         return ""
-    heavy = max(known, key=lambda each: float(each["mass_if_base_stands"]))
+    heavy = rows[place]
     masses = f"{heavy['mass_along_motion']:.3f} kg along its motion, {heavy['mass_if_base_stands']:.3f} kg"
     return f"; {heavy['point']}: {masses} if the base stood still"
 
