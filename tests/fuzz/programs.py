@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from hrsafety import arms, program, records
+from hrsafety.arms.rolling import BASE_JOINTS
 
 __all__ = ["JUDGE", "misnumbered", "programs"]
 
@@ -27,6 +28,7 @@ armature = { turn = 1.2, shoulder = 1.2, elbow = 1.0, wrist_1 = 0.3, wrist_2 = 0
 [motion]
 velocity = 2.0
 """
+ROLLING = HEAD.replace("[motion]", 'base = "differential"\nbase_mass = 60.0\nbase_inertia = 4.0\n[motion]')
 REST = """[[points]]
 name = "gripper"
 link = "tool"
@@ -98,8 +100,10 @@ def programs(folder: Path) -> dict[str, tuple[Path, Callable[[Path], Any]]]:
     texts = {
         "moves.toml": HEAD + MOVES + REST + 'from = "move 1"\nto = "move 3"\n',
         "log.toml": HEAD + 'acceleration = 4.0\nlog = "joints.csv"\n' + REST + "from = 0.0\nto = 1.0\n",
+        "rolling.toml": ROLLING + 'acceleration = 4.0\nlog = "rolling.csv"\n' + REST + "from = 0.0\nto = 1.0\n",
         "drawn.toml": HEAD + "draws = 400\naccept_quantile = 0.95\n" + REST,
         "joints.csv": _joints(),
+        "rolling.csv": _joints(driving=True),
         "arm_of_program.urdf": arms.Arm.example().urdf,
         "arm_of_program.xml": MJCF,
         "force.csv": _force(),
@@ -113,7 +117,9 @@ def programs(folder: Path) -> dict[str, tuple[Path, Callable[[Path], Any]]]:
         "moves.toml": ("program", _judged),
         "log.toml": ("program", _judged),
         "drawn.toml": ("program", _judged),
+        "rolling.toml": ("program", _judged),
         "joints.csv": ("program", lambda _path: _judged(folder / "log.toml")),
+        "rolling.csv": ("program", lambda _path: _judged(folder / "rolling.toml")),
         "arm_of_program.urdf": ("arm", _arm),
         "arm_of_program.xml": ("arm", _arm),
         "force.csv": ("record", _pressed),
@@ -163,12 +169,15 @@ def _hit(path: Path) -> Any:
     return word
 
 
-def _joints() -> str:
+def _joints(driving: bool = False) -> str:
     time = np.arange(0.0, 1.0 + 1e-9, 0.02)
-    names = arms.Arm.example().joint_names
+    names = (*arms.Arm.example().joint_names, *(BASE_JOINTS if driving else ()))
     rows = [START[:] for _ in time]
     for row, each in zip(rows, time.tolist(), strict=True):
         row[0] = 0.2 - 0.2 * math.cos(math.pi * each)
+        if driving:
+            angle = 0.3 * row[0]
+            row += [2.0 * math.sin(angle), 2.0 - 2.0 * math.cos(angle), angle]
     lines = [",".join(f"{value:.6f}" for value in (one, *row)) for one, row in zip(time, rows, strict=True)]
     return "\n".join([",".join(["time", *names]), *lines]) + "\n"
 
