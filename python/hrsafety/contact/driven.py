@@ -200,12 +200,11 @@ class _Pressing(DrivenContact):
         stiffness = self.rest.stiffness * STIFFNESSES
         for first in range(0, len(speeds), SCAN_BLOCK):
             block = speeds[first : first + SCAN_BLOCK]
-            pairs = np.repeat(block, len(stiffness)), np.tile(stiffness, len(block))
-            shares = np.array([self._shared(each)[0] for each in self._simulated(*pairs, tolerance=COARSE)])
+            speed, drives = np.repeat(block, len(stiffness)), np.tile(stiffness, len(block))
+            shares = np.array([self._shared(each)[0] for each in self._simulated(speed, drives, tolerance=COARSE)])
             near = np.flatnonzero(shares > SURELY)
             if len(near):
-                rows = self._simulated(*(each[near] for each in pairs))
-                shares[near] = [self._shared(each)[0] for each in rows]
+                shares[near] = [self._shared(each)[0] for each in self._simulated(speed[near], drives[near])]
             shares = shares.reshape(len(block), -1).max(axis=1)
             beyond = np.flatnonzero(shares > 1.0)
             if len(beyond):
