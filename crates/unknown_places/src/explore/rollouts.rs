@@ -333,7 +333,7 @@ fn turned(
         turns.push(Turn {
             chord,
             heading,
-            looked: done % stride == 0,
+            looked: done.is_multiple_of(stride),
             judged: JUDGED.iter().any(|parts| parts * part == done),
         });
     }

@@ -182,7 +182,9 @@ impl Search {
         self.ground.extend_from_slice(cells.squares());
         for (ground, known) in self.ground.chunks_mut(64).zip(cells.known()) {
             if known == 0 {
-                ground.iter_mut().for_each(|square| *square += self.unknown);
+                for square in ground {
+                    *square += self.unknown;
+                }
             } else if known != u64::MAX {
                 for (bit, square) in ground.iter_mut().enumerate() {
                     *square += self.unknown * i16::from(known >> bit & 1 == 0);
