@@ -37,14 +37,17 @@ SUITE_NAMES = (
 """Suites of `hrsafety.benchmarks`, named here so that ``--help`` need not load them."""
 ARENA_LAWS = (
     "straight",
+    "social_force",
     "field",
     "orca(horizon=2,margin=0.05)",
     "velocity_obstacle",
+    "regulated_pure_pursuit",
+    "dynamic_window",
+    "orca(horizon=2,margin=0.05)+shield+yielding",
+    "field+shield+yielding",
     "straight+barrier",
     "straight+collision_cone",
     "orca(horizon=2,margin=0.05)+barrier",
-    "orca(horizon=2,margin=0.05)+shield+yielding",
-    "field+shield+yielding",
 )
 """Entries of the arena without others."""
 
@@ -566,7 +569,7 @@ def _add_arena(commands: Any) -> None:
         nargs="+",
         metavar="LAW",
         default=ARENA_LAWS,
-        help="laws with their parts, as orca+shield+yielding or straight+barrier(margin=0.2) [nine]",
+        help="laws with their parts, as orca+shield+yielding or straight+barrier(margin=0.2) [twelve]",
     )
     parser.add_argument("--scenes", nargs="+", metavar="SCENE", help="standard scenes, as narrow_doorway [all]")
     parser.add_argument("--seeds", type=_count, default=20, metavar="N", help="seeds of each scene [%(default)s]")
