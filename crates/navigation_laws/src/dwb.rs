@@ -6,7 +6,7 @@ use crate::local_planning::{
     finite_number, numbers,
 };
 use navigation_world::arguments::{Arguments, Named};
-use numeric::error::{Result, at_most, not_negative, positive};
+use numeric::error::{Failure, Given, Result, at_most, not_negative, positive};
 use numeric::lanes::Vector2;
 
 /// Half the side of the robot's local map, in m.
@@ -131,11 +131,11 @@ impl DWB {
         }
         let fastest = self.max_speed_xy * self.sim_time / self.linear_granularity;
         let turning = self.max_vel_theta * self.sim_time / self.angular_granularity;
-        at_most(
-            "steps of a trajectory",
-            fastest.max(turning).min(2.0 * MOST_STEPS) as usize,
-            MOST_STEPS as usize,
-        )?;
+        let steps = fastest.max(turning);
+        if steps > MOST_STEPS {
+            let rule = format!("have at most {MOST_STEPS} steps of the granularities");
+            return Err(Failure::invalid("sim_time", rule, Given::Number(steps)));
+        }
         Ok(self)
     }
 

@@ -16,6 +16,9 @@ const FARTHEST: f64 = 4.0;
 /// Beams that tell what is seen from a node.
 const BEAMS: u32 = 360;
 
+/// How many times dearer ways are at the nodes, against each link, as far as they were asked for.
+type Factors = Vec<OnceLock<Box<[f64; 16]>>>;
+
 /// How fast a robot is that expects somebody behind every corner.
 #[derive(Clone, Debug)]
 pub struct Pace {
@@ -33,7 +36,7 @@ pub struct Pace {
     pub period: f64,
     /// How many times dearer ways are at the nodes of a guide, as far as they were asked for; plans that are made anew share
     /// them.
-    pub known: Arc<OnceLock<Vec<OnceLock<Box<[f64; 16]>>>>>,
+    pub known: Arc<OnceLock<Factors>>,
 }
 
 impl Pace {

@@ -18,6 +18,7 @@ const ALIGN_FROM: f64 = 0.5;
 const FOLLOW_FROM: f64 = 1.4;
 const FOLLOW_AHEAD: f64 = 0.3;
 const ANGLE_AHEAD: f64 = 0.2;
+#[allow(clippy::approx_constant)] // as Nav2 writes it
 const ANGLE_FROM: f64 = 0.785_398;
 /// Every so many poses costs are looked at, and the way is.
 const COST_STRIDE: usize = 2;
@@ -148,6 +149,19 @@ fn polar(length: [u32; WIDTH], turn: [u32; WIDTH]) -> [Each; 2] {
     [length * cosine, length * sine]
 }
 
+impl Rollouts {
+    /// Makes room for samples of so many steps, in blocks.
+    fn clear(&mut self, steps: usize, blocks: usize) {
+        self.blocks = blocks;
+        self.controls.clear();
+        self.controls.resize(3 * steps * blocks, Each::splat(0.0));
+        self.costs.clear();
+        self.places.clear();
+        self.headings.clear();
+        self.free = false;
+    }
+}
+
 /// Draws of a standard normal distribution for every lane: forward, to the left if there is any, turning.
 #[inline(always)]
 fn normals([first, second, third, fourth]: [[u32; WIDTH]; 4], sideways: bool) -> [Each; 3] {
@@ -172,15 +186,7 @@ impl Job<'_, '_> {
         let steps = settings.time_steps;
         let blocks = settings.batch_size.div_ceil(WIDTH);
         let rollouts = self.rollouts;
-        rollouts.blocks = blocks;
-        rollouts.controls.clear();
-        rollouts
-            .controls
-            .resize(3 * steps * blocks, Each::splat(0.0));
-        rollouts.costs.clear();
-        rollouts.places.clear();
-        rollouts.headings.clear();
-        rollouts.free = false;
+        rollouts.clear(steps, blocks);
         let inflation = settings.inflation();
         let radius = view.gaps.radius;
         // Beyond the inflation radius gaps cost nothing.
