@@ -85,6 +85,7 @@ class VelocityRange(Parameters):
 
     def __post_init__(self) -> None:
         """Check shape and borders."""
+        checked_text("name", self.name, "be a text")
         self._set(corners=checked("corners", self.corners))
         for name in (
             "linear_min",
@@ -162,6 +163,7 @@ class MonitorPolygon(Parameters):
 
     def __post_init__(self) -> None:
         """Check type, action, shape and numbers."""
+        checked_text("name", self.name, "be a text")
         word("type", self.type, TYPES)
         word("action", self.action, ACTIONS)
         if self.corners is not None:

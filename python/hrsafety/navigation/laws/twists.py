@@ -199,4 +199,5 @@ def _rows(name: str, value: npt.ArrayLike, size: int) -> list[list[float]]:
 def _finite(name: str, array: Array) -> list[Any]:
     if not np.isfinite(array).all():
         raise InvalidParameterError(name, "be finite numbers", array)
-    return array.tolist()
+    rows: list[Any] = array.tolist()
+    return rows
