@@ -33,6 +33,10 @@ KINDS = {
 HEAD_LIMITS = ("peak_g", "hic15", "hic36", "clip_3ms_g")
 _HEAD_TITLES = ("peak", "HIC15", "HIC36", "3 ms level")
 _HEAD_UNITS = ("g", "", "", "g")
+_CONTACTS = {
+    True: "free: the largest force counts against the transient limit",
+    False: "clamped: the peak and what lasts count against the quasi-static limit, 0.5 s against the transient one",
+}
 Loads = records.AccelerationRecord | records.ForceRecord | records.PressureRecord
 
 
@@ -224,7 +228,7 @@ def _report(
         facts=[
             ("files", ", ".join(Path(each.path).name for each in judged)),
             ("limits", shown or "none given: nothing is checked"),
-            *([("contact", "free" if options.free else "clamped")] if options.kind == "force" else []),
+            *([("contact", _CONTACTS[options.free])] if options.kind == "force" else []),
             *([("filter", f"CFC {options.filter}")] if options.filter else []),
         ],
         said=VERDICT_WORDS[word],
