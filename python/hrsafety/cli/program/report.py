@@ -138,7 +138,8 @@ def _quantile(found: Quantile) -> str:
 def _shares(study: DrawnStudy) -> ReportTable:
     rows = [
         (
-            f"{row['point']}, {(row['area_name'] or row['region']).replace('_', ' ')}, {CLASSES[row['contact']]}"
+            f"{row['segment']}: {row['point']}, {(row['area_name'] or row['region']).replace('_', ' ')}, "
+            + CLASSES[row["contact"]]
             + (", with the drive" if row["with_drive"] else ""),
             VERDICT_WORDS[row["verdict"]],
             *(_quantile(each) for each in shares),
