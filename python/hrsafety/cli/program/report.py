@@ -119,7 +119,8 @@ def _answer_of_draws(study: DrawnStudy) -> Iterator[str]:
     program, motion = study.program, study.program.motion
     worst = next((each for each in study.rows if each.exposure.limit.permitted and each.waypoint >= 0), None)
     held = "the worst one" if program.accept_quantile is None else f"the quantile of {program.accept_quantile:g}"
-    yield f"There is no program: {motion.draws} drawn motions are {VERDICT_WORDS[study.verdict]}, judged by {held}."
+    verdict = VERDICT_WORDS[study.verdict]
+    yield f"There is no program: of {motion.draws} drawn motions {held} counts, which makes the verdict: {verdict}."
     if worst is None:
         yield "No point that may move is permitted or able to touch."
     else:
