@@ -46,7 +46,7 @@ NO_CONSTRUCTORS: dict[type, str] = {
     nav.laws.ShieldDecision: "made by a shield",
     nav.laws.TwistChoice: "made by a law",
     **dict.fromkeys(
-        (arena.Certificate, arena.Leaderboard, arena.Ranks, arena.Standing), "made by functions of the arena"
+        (arena.Certificate, arena.Leaderboard, arena.Ranks, arena.EntryStanding), "made by functions of the arena"
     ),
     nav.laws.FilterDecision: "made by a filter",
     nav.laws.SafetyFilter: "the base of filters",

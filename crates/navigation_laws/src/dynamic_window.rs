@@ -47,7 +47,7 @@ pub struct DynamicWindow {
     pub turn_braking: f64,
     /// Largest turn rate in rad/s.
     pub max_turn_rate: f64,
-    /// How people go on.
+    /// Motion of people that is predicted.
     pub prediction: Prediction,
 }
 

@@ -3,16 +3,16 @@
 from hrsafety._calls import suggest
 from hrsafety.arena.cards import CARDS, task_error
 from hrsafety.arena.certificates import Certificate, certify, certify_many
-from hrsafety.arena.leaderboard import Cell, Leaderboard, Standing, run
+from hrsafety.arena.leaderboard import ArenaCell, Leaderboard, EntryStanding, run
 from hrsafety.arena.ranking import Ranks, ranks
 
 __all__ = [
     "CARDS",
-    "Cell",
+    "ArenaCell",
     "Certificate",
+    "EntryStanding",
     "Leaderboard",
     "Ranks",
-    "Standing",
     "certify",
     "certify_many",
     "ranks",

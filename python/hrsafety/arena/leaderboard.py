@@ -29,7 +29,7 @@ from hrsafety.plausibility import ResultWarning
 from hrsafety.scenarios.laws import law_of, safe_of
 from hrsafety.sweep.running import Progress
 
-__all__ = ["Cell", "Leaderboard", "Standing", "run"]
+__all__ = ["ArenaCell", "EntryStanding", "Leaderboard", "run"]
 
 PEOPLE = ("reacting", "not_reacting")
 FILES = (".toml", ".yaml", ".yml")
@@ -41,7 +41,7 @@ REPLICATES = 2000
 
 
 @displayed
-class Cell(NamedTuple):
+class ArenaCell(NamedTuple):
     """An entry under conditions.
 
     Attributes
@@ -61,12 +61,12 @@ class Cell(NamedTuple):
 
 @displayed
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Standing:
+class EntryStanding:
     """How an entry stands under conditions.
 
     Parameters
     ----------
-    cell : Cell
+    cell : ArenaCell
         Entry and conditions.
     success, by_robot, wall, by_person, late, lost : Share
         Shares of the episodes by their ends: without a contact and in time (a task done to 0.75 m); touched somebody
@@ -83,7 +83,7 @@ class Standing:
         Share of the drawn seeds in which no other entry has both fewer contacts by the robot and less time.
     """
 
-    cell: Cell
+    cell: ArenaCell
     success: Share
     by_robot: Share
     wall: Share
@@ -111,7 +111,7 @@ class Leaderboard:
         Seeds 0 to one less than this of each.
     certificate : ndarray of shape (scenes, seeds)
         Earliest arrival in s.
-    episodes : mapping of Cell to mapping of str to ndarray of shape (scenes, seeds)
+    episodes : mapping of ArenaCell to mapping of str to ndarray of shape (scenes, seeds)
         Column by name: ``"end"``, ``"arrival_time"`` in s, ``"task_error"`` in m, and the metrics of the cards.
     warnings : tuple of ResultWarning
         What is doubtful.
@@ -120,28 +120,28 @@ class Leaderboard:
     scenes: tuple[str, ...]
     seeds: int
     certificate: Annotated[Array, "s"]
-    episodes: Mapping[Cell, Mapping[str, Any]]
+    episodes: Mapping[ArenaCell, Mapping[str, Any]]
     warnings: tuple[ResultWarning, ...]
 
-    def standings(self) -> list[Standing]:
+    def standings(self) -> list[EntryStanding]:
         """Return how the entries stand, under each of the conditions by their ranks.
 
         Returns
         -------
-        list of Standing
+        list of EntryStanding
             A row for each entry and conditions.
         """
-        found: list[Standing] = []
+        found: list[EntryStanding] = []
         for conditions in dict.fromkeys((cell.people, cell.sensing) for cell in self.episodes):
             found += sorted(self._compared(*conditions), key=lambda each: (each.rank, -each.success.value))
         return found
 
-    def scores(self, cell: Cell) -> dict[str, Share]:
+    def scores(self, cell: ArenaCell) -> dict[str, Share]:
         """Return the share of successes by scene."""
         won = self.episodes[cell]["end"] == "success"
         return {name: wilson(int(row.sum()), row.size) for name, row in zip(self.scenes, won, strict=True)}
 
-    def _compared(self, people: str, sensing: str) -> Iterator[Standing]:
+    def _compared(self, people: str, sensing: str) -> Iterator[EntryStanding]:
         """Yield the entries under the same conditions."""
         cells = [cell for cell in self.episodes if (cell.people, cell.sensing) == (people, sensing)]
         ends = np.array([self.episodes[cell]["end"] for cell in cells])
@@ -154,7 +154,7 @@ class Leaderboard:
         runs = won[0].size
         for row, cell in enumerate(cells):
             shares = {end: wilson(int((ends[row] == end).sum()), runs) for end in ENDS}
-            yield Standing(
+            yield EntryStanding(
                 cell=cell,
                 **shares,
                 time_ratio=mean_interval(ratio[row][np.isfinite(ratio[row])]),
@@ -266,10 +266,10 @@ def run(
     numbers = count("seeds", seeds, most=MOST_SEEDS)
     whom = [word("people", each, PEOPLE) for each in _named("people", people, PEOPLE)]
     seen = [word("sensing", each, tuple(SENSINGS)) for each in _named("sensing", sensing, tuple(SENSINGS))]
-    cells = [Cell(name, who, how) for name in entries for who in whom for how in seen]
+    cells = [ArenaCell(name, who, how) for name in entries for who in whom for how in seen]
     each_cell, told = len(places) * numbers, callback("progress", progress)
-    found: dict[Cell, dict[str, Any]] = {}
-    studies: dict[Cell, ArenaStudy] = {}
+    found: dict[ArenaCell, dict[str, Any]] = {}
+    studies: dict[ArenaCell, ArenaStudy] = {}
     for index, cell in enumerate(cells):
 
         def heard(done: int, _: int, before: int = index * each_cell) -> None:
@@ -326,7 +326,7 @@ def _of_file(name: str, path: Path) -> dict[str, Law]:
     return {f"{name}:{own}": law for own, law in read_nav2(path).laws.items()}
 
 
-def _folder(out: str | PathLike[str] | None, cell: Cell) -> Path | None:
+def _folder(out: str | PathLike[str] | None, cell: ArenaCell) -> Path | None:
     """Return where the episodes of a cell are kept."""
     if out is None:
         return None
@@ -363,7 +363,10 @@ def _episodes(
 
 
 def _doubts(
-    studies: Mapping[Cell, ArenaStudy], found: Mapping[Cell, Mapping[str, Any]], places: Sequence[str], seeds: int
+    studies: Mapping[ArenaCell, ArenaStudy],
+    found: Mapping[ArenaCell, Mapping[str, Any]],
+    places: Sequence[str],
+    seeds: int,
 ) -> Iterator[ResultWarning]:
     """Warn of what is doubtful in the scenes with their first seed, of episodes that are lost, and of few seeds."""
     numbers = [scenarios.SOCIAL.index(place) for place in places]

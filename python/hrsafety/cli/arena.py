@@ -96,7 +96,7 @@ def _words(people: str, sensing: str) -> str:
 
 
 def _tables(
-    board: arena.Leaderboard, standings: list[arena.Standing], people: str, sensing: str
+    board: arena.Leaderboard, standings: list[arena.EntryStanding], people: str, sensing: str
 ) -> tuple[ReportTable, ReportTable]:
     """Return how entries stand under conditions, and what makes their episodes again, with a digest of them."""
     mine = [each for each in standings if (each.cell.people, each.cell.sensing) == (people, sensing)]
@@ -108,7 +108,7 @@ def _tables(
     )
 
 
-def _cells(row: arena.Standing) -> Iterator[str]:
+def _cells(row: arena.EntryStanding) -> Iterator[str]:
     yield row.cell.entry
     yield from map(_percent, (row.success, row.by_robot, row.wall, row.by_person, row.late))
     ratio = row.time_ratio
@@ -122,7 +122,7 @@ def _percent(share: Share) -> str:
     return f"{100 * share.value:.1f} ({100 * share.low:.1f} to {100 * share.high:.1f})"
 
 
-def _command(board: arena.Leaderboard, cell: arena.Cell) -> str:
+def _command(board: arena.Leaderboard, cell: arena.ArenaCell) -> str:
     """Return what makes the episodes of a row again."""
     scenes = [] if len(board.scenes) == len(arena.CARDS) else ["--scenes", *board.scenes]
     file = cell.entry.rpartition(":")[0]
@@ -131,7 +131,7 @@ def _command(board: arena.Leaderboard, cell: arena.Cell) -> str:
     return shlex.join(["hrsafety", "arena", *words, "--people", cell.people, "--sensing", cell.sensing])
 
 
-def _digest(board: arena.Leaderboard, cell: arena.Cell) -> str:
+def _digest(board: arena.Leaderboard, cell: arena.ArenaCell) -> str:
     """Return version and digest of the episodes of a row."""
     found, content = board.episodes[cell], hashlib.sha256()
     content.update("\n".join(found["end"].ravel().tolist()).encode())
@@ -139,7 +139,7 @@ def _digest(board: arena.Leaderboard, cell: arena.Cell) -> str:
     return f"hrsafety {__version__}, {content.hexdigest()[:12]}"
 
 
-def _by_scene(board: arena.Leaderboard, standings: list[arena.Standing]) -> ReportTable:
+def _by_scene(board: arena.Leaderboard, standings: list[arena.EntryStanding]) -> ReportTable:
     """Return the shares of success in each scene."""
     scores = [board.scores(each.cell) for each in standings]
     cells = [f"{each.cell.entry}, {each.cell.people.replace('_', ' ')}, {each.cell.sensing}" for each in standings]

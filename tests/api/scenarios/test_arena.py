@@ -36,7 +36,7 @@ def same(first: arena.Leaderboard, second: arena.Leaderboard) -> bool:
 
 def test_an_episode_is_the_run_of_its_world(board: arena.Leaderboard) -> None:
     law = nav.laws.BorensteinKoren(attractive_gain=50.0, repulsive_gain=0.0)
-    found = board.episodes[arena.Cell("straight", "not_reacting", "exact")]
+    found = board.episodes[arena.ArenaCell("straight", "not_reacting", "exact")]
     for seed in range(3):
         world = scenarios.social("join_group", seed, reacting=False)
         map = nav.StaticMap.from_polylines(world.walls) if world.walls else None
@@ -70,7 +70,7 @@ def test_bits_are_equal_resumed_in_an_executor_and_on_other_threads(board: arena
     assert {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.npz")} == before
     with ThreadPoolExecutor(2) as executor:
         alone = arena.run(LAWS[2:], **FEW, executor=executor)
-    cell = arena.Cell(LAWS[2], "not_reacting", "exact")
+    cell = arena.ArenaCell(LAWS[2], "not_reacting", "exact")
     assert all(np.array_equal(alone.episodes[cell][name], board.episodes[cell][name]) for name in ("end",))
 
 

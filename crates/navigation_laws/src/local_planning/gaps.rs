@@ -7,7 +7,7 @@ use navigation_world::world::map::StaticMap;
 use navigation_world::world::shape::PlacedShape;
 use numeric::error::{Failure, Given, Result};
 
-/// How people go on.
+/// Motion of people that is predicted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Prediction {
     /// They stand, as in Nav2.

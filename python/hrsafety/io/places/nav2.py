@@ -15,7 +15,7 @@ from hrsafety._yaml.documents import YamlDocument, YamlSection
 from hrsafety.errors import FileError, InvalidParameterError, Shown
 from hrsafety.io.places.nav2_laws import (
     INFLATION,
-    Controller,
+    Nav2Controller,
     approaches_of,
     changes,
     controllers_of,
@@ -132,7 +132,7 @@ class Nav2Settings:
     ignored: tuple[str, ...] = ()
     warnings: tuple[ResultWarning, ...]
     source: Provenance
-    _controllers: tuple[Controller, ...] | FileError = field(default=(), repr=False, compare=False)
+    _controllers: tuple[Nav2Controller, ...] | FileError = field(default=(), repr=False, compare=False)
     _document: YamlDocument | None = field(default=None, repr=False, compare=False)
 
     @property
@@ -313,7 +313,7 @@ def read_nav2(path: str | PathLike[str]) -> Nav2Settings:
     local = costmaps.get("local_costmap", {})
     approaches = approaches_of(monitor)
     try:
-        controllers: tuple[Controller, ...] | FileError = tuple(
+        controllers: tuple[Nav2Controller, ...] | FileError = tuple(
             _read_controllers(root, server, shapes.get("local_costmap", {}))
         )
     except FileError as error:
@@ -546,7 +546,9 @@ def _frequency(server: Parameters | None) -> float:
     return FREQUENCY if entry is None else _positive(entry)
 
 
-def _read_controllers(root: YamlSection, server: Parameters | None, shape: Mapping[str, Any]) -> Iterator[Controller]:
+def _read_controllers(
+    root: YamlSection, server: Parameters | None, shape: Mapping[str, Any]
+) -> Iterator[Nav2Controller]:
     """Return the controllers of a file as laws."""
     if server is None:
         raise root.error("hold the section controller_server.ros__parameters", code="missing_key")

@@ -13,7 +13,7 @@ from hrsafety.errors import FileError, InvalidParameterError
 from hrsafety.navigation.laws.local_planners import DWB, PathIntegral, RegulatedPurePursuit
 from hrsafety.navigation.laws.twists import LocalPlanner
 
-__all__ = ["INFLATION", "Controller", "approaches_of", "changes", "controllers_of", "ignored_of"]
+__all__ = ["INFLATION", "Nav2Controller", "approaches_of", "changes", "controllers_of", "ignored_of"]
 
 Parameters = Mapping[str, YamlSection]
 INFLATION = ("cost_scaling_factor", "inflation_radius")
@@ -80,7 +80,7 @@ _SIDEWAYS = 0.5
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Controller:
+class Nav2Controller:
     """A controller of a file.
 
     Parameters
@@ -110,7 +110,7 @@ class Controller:
     off: frozenset[str]
 
 
-def controllers_of(found: Mapping[str, Parameters], inflation: Mapping[str, float | None]) -> Iterator[Controller]:
+def controllers_of(found: Mapping[str, Parameters], inflation: Mapping[str, float | None]) -> Iterator[Nav2Controller]:
     """Yield the controllers of a file by their parameters, with the inflation of the local costmap."""
     for name, parameters in found.items():
         entry = parameters["plugin"]
@@ -121,7 +121,9 @@ def controllers_of(found: Mapping[str, Parameters], inflation: Mapping[str, floa
         yield _controller(name, plugin, parameters, inflation)
 
 
-def _controller(name: str, plugin: Plugin, parameters: Parameters, inflation: Mapping[str, float | None]) -> Controller:
+def _controller(
+    name: str, plugin: Plugin, parameters: Parameters, inflation: Mapping[str, float | None]
+) -> Nav2Controller:
     kinds = {each.name: each.default for each in fields(plugin.law) if each.init}  # type: ignore[arg-type]  # a dataclass
     given: dict[str, Any] = dict(plugin.defaults)
     given |= {key: value for key, value in inflation.items() if value is not None and key in kinds}
@@ -146,7 +148,7 @@ def _controller(name: str, plugin: Plugin, parameters: Parameters, inflation: Ma
         raise entry.error(error.requirement) from None
     path = tuple(parameters["plugin"].path)
     sections = {str(entry.path[-2]) for entry in parameters.values() if len(entry.path) == len(path) + 1}
-    return Controller(
+    return Nav2Controller(
         name=name, law=law, entries=entries, used=frozenset(used), path=path[:-1], sections=frozenset(sections), off=off
     )
 
@@ -179,7 +181,7 @@ def _is_on(critic: str, parameters: Parameters, used: set[str]) -> bool:
     return (listed is None or critic in listed.texts()) and (enabled is None or enabled.flag())
 
 
-def changes(controller: Controller, law: LocalPlanner) -> Iterator[tuple[tuple[str | int, ...], Any]]:
+def changes(controller: Nav2Controller, law: LocalPlanner) -> Iterator[tuple[tuple[str | int, ...], Any]]:
     """Yield what has to be changed in a file for another law of the same kind: keys below each other, and values."""
     plugin = next(each for each in PLUGINS.values() if each.law is type(law))
     written = {name: key for key, name in plugin.names.items()}
@@ -198,7 +200,7 @@ def changes(controller: Controller, law: LocalPlanner) -> Iterator[tuple[tuple[s
         yield (tuple(entry.path) if entry is not None else (*base, *_parts(controller, written.get(name, name)))), value
 
 
-def _parts(controller: Controller, key: str) -> tuple[str, ...]:
+def _parts(controller: Nav2Controller, key: str) -> tuple[str, ...]:
     """Return the keys below each other for a new parameter: below a map that is there, else with dots."""
     above, _, last = key.rpartition(".")
     return (above, last) if above and above in controller.sections else (key,)
@@ -224,7 +226,7 @@ def approaches_of(monitor: Parameters) -> dict[str, dict[str, float]]:
 
 
 def ignored_of(
-    nodes: Sequence[Parameters], controllers: tuple[Controller, ...] | FileError, of_robot: Set[str]
+    nodes: Sequence[Parameters], controllers: tuple[Nav2Controller, ...] | FileError, of_robot: Set[str]
 ) -> Iterator[str]:
     """Yield the keys of controller server, local costmap and collision monitor that nothing uses, with their paths."""
     server, _, monitor = nodes

@@ -38,7 +38,7 @@ class DynamicWindow(LocalPlanner):
     max_turn_rate : float
         Largest turn rate, in rad/s.
     prediction : {"static", "constant_velocity"}
-        Whether people stand (``"static"``, as in Nav2) or go on as they do (``"constant_velocity"``).
+        Whether people stand (``"static"``, as in Nav2) or keep their velocities (``"constant_velocity"``).
 
     Raises
     ------
@@ -131,7 +131,7 @@ class DWB(LocalPlanner):
     vtheta_samples : int
         Turn rates that are tried.
     prediction : {"static", "constant_velocity"}
-        Whether people stand (``"static"``, as in Nav2) or go on as they do (``"constant_velocity"``).
+        Whether people stand (``"static"``, as in Nav2) or keep their velocities (``"constant_velocity"``).
 
     Raises
     ------
@@ -237,7 +237,7 @@ class RegulatedPurePursuit(LocalPlanner):
     allow_reversing : bool
         Whether it drives back to a carrot behind it; not beside ``use_rotate_to_heading``.
     prediction : {"static", "constant_velocity"}
-        Whether people stand (``"static"``, as in Nav2) or go on as they do (``"constant_velocity"``).
+        Whether people stand (``"static"``, as in Nav2) or keep their velocities (``"constant_velocity"``).
 
     Raises
     ------
@@ -338,7 +338,7 @@ class PathIntegral(LocalPlanner):
     time_steps : int
         Steps of a sample.
     prediction : {"static", "constant_velocity"}
-        Whether people stand (``"static"``, as in Nav2) or go on as they do (``"constant_velocity"``).
+        Whether people stand (``"static"``, as in Nav2) or keep their velocities (``"constant_velocity"``).
 
     Raises
     ------

@@ -125,7 +125,7 @@ class LocalPlanner(Law):
         radius, max_speed, control_period : float
             Of the robot, in m, m/s and s.
         plan : array_like of shape (n, 3) or None
-            Plan with which `PathIntegral` goes on; ``None``: zeros.
+            Plan from which `PathIntegral` starts; ``None``: zeros.
         call, seed : int
             Number of the call and seed, from which `PathIntegral` draws.
 
