@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::lanes::Vector2;
 use vff_core::laws::filters::Near;
-use vff_core::laws::local_planning::{Gaps, MovingShape, Pose, View, Walls, Way};
+use vff_core::laws::local_planning::{Gaps, LocalView, MovingShape, Pose, Walls, Way};
 use vff_core::world::shape::PlacedShape;
 
 use crate::arrays::fields;
@@ -61,7 +61,7 @@ pub fn choose_twist<'py>(
     let way = way.unwrap_or_else(|| Way::straight(position, goal.into()));
     let plan: Vec<[f64; 3]> = given.take("plan")?;
     planner.resume(&plan, given.take("call")?);
-    let choice = planner.choose(&View {
+    let choice = planner.choose(&LocalView {
         pose: Pose { position, heading },
         twist: given.take("twist")?,
         local_goal: goal.into(),

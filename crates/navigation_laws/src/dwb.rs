@@ -2,8 +2,8 @@
 //! are exact, not those of cells.
 
 use crate::local_planning::{
-    AxisLimits, Choice, Gaps, Inflation, Mode, Pose, Prediction, TwistFamily, TwistPlanner, View,
-    finite_number, numbers,
+    AxisLimits, Gaps, Inflation, LocalView, Mode, PeopleMotion, Pose, TwistChoice, TwistFamily,
+    TwistPlanner, finite_number, numbers,
 };
 use navigation_world::arguments::{Arguments, Named};
 use numeric::error::{Failure, Given, Result, at_most, not_negative, positive};
@@ -54,7 +54,7 @@ pub struct DWB {
     pub vx_samples: usize,
     pub vy_samples: usize,
     pub vtheta_samples: usize,
-    pub prediction: Prediction,
+    pub prediction: PeopleMotion,
 }
 
 numbers!(DWB {
@@ -66,7 +66,7 @@ numbers!(DWB {
     min_speed_xy: finite_number, min_speed_theta: finite_number, acc_lim_y: finite_number,
     decel_lim_x: finite_number, decel_lim_y: finite_number, decel_lim_theta: finite_number,
     linear_granularity: finite_number, angular_granularity: finite_number, vx_samples: Arguments::count,
-    vy_samples: Arguments::count, vtheta_samples: Arguments::count, prediction: Prediction::given,
+    vy_samples: Arguments::count, vtheta_samples: Arguments::count, prediction: PeopleMotion::given,
 });
 
 impl Named for DWB {
@@ -185,13 +185,13 @@ impl DWB {
 
 /// Directions of the robot after every step towards a turn rate, in so many steps.
 #[derive(Clone, Debug, Default)]
-struct Turning {
+struct TurnRates {
     steps: usize,
     fronts: Vec<Vector2<f64>>,
     heading: f64,
 }
 
-impl Turning {
+impl TurnRates {
     /// Turns towards a rate, if it is not known yet.
     fn turn(
         &mut self,
@@ -221,7 +221,7 @@ pub struct DwbPlanner {
     settings: DWB,
     axes: [AxisLimits; 3],
     samples: [Vec<f64>; 3],
-    turnings: Vec<Turning>,
+    turnings: Vec<TurnRates>,
 }
 
 /// Places that the critics look at.
@@ -249,9 +249,9 @@ impl DwbPlanner {
     /// Where a trajectory ends, and the gap there; `None` where a pose of it is in contact.
     fn end(
         &self,
-        view: &View<'_>,
+        view: &LocalView<'_>,
         command: [f64; 3],
-        turning: &Turning,
+        turning: &TurnRates,
         (first, fastest): (f64, f64),
     ) -> Option<(Pose, f64)> {
         let (settings, steps) = (&self.settings, turning.steps);
@@ -282,7 +282,7 @@ impl DwbPlanner {
     }
 
     /// Score of the end of a trajectory.
-    fn score(&self, view: &View<'_>, targets: &Targets, pose: &Pose, gap: f64) -> f64 {
+    fn score(&self, view: &LocalView<'_>, targets: &Targets, pose: &Pose, gap: f64) -> f64 {
         let settings = &self.settings;
         let inflation = Inflation {
             cost_scaling_factor: settings.cost_scaling_factor,
@@ -301,7 +301,7 @@ impl DwbPlanner {
 }
 
 impl TwistPlanner for DwbPlanner {
-    fn choose(&mut self, view: &View<'_>) -> Choice {
+    fn choose(&mut self, view: &LocalView<'_>) -> TwistChoice {
         let settings = self.settings;
         let counts = [
             settings.vx_samples,
@@ -314,7 +314,7 @@ impl TwistPlanner for DwbPlanner {
         let gaps: &Gaps<'_> = view.gaps;
         let first = gaps.at(view.pose.position, 0.0, settings.prediction);
         if first.is_nan() || first <= 0.0 {
-            return Choice::BLOCKED;
+            return TwistChoice::BLOCKED;
         }
         let fastest = gaps.fastest(settings.prediction);
         let (goal, from) = (view.goal(), view.pose.position);
@@ -333,8 +333,8 @@ impl TwistPlanner for DwbPlanner {
         };
         let mut turnings = std::mem::take(&mut self.turnings);
         turnings.clear();
-        turnings.resize_with(self.samples[2].len(), Turning::default);
-        let mut best = Choice::BLOCKED;
+        turnings.resize_with(self.samples[2].len(), TurnRates::default);
+        let mut best = TwistChoice::BLOCKED;
         for &x in &self.samples[0] {
             for &y in &self.samples[1] {
                 for (&turn_rate, turning) in self.samples[2].iter().zip(&mut turnings) {
@@ -352,7 +352,7 @@ impl TwistPlanner for DwbPlanner {
                     };
                     let score = self.score(view, &targets, &pose, gap);
                     if best.score.is_none_or(|known| score < known - EQUAL) {
-                        best = Choice {
+                        best = TwistChoice {
                             twist: command,
                             score: Some(score),
                             mode: Mode::Track,

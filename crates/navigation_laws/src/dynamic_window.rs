@@ -4,8 +4,8 @@
 use std::f64::consts::PI;
 
 use crate::local_planning::{
-    Choice, Each, EachVector, LaneGaps, Mode, Prediction, TwistFamily, TwistPlanner, View, WIDTH,
-    all, arc, evenly, numbers, wrap,
+    Each, EachVector, LaneGaps, LocalView, Mode, PeopleMotion, TwistChoice, TwistFamily,
+    TwistPlanner, WIDTH, all, arc, evenly, numbers, wrap,
 };
 use navigation_world::arguments::{Arguments, Named};
 use numeric::elementary::cosine_and_sine;
@@ -48,13 +48,13 @@ pub struct DynamicWindow {
     /// Largest turn rate in rad/s.
     pub max_turn_rate: f64,
     /// Motion of people that is predicted.
-    pub prediction: Prediction,
+    pub prediction: PeopleMotion,
 }
 
 numbers!(DynamicWindow {
     heading, dist, velocity, acceleration, braking, turn_acceleration, turn_braking, max_turn_rate,
 } beside {
-    prediction: Prediction::given,
+    prediction: PeopleMotion::given,
 });
 
 impl Named for DynamicWindow {
@@ -146,7 +146,7 @@ impl Arcs<'_> {
 }
 
 impl TwistPlanner for DynamicWindow {
-    fn choose(&mut self, view: &View<'_>) -> Choice {
+    fn choose(&mut self, view: &LocalView<'_>) -> TwistChoice {
         let search = Search { law: self, view };
         match vectors() {
             Some(vectors) => pulp::Simd::vectorize(vectors, search),
@@ -158,21 +158,21 @@ impl TwistPlanner for DynamicWindow {
 /// A search among all twists, in vectors of the processor where it has them.
 struct Search<'a, 'v> {
     law: &'a DynamicWindow,
-    view: &'a View<'v>,
+    view: &'a LocalView<'v>,
 }
 
 impl pulp::NullaryFnOnce for Search<'_, '_> {
-    type Output = Choice;
+    type Output = TwistChoice;
 
     #[inline(always)]
-    fn call(self) -> Choice {
+    fn call(self) -> TwistChoice {
         self.run()
     }
 }
 
 impl Search<'_, '_> {
     #[inline(always)]
-    fn run(self) -> Choice {
+    fn run(self) -> TwistChoice {
         let Self { law, view } = self;
         let (period, most) = (view.period, view.max_speed);
         let [speed, _, turn_rate] = view.twist;
@@ -193,7 +193,7 @@ impl Search<'_, '_> {
         for (rate, value) in rates.iter_mut().zip(evenly(right, left, TURN_RATES)) {
             *rate = value;
         }
-        let mut best = Choice::BLOCKED;
+        let mut best = TwistChoice::BLOCKED;
         for speed in evenly(slowest, fastest, SPEEDS) {
             for (block, rates) in rates.chunks(WIDTH).enumerate() {
                 let free = arcs.free(speed, Each::from_fn(|lane| rates[lane]));
@@ -213,11 +213,11 @@ impl DynamicWindow {
     #[inline(always)]
     fn weigh(
         &self,
-        view: &View<'_>,
+        view: &LocalView<'_>,
         front: Vector2<f64>,
         [speed, turn_rate]: [f64; 2],
         free: f64,
-        best: &mut Choice,
+        best: &mut TwistChoice,
     ) {
         let stops = speed <= (2.0 * free * self.braking).sqrt()
             && turn_rate.abs() <= (2.0 * free * self.turn_braking).sqrt();
@@ -233,7 +233,7 @@ impl DynamicWindow {
             + self.dist * free / REACH
             + self.velocity * speed / view.max_speed;
         if best.score.is_none_or(|known| score > known + EQUAL) {
-            *best = Choice {
+            *best = TwistChoice {
                 twist: [speed, 0.0, turn_rate],
                 score: Some(score),
                 mode: Mode::Track,

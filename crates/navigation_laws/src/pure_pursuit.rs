@@ -2,7 +2,8 @@
 //! Robots 47, 2023, with the names and defaults of Nav2; distances are exact, not those of cells.
 
 use crate::local_planning::{
-    Choice, Mode, Pose, Prediction, TwistFamily, TwistPlanner, View, finite_number, numbers, wrap,
+    LocalView, Mode, PeopleMotion, Pose, TwistChoice, TwistFamily, TwistPlanner, finite_number,
+    numbers, wrap,
 };
 use navigation_world::arguments::{Arguments, Named};
 use numeric::error::{Failure, Given, Result, not_negative, positive};
@@ -43,7 +44,7 @@ pub struct RegulatedPurePursuit {
     pub use_rotate_to_heading: bool,
     pub use_collision_detection: bool,
     pub allow_reversing: bool,
-    pub prediction: Prediction,
+    pub prediction: PeopleMotion,
 }
 
 numbers!(RegulatedPurePursuit {
@@ -58,7 +59,7 @@ numbers!(RegulatedPurePursuit {
     use_regulated_linear_velocity_scaling: Arguments::flag,
     use_cost_regulated_linear_velocity_scaling: Arguments::flag, use_rotate_to_heading: Arguments::flag,
     use_collision_detection: Arguments::flag, allow_reversing: Arguments::flag,
-    prediction: Prediction::given,
+    prediction: PeopleMotion::given,
 });
 
 impl Named for RegulatedPurePursuit {
@@ -180,7 +181,7 @@ impl RegulatedPurePursuit {
     }
 
     /// Speed on a curvature in 1/m, with a gap in m.
-    fn speed(&self, view: &View<'_>, curvature: f64, gap: f64) -> f64 {
+    fn speed(&self, view: &LocalView<'_>, curvature: f64, gap: f64) -> f64 {
         let desired = self.desired_linear_vel;
         let mut speed = desired;
         if self.use_regulated_linear_velocity_scaling {
@@ -208,7 +209,7 @@ impl RegulatedPurePursuit {
     /// Whether a pose of the next second, up to the carrot, is in contact.
     fn collides(
         &self,
-        view: &View<'_>,
+        view: &LocalView<'_>,
         [speed, turn_rate]: [f64; 2],
         carrot: f64,
         gap: f64,
@@ -246,7 +247,7 @@ impl RegulatedPurePursuit {
 }
 
 impl TwistPlanner for RegulatedPurePursuit {
-    fn choose(&mut self, view: &View<'_>) -> Choice {
+    fn choose(&mut self, view: &LocalView<'_>) -> TwistChoice {
         let (pose, from) = (&view.pose, view.pose.position);
         let carrot = view.way.first_beyond(from, self.lookahead(view.twist[0]));
         let aim = if self.use_fixed_curvature_lookahead {
@@ -279,9 +280,9 @@ impl TwistPlanner for RegulatedPurePursuit {
         };
         let command = [twist[0], twist[2]];
         if self.use_collision_detection && self.collides(view, command, to_carrot.norm(), gap) {
-            return Choice::BLOCKED;
+            return TwistChoice::BLOCKED;
         }
-        Choice {
+        TwistChoice {
             twist,
             score: None,
             mode,

@@ -9,7 +9,7 @@ use vff_core::laws::dwb::DWB;
 use vff_core::laws::dynamic_window::DynamicWindow;
 use vff_core::laws::filters::Near;
 use vff_core::laws::local_planning::{
-    Gaps, MovingShape, Pose, Prediction, Steered, View, Walls, Way,
+    Gaps, LocalView, MovingShape, PeopleMotion, Pose, Steered, Walls, Way,
 };
 use vff_core::laws::path_integral::PathIntegral;
 use vff_core::laws::pure_pursuit::RegulatedPurePursuit;
@@ -46,7 +46,7 @@ fn measure(criterion: &mut Criterion, name: &str, law: &dyn LawFamily) {
     criterion.bench_function(name, |bencher| {
         bencher.iter(|| {
             along = (along + 0.001) % 0.05;
-            planner.choose(black_box(&View {
+            planner.choose(black_box(&LocalView {
                 pose: Pose {
                     position: Vector2::new(along, 0.0),
                     heading: 0.1,
@@ -62,7 +62,7 @@ fn measure(criterion: &mut Criterion, name: &str, law: &dyn LawFamily) {
     });
 }
 
-fn dynamic_window(prediction: Prediction) -> DynamicWindow {
+fn dynamic_window(prediction: PeopleMotion) -> DynamicWindow {
     DynamicWindow {
         heading: 2.0,
         dist: 0.2,
@@ -106,7 +106,7 @@ fn dwb() -> DWB {
         vx_samples: 20,
         vy_samples: 5,
         vtheta_samples: 20,
-        prediction: Prediction::Static,
+        prediction: PeopleMotion::Static,
     }
 }
 
@@ -136,7 +136,7 @@ fn pure_pursuit() -> RegulatedPurePursuit {
         use_rotate_to_heading: true,
         use_collision_detection: true,
         allow_reversing: false,
-        prediction: Prediction::Static,
+        prediction: PeopleMotion::Static,
     }
 }
 
@@ -165,13 +165,13 @@ fn path_integral() -> PathIntegral {
         inflation_radius: 0.55,
         batch_size: 256,
         time_steps: 28,
-        prediction: Prediction::Static,
+        prediction: PeopleMotion::Static,
     }
 }
 
 fn local_planners(criterion: &mut Criterion) {
-    let standing = dynamic_window(Prediction::Static);
-    let moving = dynamic_window(Prediction::ConstantVelocity);
+    let standing = dynamic_window(PeopleMotion::Static);
+    let moving = dynamic_window(PeopleMotion::ConstantVelocity);
     measure(criterion, "dynamic_window/static", &Steered(standing));
     measure(criterion, "dynamic_window/moving", &Steered(moving));
     measure(criterion, "dwb/20x20", &Steered(dwb()));

@@ -9,7 +9,7 @@ use numeric::error::{Failure, Given, Result};
 
 /// Motion of people that is predicted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Prediction {
+pub enum PeopleMotion {
     /// They stand, as in Nav2.
     #[default]
     Static,
@@ -17,7 +17,7 @@ pub enum Prediction {
     ConstantVelocity,
 }
 
-impl Prediction {
+impl PeopleMotion {
     /// The prediction whose word an argument is.
     ///
     /// # Errors
@@ -75,14 +75,14 @@ impl Gaps<'_> {
     /// `gap(p, t)` in m: least distance of the surfaces at a place and a time in s.
     #[inline]
     #[must_use]
-    pub fn at(&self, place: Vector, time: f64, prediction: Prediction) -> f64 {
+    pub fn at(&self, place: Vector, time: f64, prediction: PeopleMotion) -> f64 {
         self.up_to(place, (time, prediction), f64::INFINITY)
     }
 
     /// The gap, where all that is at least so many m away counts as that far.
     #[inline]
     #[must_use]
-    pub fn up_to(&self, place: Vector, (time, prediction): (f64, Prediction), most: f64) -> f64 {
+    pub fn up_to(&self, place: Vector, (time, prediction): (f64, PeopleMotion), most: f64) -> f64 {
         let mut least = most + self.radius;
         for person in self.people {
             let at = person.position + prediction.of(person.velocity) * time;
@@ -101,7 +101,7 @@ impl Gaps<'_> {
 
     /// Speed of the fastest person in m/s, as predicted.
     #[must_use]
-    pub fn fastest(&self, prediction: Prediction) -> f64 {
+    pub fn fastest(&self, prediction: PeopleMotion) -> f64 {
         let people = self.people.iter().map(|person| person.velocity);
         let shapes = self.walls.shapes.iter().map(|wall| wall.velocity);
         let speeds = people

@@ -1,7 +1,9 @@
 //! A law that chooses twists, at work on a robot: one with two wheels takes them up as they are, any other keeps a heading
 //! for the law.
 
-use super::{Choice, Gaps, MovingShape, Pose, TwistPlanner, Vector, View, Walls, Way, wrap};
+use super::{
+    Gaps, LocalView, MovingShape, Pose, TwistChoice, TwistPlanner, Vector, Walls, Way, wrap,
+};
 use crate::filters::Near;
 use crate::{Command, Law, LawFamily, Situation, force_toward};
 use navigation_world::arguments::{Arguments, Named};
@@ -269,7 +271,7 @@ impl<P: TwistPlanner> Law<f64> for SteeredLaw<P> {
                 map: self.map.as_ref(),
             },
         };
-        let Choice { twist, .. } = self.planner.choose(&View {
+        let TwistChoice { twist, .. } = self.planner.choose(&LocalView {
             pose,
             twist: [velocity.x, velocity.y, rate],
             local_goal: self.goal,

@@ -12,7 +12,7 @@ mod side_by_side;
 mod tests;
 mod way;
 
-pub use gaps::{Gaps, Inflation, MovingShape, Prediction, Walls};
+pub use gaps::{Gaps, Inflation, MovingShape, PeopleMotion, Walls};
 pub use law::{Steered, Tuned, TwistFamily};
 pub(crate) use law::{finite_number, numbers};
 pub use motion::{AxisLimits, Pose, arc, evenly, wrap};
@@ -25,7 +25,7 @@ type Vector = Vector2<f64>;
 
 /// Robot, goal and surroundings at one instant.
 #[derive(Clone, Copy, Debug)]
-pub struct View<'a> {
+pub struct LocalView<'a> {
     /// Position in m and heading in rad.
     pub pose: Pose,
     /// Velocity forward and to the left in m/s, turn rate in rad/s.
@@ -42,7 +42,7 @@ pub struct View<'a> {
     pub gaps: &'a Gaps<'a>,
 }
 
-impl View<'_> {
+impl LocalView<'_> {
     /// The goal at the end of the way, in m.
     #[must_use]
     pub fn goal(&self) -> Vector {
@@ -76,7 +76,7 @@ impl Mode {
 
 /// A chosen twist.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Choice {
+pub struct TwistChoice {
     /// Velocity forward and to the left in m/s, turn rate in rad/s.
     pub twist: [f64; 3],
     /// Score of the best twist, if there is one.
@@ -85,7 +85,7 @@ pub struct Choice {
     pub mode: Mode,
 }
 
-impl Choice {
+impl TwistChoice {
     /// Nothing is allowed: the command is 0.
     pub const BLOCKED: Self = Self {
         twist: [0.0; 3],
@@ -97,7 +97,7 @@ impl Choice {
 /// A law at work on one robot.
 pub trait TwistPlanner: Send + 'static {
     /// Twist until the next sample.
-    fn choose(&mut self, view: &View<'_>) -> Choice;
+    fn choose(&mut self, view: &LocalView<'_>) -> TwistChoice;
 
     /// Goes on with a plan of twists and the number of the call, if it keeps any.
     fn resume(&mut self, _plan: &[[f64; 3]], _call: u32) {}

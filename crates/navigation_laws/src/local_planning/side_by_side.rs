@@ -1,6 +1,6 @@
 //! Gaps of places side by side, for laws that try many motions.
 
-use super::{Gaps, Prediction};
+use super::{Gaps, PeopleMotion};
 use navigation_world::world::shape::Shape;
 use numeric::lanes::{LaneMask, Lanes, Mask, Number, Planar, Real, Truth, Vector2};
 
@@ -36,7 +36,7 @@ pub(crate) struct LaneGaps<'a> {
 
 impl<'a> LaneGaps<'a> {
     /// Gaps with what people are taken to do; all that is at least so many m away counts as that far.
-    pub fn new(gaps: &'a Gaps<'a>, prediction: Prediction, most: f64) -> Self {
+    pub fn new(gaps: &'a Gaps<'a>, prediction: PeopleMotion, most: f64) -> Self {
         let wide = |vector: Vector2<f64>| EachVector::splat(vector.into());
         let people = gaps.people.iter().map(|person| WidePerson {
             position: wide(person.position),
@@ -62,7 +62,7 @@ impl<'a> LaneGaps<'a> {
             gaps,
             people,
             shapes: shapes.collect(),
-            moving: prediction == Prediction::ConstantVelocity,
+            moving: prediction == PeopleMotion::ConstantVelocity,
             most: Each::splat(most + gaps.radius),
             radius: Each::splat(gaps.radius),
         }

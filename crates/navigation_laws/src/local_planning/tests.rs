@@ -113,7 +113,7 @@ fn vector(value: &Value) -> Vector {
 }
 
 /// A situation in the terms of the laws.
-struct Place {
+struct MirroredPlace {
     pose: Pose,
     twist: [f64; 3],
     goal: Vector,
@@ -124,7 +124,7 @@ struct Place {
     period: f64,
 }
 
-impl Place {
+impl MirroredPlace {
     fn of(given: &Value) -> Self {
         let [pose, twist] = ["pose", "twist"].map(|name| numbers_of(&given[name]));
         let rows = |name: &str| given[name].as_array().unwrap().iter();
@@ -157,7 +157,7 @@ impl Place {
         }
     }
 
-    fn choose(&self, planner: &mut impl TwistPlanner) -> Choice {
+    fn choose(&self, planner: &mut impl TwistPlanner) -> TwistChoice {
         let gaps = Gaps {
             radius: self.radius,
             people: &self.people,
@@ -166,7 +166,7 @@ impl Place {
                 map: None,
             },
         };
-        planner.choose(&View {
+        planner.choose(&LocalView {
             pose: self.pose,
             twist: self.twist,
             local_goal: self.goal,
@@ -188,8 +188,8 @@ fn control(row: &Value) -> [f64; 3] {
     [row[0], row[2], row[1]]
 }
 
-fn choose(kind: &str, case: &Value) -> (Choice, Vec<[f64; 3]>) {
-    let place = Place::of(&case["situation"]);
+fn choose(kind: &str, case: &Value) -> (TwistChoice, Vec<[f64; 3]>) {
+    let place = MirroredPlace::of(&case["situation"]);
     let given = &case["parameters"];
     let alone = |choice| (choice, Vec::new());
     match kind {

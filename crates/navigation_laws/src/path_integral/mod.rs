@@ -7,7 +7,8 @@ mod rollouts;
 use rollouts::{Rollouts, samples_in_lanes};
 
 use crate::local_planning::{
-    Choice, Inflation, Mode, Prediction, TwistFamily, TwistPlanner, View, finite_number, numbers,
+    Inflation, LocalView, Mode, PeopleMotion, TwistChoice, TwistFamily, TwistPlanner,
+    finite_number, numbers,
 };
 use navigation_world::arguments::{Arguments, Named};
 use numeric::error::{Failure, Given, Result, at_most, not_negative, positive};
@@ -44,7 +45,7 @@ pub struct PathIntegral {
     pub inflation_radius: f64,
     pub batch_size: usize,
     pub time_steps: usize,
-    pub prediction: Prediction,
+    pub prediction: PeopleMotion,
 }
 
 numbers!(PathIntegral {
@@ -54,7 +55,7 @@ numbers!(PathIntegral {
     vx_min: finite_number, vy_max: finite_number, ax_max: finite_number, ay_max: finite_number,
     az_max: finite_number, vy_std: finite_number, model_dt: finite_number,
     cost_scaling_factor: finite_number, inflation_radius: finite_number, batch_size: Arguments::count,
-    time_steps: Arguments::count, prediction: Prediction::given,
+    time_steps: Arguments::count, prediction: PeopleMotion::given,
 });
 
 impl Named for PathIntegral {
@@ -184,7 +185,7 @@ impl PathIntegralPlanner {
     }
 
     /// Mean of the samples by their weights, within the limits.
-    fn decide(&mut self, view: &View<'_>) -> bool {
+    fn decide(&mut self, view: &LocalView<'_>) -> bool {
         let settings = &self.settings;
         let weights = self
             .rollouts
@@ -221,14 +222,14 @@ impl TwistPlanner for PathIntegralPlanner {
         &self.decided
     }
 
-    fn choose(&mut self, view: &View<'_>) -> Choice {
+    fn choose(&mut self, view: &LocalView<'_>) -> TwistChoice {
         let draws = (self.seed, self.call);
         samples_in_lanes(&self.settings, view, &self.plan, draws, &mut self.rollouts);
         self.call = self.call.wrapping_add(1);
         if !self.decide(view) {
             self.plan.fill([0.0; 3]);
             self.decided.fill([0.0; 3]);
-            return Choice::BLOCKED;
+            return TwistChoice::BLOCKED;
         }
         self.plan.copy_from_slice(&self.decided);
         if (view.period - self.settings.model_dt).abs() <= 1e-9 * view.period {
@@ -239,7 +240,7 @@ impl TwistPlanner for PathIntegralPlanner {
                 self.plan.copy_from_slice(&self.decided);
             }
         }
-        Choice {
+        TwistChoice {
             twist: self.decided[0],
             score: None,
             mode: Mode::Track,

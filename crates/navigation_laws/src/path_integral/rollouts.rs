@@ -1,7 +1,7 @@
 //! Samples of controls side by side, where they lead, and what they cost.
 
 use super::{Control, PathIntegral};
-use crate::local_planning::{Each, EachVector, Inflation, LaneGaps, View, WIDTH, all, wrap};
+use crate::local_planning::{Each, EachVector, Inflation, LaneGaps, LocalView, WIDTH, all, wrap};
 use numeric::elementary::{cosine_and_sine, fading, logarithm};
 use numeric::lanes::{Number, Planar, Real, Truth, Vector2, vectors};
 use numeric::philox::side_by_side;
@@ -86,7 +86,7 @@ impl Rollouts {
 /// Draws and costs all samples of a call, in vectors of the processor where it has them.
 pub(super) fn samples_in_lanes(
     settings: &PathIntegral,
-    view: &View<'_>,
+    view: &LocalView<'_>,
     plan: &[Control],
     (seed, call): (u32, u32),
     rollouts: &mut Rollouts,
@@ -107,7 +107,7 @@ pub(super) fn samples_in_lanes(
 
 struct Job<'a, 'v> {
     settings: &'a PathIntegral,
-    view: &'a View<'v>,
+    view: &'a LocalView<'v>,
     plan: &'a [Control],
     key: [u32; 2],
     call: u32,
@@ -289,7 +289,7 @@ impl Job<'_, '_> {
 /// Adds costs of how far the last poses are from where the farthest sample is on the way, and of where they look.
 fn follow(
     settings: &PathIntegral,
-    view: &View<'_>,
+    view: &LocalView<'_>,
     rollouts: &mut Rollouts,
     (length, away): (f64, f64),
 ) {

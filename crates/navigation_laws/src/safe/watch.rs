@@ -27,7 +27,7 @@ struct Track {
 
 /// Where the robot was.
 #[derive(Clone, Copy, Debug)]
-struct Pose {
+struct PastPose {
     time: f64,
     place: Vector2<f64>,
     heading: f64,
@@ -50,7 +50,7 @@ pub(super) struct Watch {
     unexpected: Vec<usize>,
     /// Age in s of what is measured of others in a run, and whether the own pose is not as old.
     age: f64,
-    poses: VecDeque<Pose>,
+    poses: VecDeque<PastPose>,
     last: Option<f64>,
     /// Obstacles as they are seen.
     bodies: Vec<Body>,
@@ -193,8 +193,8 @@ impl Watch {
     }
 
     /// The pose at which what is told now was measured.
-    fn pose(&mut self, situation: &Situation<'_, f64>) -> Pose {
-        let here = Pose {
+    fn pose(&mut self, situation: &Situation<'_, f64>) -> PastPose {
+        let here = PastPose {
             time: situation.time,
             place: situation.robot.position,
             heading: situation.heading,
@@ -211,7 +211,7 @@ impl Watch {
         let next = self.poses.get(1).copied().unwrap_or(first);
         let share =
             ((then - first.time) / (next.time - first.time).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        Pose {
+        PastPose {
             time: then,
             place: first.place + (next.place - first.place) * share,
             heading: first.heading + (next.heading - first.heading) * share,
@@ -219,7 +219,7 @@ impl Watch {
     }
 
     /// Takes down who is tracked: whoever is not any more can have gone anywhere since.
-    fn take_down(&mut self, situation: &Situation<'_, f64>, pose: &Pose) {
+    fn take_down(&mut self, situation: &Situation<'_, f64>, pose: &PastPose) {
         self.bodies.clear();
         self.bodies.extend_from_slice(situation.bodies);
         self.unexpected.clear();
@@ -281,7 +281,7 @@ impl Watch {
     }
 
     /// Takes out of the belief what beams saw empty.
-    fn see(&mut self, situation: &Situation<'_, f64>, pose: &Pose) {
+    fn see(&mut self, situation: &Situation<'_, f64>, pose: &PastPose) {
         let trusted = self.unseen.trusted_range();
         match situation.scan.shown {
             Shown::Nothing => {}

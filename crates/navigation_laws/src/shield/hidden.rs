@@ -25,7 +25,7 @@ pub struct Hidden<'a> {
 
 /// The robot around an instant of its plan.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Instant {
+pub(super) struct HiddenInstant {
     /// In s.
     pub time: f64,
     /// Time in s to either side that it stands for.
@@ -45,7 +45,7 @@ impl Hidden<'_> {
     }
 
     /// Whether nobody comes ahead of the robot around an instant; `ahead`: how far ahead an offset lies, in m.
-    pub(super) fn is_clear(&self, at: &Instant, ahead: impl Fn(Vector2<f64>) -> f64) -> bool {
+    pub(super) fn is_clear(&self, at: &HiddenInstant, ahead: impl Fn(Vector2<f64>) -> f64) -> bool {
         let half = self.unseen.cell * FRAC_1_SQRT_2;
         let reach = at.radius + self.unseen.person_radius + half + at.way;
         let until = self.latency + at.time + at.half;

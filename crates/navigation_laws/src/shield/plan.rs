@@ -1,7 +1,7 @@
 //! The plan behind a command: take up a velocity within a period, then brake to rest.
 
 use crate::shield::half_disc::Look;
-use crate::shield::hidden::{Hidden, Instant};
+use crate::shield::hidden::{Hidden, HiddenInstant};
 use crate::shield::person::Person;
 use crate::shield::{ShieldLimits, TrackingError};
 use navigation_world::world::geometry::RobotState;
@@ -284,7 +284,7 @@ impl BrakingPlan {
         let instant = |part: f64| {
             let time = part * step;
             let last = part == parts;
-            Instant {
+            HiddenInstant {
                 time,
                 half: 0.5 * step,
                 position: self.position(time),
@@ -292,7 +292,7 @@ impl BrakingPlan {
                 radius: radius + if last { hidden.grown } else { 0.0 },
             }
         };
-        let clear = |at: &Instant| {
+        let clear = |at: &HiddenInstant| {
             // Later the robot is slower, and looks no less far around.
             let (_, look) = self.part(at.time + at.half);
             let ramps = at.time - at.half <= self.period;

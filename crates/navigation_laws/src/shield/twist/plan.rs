@@ -2,7 +2,7 @@
 
 use crate::shield::TrackingError;
 use crate::shield::half_disc::Look;
-use crate::shield::hidden::{Hidden, Instant};
+use crate::shield::hidden::{Hidden, HiddenInstant};
 use crate::shield::person::Person;
 use crate::shield::walls::{ROUNDING, StaticObstacles};
 use navigation_world::robots::differential::{DifferentialLimits, Twist};
@@ -229,7 +229,7 @@ impl TwistPlan {
         self.parts().into_iter().all(|(nodes, looks)| {
             let half = 0.5 * (nodes[1].time - nodes[0].time);
             nodes.iter().enumerate().all(|(index, node)| {
-                let at = Instant {
+                let at = HiddenInstant {
                     time: node.time,
                     half,
                     position: node.position,

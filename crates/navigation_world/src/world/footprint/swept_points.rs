@@ -23,7 +23,7 @@ impl Footprint {
     /// reaches it.
     #[must_use]
     pub fn swept_point(&self, point: Vector2<f64>, motion: impl Into<Sweep>) -> f64 {
-        Motion::of(motion.into()).distances(self, point.into())
+        PointsMotion::of(motion.into()).distances(self, point.into())
     }
 
     /// Least distances in m of points, each as [`Self::swept_point`].
@@ -32,7 +32,7 @@ impl Footprint {
         let mut found = vec![0.0; points.len()];
         let work = Several {
             footprint: self,
-            motion: Motion::of(motion.into()),
+            motion: PointsMotion::of(motion.into()),
             points,
             found: &mut found,
         };
@@ -48,7 +48,7 @@ impl Footprint {
 /// Many points against one sweep.
 struct Several<'a> {
     footprint: &'a Footprint,
-    motion: Motion,
+    motion: PointsMotion,
     points: &'a [[f64; 2]],
     found: &'a mut [f64],
 }
@@ -94,7 +94,7 @@ impl<R: Number> WithSimd for SideBySide<'_, R> {
 
 /// A sweep as it is seen by points: they move back.
 #[derive(Clone, Copy)]
-enum Motion {
+enum PointsMotion {
     /// Along a vector in m.
     Straight(Vector2<f64>),
     /// Around a center.
@@ -110,7 +110,7 @@ enum Motion {
     },
 }
 
-impl Motion {
+impl PointsMotion {
     fn of(sweep: Sweep) -> Self {
         if sweep.angle.abs() <= STRAIGHT {
             return Self::Straight(-sweep.way);
