@@ -26,6 +26,7 @@ LAW_NAMES = (
         "velocity-obstacle",
     ),
     *("optimal-reciprocal-collision-avoidance", "rapidly-exploring-random-tree", "field-d-star"),
+    *("social-force", "dynamic-window", "dwb", "regulated-pure-pursuit", "path-integral"),
 )
 """Laws of `hrsafety.scenarios.laws`, named here so that ``--help`` need not load them."""
 

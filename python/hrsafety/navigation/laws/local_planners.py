@@ -47,8 +47,9 @@ class DynamicWindow(LocalPlanner):
 
     Examples
     --------
-    >>> from hrsafety import navigation as nav, scenarios
-    >>> nav.simulate(scenarios.configuration("c1"), nav.DynamicWindow()).outcome
+    >>> from hrsafety import navigation as nav
+    >>> scene = nav.Scenario(start=(0, 0), goal=(4, 0.5), obstacles=[nav.Disc(center=(2, 0.6), radius=0.2)])
+    >>> nav.simulate(scene, nav.DynamicWindow()).outcome
     'arrived'
     """
 
