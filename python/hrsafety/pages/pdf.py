@@ -94,6 +94,8 @@ def _by_browser(browser: str, page: str) -> bytes:
         source, printed = Path(folder) / "page.html", Path(folder) / "page.pdf"
         source.write_text(page, encoding="utf-8")
         command = [browser, "--headless", "--disable-gpu", "--no-pdf-header-footer"]
+        # Tags carry numbers that differ from call to call.
+        command.append("--disable-pdf-tagging")
         command.append(f"--user-data-dir={folder}/profile")
         if getattr(os, "geteuid", lambda: 1)() == 0:
             # Chromium has no sandbox for the superuser; the page is our own and loads nothing.

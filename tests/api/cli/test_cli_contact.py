@@ -6,6 +6,7 @@ import html
 import importlib.util
 import json
 import math
+import os
 import re
 import shutil
 from collections.abc import Callable
@@ -210,16 +211,32 @@ def test_a_chart_holds_the_coverings_of_one_class_of_contact(judged: Any) -> Non
         assert f"Hand finger, {kind}: peak force over the closing speed" in page
 
 
-def test_a_pdf_is_the_same_each_time_or_says_what_is_missing(
-    judged: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+PRINTER = """#!/bin/sh
+for each in "$@"; do case $each in --print-to-pdf=*) target=${each#--print-to-pdf=};; esac; done
+printf '%%PDF-1.4 /CreationDate (D:202601%08d+00)' "$$" >"$target"
+"""
+
+
+@pytest.mark.parametrize("browser", ["printer", *filter(shutil.which, pdf.BROWSERS[:1])])
+def test_a_pdf_is_the_same_each_time(
+    judged: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, browser: str
 ) -> None:
-    if shutil.which("chromium") is None:
-        pytest.skip("no Chromium")
+    if browser == "printer":  # its dates differ, as those of browsers do
+        (tmp_path / browser).write_text(PRINTER)
+        (tmp_path / browser).chmod(0o755)
+        monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    monkeypatch.setattr(pdf, "BROWSERS", (browser,))
     judged(SMALL, "--pdf")
     first = Path("report/report.pdf").read_bytes()
     assert first.startswith(b"%PDF-")
-    judged(SMALL, "--pdf")
-    assert Path("report/report.pdf").read_bytes() == first
+    page = Path("report/report.html").read_text()
+    assert [pdf.pdf_of(page) for _ in range(3)] == [first] * 3
+
+
+def test_a_pdf_that_nothing_can_print_says_what_is_missing(
+    judged: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    judged(SMALL)
     shutil.rmtree("report")
     monkeypatch.setattr(pdf, "BROWSERS", ())
     found = importlib.util.find_spec
