@@ -10,7 +10,7 @@ import functools
 import os
 
 from hrsafety import arena
-from hrsafety._statistics import Share
+from hrsafety.cli.arena import HEAD, cells_of
 from hrsafety.cli.parsers import ARENA_LAWS
 from page_tables import DOCS, head, line, print_or_write
 
@@ -25,33 +25,14 @@ def board(people: str, sensing: str) -> arena.Leaderboard:
     return arena.run(ARENA_LAWS, seeds=SEEDS, people=[people], sensing=[sensing], out=out)
 
 
-def percent(share: Share) -> str:
-    """Return a share with its interval."""
-    return f"{100 * share.value:.1f} ({100 * share.low:.1f} to {100 * share.high:.1f})"
-
-
 def standings() -> str:
     """Return a table for each of the conditions."""
     parts = []
     for people, sensing in CONDITIONS:
-        rows = head(
-            f"{people.replace('_', ' ')}, {sensing.replace('_', ' and ')}",
-            "success %",
-            "by the robot %",
-            "wall %",
-            "by a person %",
-            "late %",
-            "time ratio",
-            "p",
-            "rank",
-            "front %",
-        )
+        rows = head(f"{people.replace('_', ' ')}, {sensing.replace('_', ' and ')}", *HEAD)
         for each in board(people, sensing).standings():
-            shares = map(percent, (each.success, each.by_robot, each.wall, each.by_person, each.late))
-            ratio = f"{each.time_ratio.value:.2f} ({each.time_ratio.low:.2f} to {each.time_ratio.high:.2f})"
-            rank = f"{each.rank:g} ({each.rank_low:g} to {each.rank_high:g})"
-            front = f"{100 * each.front:.0f}"
-            rows.append(line(f"`{each.cell.entry}`", *shares, ratio, f"{each.p_value:.2g}", rank, front))
+            entry, *cells = cells_of(each)
+            rows.append(line(f"`{entry}`", *cells))
         parts.append("\n".join(rows))
     return "\n" + "\n\n".join(parts) + "\n\n"
 

@@ -111,6 +111,14 @@ class ArenaStudy(Study):
             found.append(replace(world, robots=[robot]))
         return found
 
+    def why_lost(self, scene: int, seed: int) -> str:
+        """Return what happens in an episode that is lost, which is run again."""
+        try:
+            simulated(self.worlds([scene], [seed]))
+        except Exception as error:  # whatever a law of the user raises
+            return f"the law raised {type(error).__name__}: {error}"
+        return "the world diverged"
+
     def _built(self, walls: tuple[Any, ...], noise: float, latency: float) -> nav.Law:
         """Return the law of the entry among walls, with a guide around them."""
         map = nav.StaticMap.from_polylines(walls) if walls else None

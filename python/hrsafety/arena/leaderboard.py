@@ -80,7 +80,8 @@ class EntryStanding:
     rank, rank_low, rank_high : float
         Median and the 2.5 and 97.5 percentiles of the rank under these conditions, see `ranks`.
     front : float
-        Share of the drawn seeds in which no other entry has both fewer contacts by the robot and less time.
+        Share of the drawn seeds in which no other entry has both fewer contacts by the robot and less time; an episode
+        that is lost counts as one with a contact.
     """
 
     cell: ArenaCell
@@ -150,7 +151,8 @@ class Leaderboard:
         ratio[~won] = np.nan
         places = ranks(won.astype(np.int64))
         values = _against_best(won, places)
-        fronts = _fronts(ends == "by_robot", ratio)
+        # What happened in an episode that was lost is not known: it is no contact that was avoided.
+        fronts = _fronts((ends == "by_robot") | (ends == "lost"), ratio)
         runs = won[0].size
         for row, cell in enumerate(cells):
             shares = {end: wilson(int((ends[row] == end).sum()), runs) for end in ENDS}
@@ -380,9 +382,14 @@ def _doubts(
     for code, doubt in first.items():
         message = f"{', '.join(names[code])}: {doubt.message}"
         yield ResultWarning(code, doubt.subject, message, safe_side=doubt.safe_side)
-    lost = [cell.entry for cell, own in found.items() if (own["end"] == "lost").any()]
-    if lost:
-        message = f"episodes of {', '.join(dict.fromkeys(lost))} diverged or raised an error, and count as no success"
-        yield ResultWarning("unfinished", "end", message)
+    told: set[str] = set()
+    for cell, own in found.items():
+        lost = np.argwhere(own["end"] == "lost")
+        if len(lost) and cell.entry not in told:
+            told.add(cell.entry)
+            place, seed = (int(each) for each in lost[0])
+            why = studies[cell].why_lost(numbers[place], seed)
+            message = f"{len(lost)} episodes of {cell.entry} are lost and count as no success; in the first one {why}"
+            yield ResultWarning("unfinished", "end", message)
     if seeds < 10:
         yield ResultWarning("few_runs", "seeds", f"{seeds} seeds of each scene say little: ranks may change with more")

@@ -16,7 +16,7 @@ from hrsafety.cli import output, progress, terminal
 from hrsafety.errors import InvalidParameterError
 from hrsafety.pages.report import Report, ReportTable, Section
 
-__all__ = ["run_arena"]
+__all__ = ["HEAD", "cells_of", "run_arena"]
 
 OPTIONS = {name: f"--{name}" for name in ("laws", "scenes", "seeds", "people", "sensing", "out", "threads")}
 HEAD = (
@@ -25,6 +25,7 @@ HEAD = (
     "wall %",
     "by a person %",
     "late %",
+    "lost %",
     "time ratio",
     "p",
     "rank",
@@ -36,7 +37,8 @@ NOTE = (
     "at the first instant. The time is the arrival over the earliest one of a robot that knows the future, of "
     "successes. p: exact McNemar test of the successes against the best entry under the same conditions, after Holm. "
     "Rank: median with its 95 % interval, seeds drawn again; entries whose intervals overlap share a place. Front: "
-    "share of drawn seeds in which no other entry has both fewer contacts by the robot and less time."
+    "share of drawn seeds in which no other entry has both fewer contacts by the robot and less time; what is lost "
+    "counts as a contact there. Lost: the law raised an error or the world diverged."
 )
 
 
@@ -103,14 +105,15 @@ def _tables(
     titles = [(_words(people, sensing), *HEAD)]
     made = [(each.cell.entry, _command(board, each.cell), _digest(board, each.cell)) for each in mine]
     return (
-        ReportTable(headers=titles, rows=[tuple(_cells(each)) for each in mine], printed=True),
+        ReportTable(headers=titles, rows=[tuple(cells_of(each)) for each in mine], printed=True),
         ReportTable(headers=[MADE], rows=made, left=(0, 1, 2), summary="What makes the episodes of each row again"),
     )
 
 
-def _cells(row: arena.EntryStanding) -> Iterator[str]:
+def cells_of(row: arena.EntryStanding) -> Iterator[str]:
+    """Yield the cells of a row of the standings: the entry, and what `HEAD` names."""
     yield row.cell.entry
-    yield from map(_percent, (row.success, row.by_robot, row.wall, row.by_person, row.late))
+    yield from map(_percent, (row.success, row.by_robot, row.wall, row.by_person, row.late, row.lost))
     ratio = row.time_ratio
     yield f"{ratio.value:.2f} ({ratio.low:.2f} to {ratio.high:.2f})" if ratio.runs else ""
     yield f"{row.p_value:.3g}"

@@ -87,7 +87,25 @@ def test_an_episode_in_which_a_law_fails_is_lost_and_named() -> None:
     found = arena.run({"mine": Failing(), "orca": "orca"}, **FEW)
     lost = {each.cell.entry: each.lost.value for each in found.standings()}
     assert lost == {"mine": 1.0, "orca": 0.0}
-    assert any(each.code == "unfinished" and "mine" in each.message for each in found.warnings)
+    (told,) = (each.message for each in found.warnings if each.code == "unfinished")
+    assert "of mine are lost" in told
+    assert "the law raised ZeroDivisionError" in told
+    assert {each.cell.entry: each.by_robot.count for each in found.standings()}["mine"] == 0
+
+
+def test_what_is_lost_is_no_contact_that_was_avoided() -> None:
+    lost = np.array([["lost", "success"]]), np.array([["by_robot", "success"]])
+    cells = [arena.ArenaCell(name, "reacting", "exact") for name in ("lost", "touches")]
+    episodes = {
+        cell: {"end": end, "arrival_time": np.where(end == "success", time, np.nan)}
+        for cell, end, time in zip(cells, lost, (10.0, 8.0), strict=True)
+    }
+    board = arena.Leaderboard(
+        scenes=("frontal_approach",), seeds=2, certificate=np.ones((1, 2)), episodes=episodes, warnings=()
+    )
+    fronts = {each.cell.entry: each.front for each in board.standings()}
+    assert fronts["lost"] < 1.0
+    assert fronts["lost"] < fronts["touches"]
 
 
 def test_tests_are_paired_and_corrected() -> None:
