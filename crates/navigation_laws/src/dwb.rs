@@ -228,7 +228,7 @@ pub struct DwbPlanner {
 struct Targets {
     /// Where the way leaves the local map.
     local: Vector2<f64>,
-    /// The same, ahead of the goal.
+    /// Point ahead of the goal.
     ahead: Vector2<f64>,
     /// Whether the robot is far enough from the goal to keep to the direction of the way.
     aligns: bool,

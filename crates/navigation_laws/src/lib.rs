@@ -88,13 +88,13 @@ use unknown_places::unseen::Belief;
 /// What was scanned since a law was asked last, for laws that reckon with people whom nobody sees.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Scan<'a> {
-    /// What is shown.
+    /// Beams and people that the scan shows.
     pub shown: Shown<'a>,
     /// How much more time than the clock tells may have gone by since then, in s.
     pub more: f64,
 }
 
-/// What a scan shows.
+/// Content of a scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Shown<'a> {
     /// Nothing was scanned.
@@ -140,7 +140,7 @@ pub struct Situation<'a, R: Real> {
     pub heading: f64,
     /// How long the force will act, in s.
     pub interval: f64,
-    /// What was scanned.
+    /// Scan since the last command.
     pub scan: Scan<'a>,
     /// Whether to stop.
     pub stop: Stop<'a>,
@@ -181,7 +181,7 @@ impl<R: Real> Command<R> {
     }
 }
 
-/// What a law knows of those whom it does not see.
+/// Knowledge of a law about those whom it does not see.
 #[derive(Clone, Debug)]
 pub struct Unwatched<'a> {
     /// Where they can be.

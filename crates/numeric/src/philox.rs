@@ -3,7 +3,7 @@
 
 /// Multipliers of the rounds.
 const FACTORS: [u32; 2] = [0xD251_1F53, 0xCD9E_8D57];
-/// What is added to the key between the rounds.
+/// Addition to the key between the rounds.
 const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
 /// Rounds.
 const ROUNDS: usize = 10;

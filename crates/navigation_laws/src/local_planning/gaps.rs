@@ -67,7 +67,7 @@ pub struct Gaps<'a> {
     pub radius: f64,
     /// People.
     pub people: &'a [Near],
-    /// What has edges.
+    /// Walls and filled shapes.
     pub walls: Walls<'a>,
 }
 

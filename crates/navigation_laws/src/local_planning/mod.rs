@@ -50,7 +50,7 @@ impl LocalView<'_> {
     }
 }
 
-/// What a law did.
+/// Motion that a law commands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
     /// It drives.
@@ -81,7 +81,7 @@ pub struct TwistChoice {
     pub twist: [f64; 3],
     /// Score of the best twist, if there is one.
     pub score: Option<f64>,
-    /// What the law did.
+    /// Whether the robot drives, turns in place or stands.
     pub mode: Mode,
 }
 

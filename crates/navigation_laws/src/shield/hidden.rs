@@ -19,7 +19,7 @@ pub struct Hidden<'a> {
     pub unseen: &'a Unseen,
     /// Age of the latest scan in s when the command takes effect.
     pub latency: f64,
-    /// What their stopping way adds to their radius at the end of a plan, in m.
+    /// Addition of their stopping way to their radius at the end of a plan, in m.
     pub grown: f64,
 }
 

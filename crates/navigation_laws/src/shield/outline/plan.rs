@@ -45,12 +45,12 @@ pub(super) struct BodyPlan {
 
 /// A pose by its angle.
 #[derive(Clone, Copy)]
-struct Pose {
+struct OutlinePose {
     position: Vector2<f64>,
     heading: f64,
 }
 
-impl Pose {
+impl OutlinePose {
     fn frame(&self) -> Frame {
         Frame::at(self.position.into(), self.heading)
     }
@@ -86,10 +86,10 @@ fn rests(motion: &BodyMotion, radius: f64) -> bool {
 
 /// Instants of a time in which the motion changes evenly, from the first on.
 fn instants(
-    (start, begin): (Pose, f64),
+    (start, begin): (OutlinePose, f64),
     [from, to]: [&BodyMotion; 2],
     duration: f64,
-) -> (Vec<Instant>, Pose) {
+) -> (Vec<Instant>, OutlinePose) {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // bounded
     let parts = ((duration / LONGEST).ceil().min(PARTS[0] as f64) as usize).max(PARTS[1]);
     let part = duration / parts as f64;
@@ -125,7 +125,7 @@ impl BodyPlan {
         let ramped: Vec<BodyMotion> = moving
             .flat_map(|(motion, _)| guard.motions(motion))
             .collect();
-        let start = Pose {
+        let start = OutlinePose {
             position: command.position,
             heading: command.heading,
         };

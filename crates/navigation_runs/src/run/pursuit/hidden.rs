@@ -47,7 +47,7 @@ pub struct HiddenEncounter {
     pub time: f64,
     /// From where, in m.
     pub start: [f64; 2],
-    /// What came of it.
+    /// Result of it.
     pub found: Encounter,
 }
 
