@@ -45,6 +45,8 @@ BEYOND_TURN = 7.0
 """Joints that turn are hardly beyond this, in rad."""
 BEYOND_SLIDE = 10.0
 """Joints that slide are hardly beyond this, in m."""
+SAME_MASS = 1e-9
+"""Masses that differ by a smaller share are the same."""
 OF_PLATE = (0.85, 1.15)
 """Sum of all links as a share of the type plate that is plausible; of the moving links half of it."""
 
@@ -101,6 +103,36 @@ def for_rule(
         return replace(doubt, message=f"{doubt.message} ({why})", safe_side=True)
 
     return tuple(beside(each) for each in warnings)
+
+
+def doubts_of_base(rule: str, mass: Any, held: Any) -> tuple[ResultWarning, ...]:
+    """Return the doubt about a base that rolls away: brakes or the controller of its wheels may hold it.
+
+    Parameters
+    ----------
+    rule : {"larger", "iso", "directional"}
+        Of the mass; that of ISO/TS 15066 depends on no direction.
+    mass : array_like (...)
+        Mass that counts, in kg.
+    held : array_like (...)
+        Mass along the direction of the contact if the base stood still, in kg.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        None where the mass that counts is the larger one.
+    """
+    counted, standing = (np.ravel(np.asarray(each, dtype=np.float64)) for each in np.broadcast_arrays(mass, held))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        heavier = standing / counted
+    if rule == "iso" or not (heavier > 1.0 + SAME_MASS).any():
+        return ()
+    at = int(np.nanargmax(heavier))
+    message = (
+        f"a base that brakes or its controller hold makes the contact heavier: {standing[at]:.3g} kg in place of "
+        f"{counted[at]:.3g} kg: take robot_mass larger, leave base out, or confirm that the base rolls away"
+    )
+    return (ResultWarning("base_may_be_held", "base", message),)
 
 
 def doubts_of_motors(

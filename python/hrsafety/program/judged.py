@@ -12,8 +12,9 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array
 from hrsafety._records import dataclass
 from hrsafety.arms import Arm
-from hrsafety.arms.doubts import doubts_of_point, for_rule
+from hrsafety.arms.doubts import doubts_of_base, doubts_of_point, for_rule
 from hrsafety.arms.link_doubts import several
+from hrsafety.arms.masses import mass_by_rule
 from hrsafety.arms.rolling import RollingBase, links_of_base
 from hrsafety.plausibility import ResultWarning, unsafe_doubts
 from hrsafety.program.contacts import BLOCK, MASSES, TaskContacts, Waypoints
@@ -145,10 +146,11 @@ def judged(
     numbers = contact.masses(
         waypoints.joints[used], waypoints.rates[used], body_masses=np.zeros(0), threads=runs.threads
     )
-    directional = contact.masses(waypoints.joints, waypoints.rates, body_masses=np.zeros(0), threads=runs.threads)[
-        runs.own
+    everywhere = contact.masses(waypoints.joints, waypoints.rates, body_masses=np.zeros(0), threads=runs.threads)
+    about = [
+        (*_about_point(runs, everywhere[runs.own][:, place], place), *_of_base(runs, waypoints, everywhere, place))
+        for place in range(len(runs.task.points))
     ]
-    about = [_about_point(runs, directional[:, place], place) for place in range(len(runs.task.points))]
     found = []
     for number, row in enumerate(rows):
         at, doubts = int(worst[number]), (*row.warnings, *about[row.point], *general)
@@ -194,6 +196,33 @@ def _about_point(runs: TaskContacts, masses: Array, place: int) -> tuple[ResultW
     point = np.array(program.points[place].point)
     own = for_rule(arm.warnings, program.robot_mass, moving, arm.iso_mass, arm.mass_source)
     return (*own, *doubts_of_point(point, arm.reach), *_of_tool(arm, program.points[place].link, point))
+
+
+def _of_base(
+    runs: TaskContacts, waypoints: Waypoints, numbers: dict[str, Array], place: int
+) -> tuple[ResultWarning, ...]:
+    """Return the doubt about a base that may be held, where that makes a point heavier along its motion."""
+    arm, point = runs.task.motion.arm, runs.task.points[place]
+    moving = numbers["speed"][:, place] > 0.0
+    if not arm.base_joints or not moving.any() or point.link in links_of_base(arm.urdf):
+        return ()
+    joints, rule = waypoints.joints[moving], runs.task.robot_mass
+    place_of: dict[str, Any] = {
+        "link": point.link,
+        "point": point.point,
+        "check_limits": False,
+        "threads": runs.threads,
+    }
+    if runs.own == MASSES[0]:
+        held = standing(arm).effective_mass(joints, direction=numbers["velocity"][moving, place], **place_of).mass
+    else:
+        held = standing(arm).extremes(joints, **place_of).worst_mass
+    return doubts_of_base(rule, mass_by_rule(rule, numbers[runs.own][moving, place], arm.iso_mass), held)
+
+
+def standing(arm: Arm) -> Arm:
+    """Return an arm whose base stands still."""
+    return replace(arm, locked=tuple(dict.fromkeys((*arm.locked, *arm.base_joints))))
 
 
 def _of_tool(arm: Arm, link: str, point: Array) -> tuple[ResultWarning, ...]:
@@ -262,8 +291,7 @@ def held_mass(row: JudgedExposure, task: ContactTask) -> float | None:
     if not arm.base_joints or not row.joints or row.speed == 0.0:
         return None
     point = task.points[row.exposure.point]
-    held = replace(arm, locked=tuple(dict.fromkeys((*arm.locked, *arm.base_joints))))
-    found = held.effective_mass(
+    found = standing(arm).effective_mass(
         row.joints, link=point.link, point=point.point, direction=row.velocity, check_limits=False, threads=1
     )
     return float(found.mass)

@@ -168,6 +168,19 @@ def test_sources_of_masses_reach_the_cell(tmp_path: Path) -> None:
             judged(tmp_path, changed(GREEN, change))
 
 
+@pytest.mark.parametrize(
+    ("rule", "mass", "doubted"), [("directional", 60.0, True), ("larger", 60.0, False), ("iso", 1.0, False)]
+)
+def test_a_base_that_may_be_held_is_doubted_where_that_is_heavier(
+    rule: str, mass: float, doubted: bool, tmp_path: Path
+) -> None:
+    change = {"robot.base": "omni", "robot.base_mass": mass, "robot.robot_mass": rule}
+    row = judged(tmp_path, changed(GREEN, change))
+    assert ("base_may_be_held" in row["doubts"]) == doubted
+    robot = row["all"]["robot"]
+    assert (robot["held_mass"] > robot["mass"]) == (doubted or rule == "iso")
+
+
 def test_links_without_inertials_have_given_masses(tmp_path: Path) -> None:
     start = URDF.index("<inertial>", URDF.index('<link name="forearm"') if '<link name="forearm"' in URDF else 0)
     end = URDF.index("</inertial>", start) + len("</inertial>")

@@ -174,3 +174,15 @@ def test_a_driving_base_is_slowed_down_for_people() -> None:
     assert study.limited.status == "verified"
     assert study.limited.time > 1.5 * study.free.time
     assert study.limited.largest_share <= 1.0 + 1e-6
+
+
+def test_a_base_that_may_be_held_is_doubted_where_that_is_heavier() -> None:
+    moves = [program.Move(kind="joint", to=START), program.Move(kind="joint", to={"turn": 0.2})]
+    motion = program.ArmMotion.from_moves(robot("omni"), moves, **LIMITS)
+    for rule, doubted in (("directional", True), ("larger", False), ("iso", False)):
+        study = judged(motion, GRIPPER, robot_mass=rule)
+        assert any("base_may_be_held" in row["doubts"] for row in study.fields["rows"]) == doubted
+    confirmed = judged(
+        motion, GRIPPER, robot_mass="directional", confirmed={"base_may_be_held": "wheels are free, N. N."}
+    )
+    assert all("base_may_be_held" in row["confirmed"] for row in confirmed.fields["rows"])

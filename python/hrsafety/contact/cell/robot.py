@@ -17,7 +17,7 @@ from hrsafety._display import displayed
 from hrsafety._keys import Keys, checked, one_of
 from hrsafety._records import dataclass
 from hrsafety.arms.arm import Arm
-from hrsafety.arms.doubts import doubts_of_point, doubts_of_poses, for_rule
+from hrsafety.arms.doubts import doubts_of_base, doubts_of_point, doubts_of_poses, for_rule
 from hrsafety.arms.inputs import poses_of
 from hrsafety.arms.masses import RULES, mass_by_rule
 from hrsafety.arms.payload import Payload
@@ -294,10 +294,12 @@ class ContactRobot:
         median = float(np.quantile(masses, 0.5, method="higher"))
         quantile = float(np.quantile(masses, QUANTILE, method="higher"))
         singular = bool(more) and not masses[worst] <= SINGULAR * median
+        held = _held(arm, rows, direction, place)
         doubts = [
             *for_rule(arm.warnings, rule, masses[worst], arm.iso_mass, arm.mass_source),
             *(() if more else doubts_of_poses(rows, arm.joint_names, arm.joint_kinds)),
             *doubts_of_point(place["point"], arm.reach),
+            *(() if held is None else doubts_of_base(rule, mass, held)),
             *(() if singular else _unlikely(mass)),
         ]
         if singular:
@@ -312,7 +314,7 @@ class ContactRobot:
             moving_mass=arm.moving_mass,
             payload_mass=arm.payload_mass,
             quantile_mass=quantile if more else None,
-            held_mass=_held(arm, rows, direction, place),
+            held_mass=held,
             push_limit=_push(arm, rows, joint_torques, directions, place),
             near_singular=singular,
             pose=dict(zip(arm.joint_names, rows[worst].tolist(), strict=True)),
