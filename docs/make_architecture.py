@@ -19,7 +19,7 @@ from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "python" / "hrsafety"
-BINDING = "hrsafety_py"
+BINDING = "hrsafety_module"
 Graph = dict[str, set[str]]
 
 

@@ -122,6 +122,11 @@ def test_binding_crate_is_the_one_that_knows_python() -> None:
     assert {"pyo3", "vff_core"} <= run_time_dependencies("hrsafety_py")
 
 
+def test_native_module_holds_nothing_but_the_binding() -> None:
+    lines = (REPOSITORY / "crates/hrsafety_module/src/lib.rs").read_text(encoding="utf-8").splitlines()
+    assert [line for line in lines if line and not line.startswith("//")] == ["use hrsafety_py as _;"]
+
+
 @pytest.mark.parametrize("crate", [*CORES, *PARTS_OF_A_CORE, "numeric"])
 def test_core_forbids_unsafe_code(crate: str) -> None:
     text = (REPOSITORY / "crates" / crate / "src" / "lib.rs").read_text(encoding="utf-8")
