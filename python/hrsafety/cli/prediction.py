@@ -9,10 +9,11 @@ from hrsafety._keys import parsed
 from hrsafety.cli import output
 from hrsafety.contact.cell.handover import plan_of
 from hrsafety.contact.cell.study import verdicts_of
+from hrsafety.contact.plan import LOADS
 from hrsafety.errors import InvalidParameterError
 from hrsafety.pages.report import ReportTable, Section
 
-__all__ = ["planned_row", "prediction_section"]
+__all__ = ["above_prediction", "planned_row", "prediction_section"]
 
 
 def planned_row(path: str, row: int | None, load: str) -> contact.PlannedMeasurement:
@@ -87,3 +88,31 @@ def prediction_section(plan: contact.MeasurementPlan) -> Section:
     table = ReportTable(headers=[titles], rows=[cells], left=(0, 1, 7), printed=True)
     words = "The prediction is that of the file as it is: nothing was tuned to the records."
     return Section("Prediction beside the measurement", [words, table])
+
+
+def above_prediction(plan: contact.MeasurementPlan, path: str) -> tuple[tuple[str, str], ...]:
+    """Return the fact that measured loads are above the predicted one by more than their uncertainty, if they are.
+
+    Parameters
+    ----------
+    plan : MeasurementPlan
+        Of one row.
+    path : str
+        The file of the prediction.
+
+    Returns
+    -------
+    tuple of (str, str)
+        Title and words of the fact, or nothing.
+    """
+    (row,) = plan.rows
+    spread = 0.0 if row.found is None else row.found.expanded_uncertainty
+    if row.prediction is None or not max(row.measured) - spread > row.prediction:
+        return ()
+    largest, predicted = (f"{value:.4g} {LOADS[row.load]}" for value in (max(row.measured), row.prediction))
+    words = (
+        f"the largest load, {largest}, is above the predicted {predicted}: either the robot was faster than planned, "
+        f"or {Path(path).name} takes it for too light or the contact for too soft, and its allowed speeds are too "
+        "high; none but the measured one is confirmed"
+    )
+    return (("prediction", words),)

@@ -12,7 +12,7 @@ import numpy as np
 from hrsafety import records
 from hrsafety.cli import output, terminal, verdict
 from hrsafety.cli.output import decimal
-from hrsafety.cli.prediction import planned_row, prediction_section
+from hrsafety.cli.prediction import above_prediction, planned_row, prediction_section
 from hrsafety.contact import MeasurementPlan, PlannedMeasurement
 from hrsafety.errors import InvalidParameterError
 from hrsafety.pages.report import Report, ReportCell, ReportTable, Section
@@ -171,12 +171,23 @@ def _filled(row: PlannedMeasurement, options: argparse.Namespace, judged: list[_
     return MeasurementPlan(rows=(row,)).filled({0: values}, device_uncertainty=_uncertainty(options))
 
 
-def _uncertainty(options: argparse.Namespace) -> float:
-    """Return the standard uncertainty of the device: the option, or what its file says."""
+def _uncertainty(options: argparse.Namespace) -> float | None:
+    """Return the standard uncertainty of the device: the option, or what its file says; ``None`` if neither does."""
     if options.uncertainty is not None:
         return float(options.uncertainty)
-    device = None if options.device is None else records.load_device(options.device)
-    return 0.0 if device is None or device.uncertainty is None else device.uncertainty
+    return None if options.device is None else records.load_device(options.device).uncertainty
+
+
+def _doubts(
+    options: argparse.Namespace, repeated: list[tuple[str, records.Repetitions]], plan: MeasurementPlan | None
+) -> Iterator[ResultWarning]:
+    """Yield the doubt about an expanded uncertainty without that of the device."""
+    if (repeated or (plan is not None and plan.rows[0].found)) and _uncertainty(options) is None:
+        message = (
+            "no uncertainty of the device is given and it is taken as 0: expanded uncertainties are too small; give "
+            "--uncertainty with the standard one of its certificate, 0 if the records are exact, or --device"
+        )
+        yield ResultWarning("taken_as_zero", "uncertainty", message)
 
 
 def _pairs(options: argparse.Namespace, limits: dict[str, float]) -> Iterator[tuple[str, str, float]]:
@@ -201,6 +212,7 @@ def _report(
     plan: MeasurementPlan | None,
 ) -> Report:
     warnings: list[ResultWarning] = [warning for each in judged for warning in each.loads.warnings]
+    warnings.extend(_doubts(options, repeated, plan))
     sections = [Section("Records", [_table(judged)])]
     if repeated:
         rows = [
@@ -210,7 +222,7 @@ def _report(
                 f"{found.mean:.4g}",
                 f"{found.largest:.4g}",
                 f"{found.expanded_uncertainty:.3g}",
-                f"{found.limit:g}",
+                _with_unit(name, found.limit),
                 _cell(found.verdict, found.reason.replace("_", " ")),
             )
             for name, found in repeated
@@ -220,7 +232,7 @@ def _report(
     if plan is not None:
         sections.append(prediction_section(plan))
     more = {} if plan is None else {"prediction": {"cell": options.predict, **plan.fields()[0]}}
-    shown = ", ".join(f"{name.replace('_', '-')} {limit:g}" for name, limit in limits.items())
+    shown = ", ".join(f"{name.replace('_', '-')} {_with_unit(name, limit)}" for name, limit in limits.items())
     if plan is not None and not _limits(options):
         shown = f"{shown}, those of the plan of {options.predict}" if shown else shown
     return Report(
@@ -229,6 +241,7 @@ def _report(
             ("files", ", ".join(Path(each.path).name for each in judged)),
             ("limits", shown or "none given: nothing is checked"),
             *([("contact", _CONTACTS[options.free])] if options.kind == "force" else []),
+            *(() if plan is None else above_prediction(plan, options.predict)),
             *([("filter", f"CFC {options.filter}")] if options.filter else []),
         ],
         said=VERDICT_WORDS[word],
@@ -239,6 +252,12 @@ def _report(
         source=options.files[0],
         made="",
     )
+
+
+def _with_unit(name: str, limit: float) -> str:
+    """Return a limit with its unit, by the name of its load."""
+    units = {**dict(zip(HEAD_LIMITS, _HEAD_UNITS, strict=True)), "pressure": "Pa"}
+    return f"{limit:g} {units.get(name, 'N')}".rstrip()
 
 
 def _cell(word: str, small: str = "") -> ReportCell:

@@ -198,14 +198,18 @@ def part_of(limits: object) -> BodyPart | None:
     return BodyPart(area if isinstance(area, str) else region, LARGEST_PART * SQUARE_CENTIMETER)
 
 
-def contact_width_doubt(touched: Any, part: BodyPart, more: str = "") -> ResultWarning:
-    """Return the doubt about a contact that is larger than the part of the body, in m^2."""
+def contact_width_doubt(pad: Covering | None, touched: Any, part: BodyPart, more: str = "") -> ResultWarning:
+    """Return the doubt about a contact, bare or on a covering, that is larger than the part of the body, in m^2."""
+    shape = "flat" if pad is None else pad.shape
+    remedy = {"flat": "the area that it touches", "cylinder": "the length of the covering that it touches"}.get(
+        shape, "a flat covering with the area that it touches"
+    )
     name = part.name.replace("_", " ")
     return ResultWarning(
         "covering_larger_than_part",
         "area",
         f"the contact is {touched / SQUARE_CENTIMETER:.3g} cm2 where a part of {name} has at most "
-        f"{part.area / SQUARE_CENTIMETER:g} cm2{more}: give the area that it touches",
+        f"{part.area / SQUARE_CENTIMETER:g} cm2{more}: give {remedy}",
     )
 
 

@@ -111,5 +111,5 @@ def chance_of(
         depth = math.nan
     larger, part = larger_than_part(pad, depth, values, limits)
     if larger and part is not None:
-        doubts.append(contact_width_doubt(float(touched_area(pad, depth, values)), part))
+        doubts.append(contact_width_doubt(pad, float(touched_area(pad, depth, values)), part))
     return Exceedance(**found, not_checked=missing, warnings=tuple(doubts))

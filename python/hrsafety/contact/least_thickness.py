@@ -61,7 +61,7 @@ def thickness_of(given: Prepared, bare: Prepared, speed: float) -> LeastThicknes
         depth = _hrsafety.contact_speed(shared, in_order(doubted | {"closing_speed": math.nan}))["covering_compression"]
     larger, part = larger_than_part(pad, depth, doubted, limits)
     if larger and part is not None:
-        doubts.append(contact_width_doubt(float(touched_area(pad, depth, doubted)), part))
+        doubts.append(contact_width_doubt(pad, float(touched_area(pad, depth, doubted)), part))
     return LeastThickness(
         thickness=known(value),
         status=status,

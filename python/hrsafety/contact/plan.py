@@ -16,7 +16,7 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.records.repeated import FEWEST, Repetitions, repetitions
 from hrsafety.tables import Columns, Table
 
-__all__ = ["LAYERS", "MeasurementPlan", "PlannedMeasurement"]
+__all__ = ["LAYERS", "LOADS", "MeasurementPlan", "PlannedMeasurement"]
 
 LOADS = {"force": "N", "pressure": "Pa"}
 """Loads that are measured, and their units."""
@@ -61,8 +61,8 @@ class PlannedMeasurement:
         How often.
     measured : tuple of float
         What was measured, in the unit of the load.
-    device_uncertainty : float
-        Standard uncertainty of the device in the unit of the load.
+    device_uncertainty : float or None
+        Standard uncertainty of the device in the unit of the load; ``None``: not known, nothing is accepted.
 
     Examples
     --------
@@ -89,7 +89,7 @@ class PlannedMeasurement:
     damping_layer: str = ""
     repetitions: int = FEWEST
     measured: tuple[float, ...] = ()
-    device_uncertainty: float = 0.0
+    device_uncertainty: float | None = None
 
     def __post_init__(self) -> None:
         """Check the values."""
@@ -101,7 +101,8 @@ class PlannedMeasurement:
             "speed": not_negative("speed", self.speed),
             "payload": not_negative("payload", self.payload),
         }
-        made["device_uncertainty"] = not_negative("device_uncertainty", self.device_uncertainty)
+        if self.device_uncertainty is not None:
+            made["device_uncertainty"] = not_negative("device_uncertainty", self.device_uncertainty)
         for name in ("spring", "limit", "prediction"):
             if getattr(self, name) is not None:
                 made[name] = number(name, getattr(self, name))
@@ -179,7 +180,7 @@ class MeasurementPlan(Table):
         object.__setattr__(self, "rows", rows)
 
     def filled(
-        self, measured: Mapping[int, Sequence[float] | npt.ArrayLike], *, device_uncertainty: float = 0.0
+        self, measured: Mapping[int, Sequence[float] | npt.ArrayLike], *, device_uncertainty: float | None = None
     ) -> MeasurementPlan:
         """Return the plan with measurements, such as the loads of `records`.
 
@@ -187,8 +188,8 @@ class MeasurementPlan(Table):
         ----------
         measured : mapping of int to sequence of float
             Loads by the number of the row, in the unit of its load.
-        device_uncertainty : float
-            Standard uncertainty of the device in that unit.
+        device_uncertainty : float or None
+            Standard uncertainty of the device in that unit; ``None``: not known, nothing is accepted.
 
         Returns
         -------

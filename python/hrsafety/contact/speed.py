@@ -132,7 +132,7 @@ def _too_wide(
     if pad is None or pad.shape == "flat":
         most = known(_hrsafety.contact_speed(shared, in_order(values | {"area": part.area}))["speed"])
         more = "" if most is None else f" (with that area {most:.3g} m/s is allowed)"
-    return contact_width_doubt(float(touched_area(pad, depth, values)), part, more)
+    return contact_width_doubt(pad, float(touched_area(pad, depth, values)), part, more)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -202,7 +202,7 @@ def speeds_of(
     wide: Doubts = ()
     if part is not None and np.any(larger):
         widest = float(np.nanmax(touched_area(pad, numbers["covering_compression"], found.given)))
-        wide = (counted(contact_width_doubt(widest, part), np.broadcast_to(larger, found.status.shape)),)
+        wide = (counted(contact_width_doubt(pad, widest, part), np.broadcast_to(larger, found.status.shape)),)
     codes = numbers.pop("governs_code")
     governs = words_at(_GOVERNS, codes)
     return AllowedSpeeds(

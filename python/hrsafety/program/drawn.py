@@ -16,7 +16,7 @@ from hrsafety.plausibility import ResultWarning, unsafe_doubts
 from hrsafety.program.annexed import annex_of_task
 from hrsafety.program.contacts import BLOCK, TaskContacts, Waypoints
 from hrsafety.program.draws import LISTED, OUTSIDE, DrawnMotions, Quantile, quantiles_of
-from hrsafety.program.judged import EVEN, JudgedExposure, fields_of, judged, robot_fields, shares_of
+from hrsafety.program.judged import EVEN, JudgedExposure, fields_of, judged, named_doubts, robot_fields, shares_of
 from hrsafety.program.task import ContactTask
 from hrsafety.standards.verdicts import doubted, speed_verdict, strictest
 from hrsafety.tables import Columns, Table
@@ -206,7 +206,7 @@ def study_of_draws(program: DrawnProgram, threads: int | None) -> DrawnStudy:
         held = [_by_quantile(row, each[-1].high, program) for row, each in zip(held, told, strict=True)]
     order = sorted(range(len(held)), key=lambda at: (held[at].exposure.limit.permitted, -held[at].share))
     held, told = [held[at] for at in order], [told[at] for at in order]
-    warnings = tuple(dict.fromkeys([*(each for row in held for each in row.warnings), *doubts]))
+    warnings = tuple(dict.fromkeys([*named_doubts(program, held), *doubts]))
     annex = annex_of_task(program, held, max((each.speed for each in held), default=0.0))
     own = [each for each in doubts if each.code not in program.confirmed]
     verdict = doubted(strictest(each.verdict for each in held) if held else "within_limits", own)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -23,7 +23,7 @@ from hrsafety.program.runs import Runs
 from hrsafety.program.task import ContactTask
 from hrsafety.standards.verdicts import speed_verdict
 
-__all__ = ["EVEN", "JudgedExposure", "judged", "path_doubts", "robot_fields", "shares_of"]
+__all__ = ["EVEN", "JudgedExposure", "judged", "named_doubts", "path_doubts", "robot_fields", "shares_of"]
 
 DISAGREES = 0.05
 """Share of the fastest recorded speed of the tool center point by which that of the joints may differ."""
@@ -283,6 +283,19 @@ def _row(
         confirmed=tuple(dict.fromkeys(each.code for each in unsafe if each.code in confirmed)),
         warnings=tuple(dict.fromkeys(each for each in doubts if each is not NOT_PERMITTED)),
     )
+
+
+def named_doubts(task: ContactTask, rows: Sequence[JudgedExposure]) -> Iterator[ResultWarning]:
+    """Yield each doubt of some rows once, one about a limit with its first point and region and how many others."""
+    places: dict[ResultWarning, list[str]] = {}
+    for row in rows:
+        limit, own = row.exposure.limit, set(row.exposure.warnings)
+        name = f"{task.points[row.exposure.point].name}, {limit.region}, {limit.contact}"
+        for found in row.warnings:
+            places.setdefault(found, []).extend([name] if found in own else [])
+    for found, where in places.items():
+        more = "" if len(where) < 2 else f" and {len(where) - 1} more"
+        yield replace(found, message=f"{where[0]}{more}: {found.message}") if where else found
 
 
 def held_mass(row: JudgedExposure, task: ContactTask) -> float | None:

@@ -13,6 +13,7 @@ from hrsafety._records import dataclass
 from hrsafety._words import meant
 from hrsafety.arms import Arm
 from hrsafety.arms.inputs import poses_of
+from hrsafety.arms.link_doubts import several
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.plausibility import ResultWarning
 from hrsafety.program.curves import JointCurve
@@ -174,9 +175,11 @@ def _start(arm: Arm, move: Move) -> Array:
     if move.blend:
         raise InvalidParameterError("moves[0].blend", "be left out at the start", move.blend)
     if isinstance(move.to, Mapping):
-        for joint in arm.free_joints:
-            if joint not in (*move.to, *arm.base_joints):
-                raise InvalidParameterError(f"moves[0].to.{joint}", "be given at the start", Shown("nothing"))
+        missing = [joint for joint in arm.free_joints if joint not in (*move.to, *arm.base_joints)]
+        if missing:
+            rule = "hold every joint: it is the pose in which the program starts"
+            remedy = f"give {several(missing)} in rad, or m, too"
+            raise InvalidParameterError("moves[0].to", rule, Shown(f"{len(move.to)} of them"), remedy)
     return _pose(arm, move, np.zeros(len(arm.joint_names)), "moves[0]")
 
 

@@ -15,7 +15,7 @@ from hrsafety.contact.cell.stops import stopping_of
 from hrsafety.plausibility import ResultWarning
 from hrsafety.program.annexed import annex_of_task
 from hrsafety.program.contacts import MASSES, Choice, Waypoints
-from hrsafety.program.judged import JudgedExposure, fields_of, judged, path_doubts, robot_fields
+from hrsafety.program.judged import JudgedExposure, fields_of, judged, named_doubts, path_doubts, robot_fields
 from hrsafety.program.motion import Retimed
 from hrsafety.program.plan import plan_of
 from hrsafety.program.runs import Runs
@@ -270,7 +270,7 @@ def _timed(name: str, covering: str | None, run: Retimed) -> CycleTime:
 
 def _warnings(runs: Runs, found: list[JudgedExposure], retimed: tuple[Retimed, ...]) -> tuple[ResultWarning, ...]:
     """Return each doubt once."""
-    doubts = [each for row in found for each in row.warnings]
+    doubts = [*named_doubts(runs.program, found)]
     if not found:
         doubts = [*path_doubts(runs), *runs.program.motion.arm.warnings]
     return tuple(dict.fromkeys([*doubts, *(each for run in retimed for each in run.warnings)]))

@@ -35,7 +35,7 @@ class Repetitions:
         Limit of the load.
     verdict : {"within_limits", "exceeds", "not_checked"}
         What they mean for it.
-    reason : {"", "too_few", "inside_uncertainty"}
+    reason : {"", "too_few", "inside_uncertainty", "no_device_uncertainty"}
         Why it is not checked.
     """
 
@@ -48,7 +48,7 @@ class Repetitions:
     reason: str
 
 
-def repetitions(values: npt.ArrayLike, limit: float, *, device_uncertainty: float = 0.0) -> Repetitions:
+def repetitions(values: npt.ArrayLike, limit: float, *, device_uncertainty: float | None = None) -> Repetitions:
     """Return what repeated measurements of one load mean for a limit.
 
     A choice of this project: the largest one above the limit exceeds it; with three or more, and the largest one and
@@ -60,8 +60,8 @@ def repetitions(values: npt.ArrayLike, limit: float, *, device_uncertainty: floa
         Measurements, in the unit of the limit.
     limit : float
         Limit.
-    device_uncertainty : float
-        Standard uncertainty of the device.
+    device_uncertainty : float or None
+        Standard uncertainty of the device; ``None``: not known, it is taken as 0 and no limit counts as kept.
 
     Returns
     -------
@@ -83,7 +83,8 @@ def repetitions(values: npt.ArrayLike, limit: float, *, device_uncertainty: floa
     measured = vector("values", values)
     if not len(measured) or not np.isfinite(measured).all():
         raise InvalidParameterError("values", "be finite numbers, at least one", measured.tolist())
-    bound, device = positive("limit", limit), not_negative("device_uncertainty", device_uncertainty)
+    bound = positive("limit", limit)
+    device = 0.0 if device_uncertainty is None else not_negative("device_uncertainty", device_uncertainty)
     spread = float(measured.std(ddof=1)) if len(measured) > 1 else 0.0
     expanded = 2.0 * math.hypot(device, spread)
     largest = float(measured.max())
@@ -94,6 +95,8 @@ def repetitions(values: npt.ArrayLike, limit: float, *, device_uncertainty: floa
         verdict, reason = "not_checked", "too_few"
     elif largest + expanded > bound:
         verdict, reason = "not_checked", "inside_uncertainty"
+    elif device_uncertainty is None:
+        verdict, reason = "not_checked", "no_device_uncertainty"
     return Repetitions(
         number=len(measured),
         mean=float(measured.mean()),

@@ -17,6 +17,7 @@ __all__ = ["DeviceTable", "read_table"]
 _NUMBER = r"[+-]?(?:\d+{point}?\d*|{point}\d+)(?:[eE][+-]?\d+)?"
 _CELL = r'[ \t]*"?[ \t]*{number}[ \t]*"?[ \t]*'
 _BRACKETS = re.compile(r"^(.*?)[ \t]*[\[(]([^\[\]()]*)[\])][ \t]*$")
+_QUOTIENT = re.compile(r"^(.*?\S)(?:[ \t]*/[ \t]*|[ \t]+in[ \t]+)(\S+)$")
 _THOUSANDS = re.compile(r"^[+-]?\d{1,3}(?:\.\d{3})+,\d+$|^[+-]?\d{1,3}(?:,\d{3})+\.\d+$")
 # Delimiter and decimal sign; of ways that read as much the first one counts.
 _WAYS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (None, "."), (None, ","))
@@ -176,12 +177,12 @@ def _titles(document: Document, header: list[str], layout: _Layout) -> tuple[lis
 def _named(
     document: Document, cells: list[str], unit_row: list[str] | None, line: int
 ) -> tuple[list[str], list[str | None]]:
-    """Return names without the units in brackets behind them, and these."""
+    """Return names without the units in brackets, or as in "force / N" and "force in N", behind them, and these."""
     names: list[str] = []
     units: list[str | None] = []
     for place, cell in enumerate(cells):
         bracketed = _BRACKETS.match(cell)
-        name, unit = bracketed.groups() if bracketed else (cell, "")
+        name, unit = bracketed.groups() if bracketed else _divided(cell)
         given = unit or (unit_row[place] if unit_row else "")
         if given and plain(given) is None:
             rule = f"have a unit that is known ({KNOWN})"
@@ -191,6 +192,14 @@ def _named(
         names.append(name if name not in names else f"{name}_{place + 1}")
         units.append(given or None)
     return names, units
+
+
+def _divided(cell: str) -> tuple[str, str]:
+    """Return the name and the unit of "force / N" or "force in N"; no unit where the quotient is one itself ("m/s")."""
+    found = _QUOTIENT.match(cell)
+    if found is None or plain(found[2]) is None or plain(found[1].split()[-1]) is not None:
+        return cell, ""
+    return found[1], found[2]
 
 
 def _refuse_halves(document: Document, header: list[str], layout: _Layout) -> None:

@@ -106,6 +106,24 @@ def test_the_example_answers_in_three_sentences(reported: Any, capsys: pytest.Ca
     assert {each["status"] for each in report["times"]} == {"verified"}
 
 
+def test_a_path_that_does_not_return_says_so(reported: Any) -> None:
+    report, page = reported(SMALL)
+    assert report["answer"][-1].startswith("The path ends in another pose than it starts in")
+    assert report["answer"][-1] in page
+
+
+def test_doubts_name_point_and_region(reported: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    pad = (
+        '[[coverings]]\nname = "edge"\nmaterial = { law = "gibson_ashby", E = 4e5, plateau = 20e3, e_D = 0.85 }\n'
+        'thickness = 0.01\nshape = "cylinder"\nradius = 0.02\nlength = 0.3\n'
+    )
+    text = SMALL.replace("area = 1e-4", 'area = 1e-4\ncovering = "edge"').replace('"chest"', '"hand_finger"') + pad
+    reported(text)
+    told = capsys.readouterr().err
+    assert "gripper, hand_finger, transient: the contact is" in told
+    assert "give the length of the covering that it touches" in told
+
+
 def test_every_number_of_the_page_is_that_of_its_path(reported: Any) -> None:
     report, page = reported(EXAMPLE)
     parser = Numbers()
@@ -164,7 +182,7 @@ def test_the_annex_says_what_the_verdict_rests_on(reported: Any) -> None:
         assert words.lower() in page.lower()
 
 
-def test_records_fill_a_row_of_the_plan(reported: Any) -> None:
+def test_records_fill_a_row_of_the_plan(reported: Any, capsys: pytest.CaptureFixture[str]) -> None:
     bare, _ = reported(SMALL)
     # A small area is one of pressure, with that of the bare contact.
     (row,) = bare["plan"]
@@ -180,12 +198,15 @@ def test_records_fill_a_row_of_the_plan(reported: Any) -> None:
         Path(f"run_{number}.csv").write_text("t [s],F [N]\n" + "\n".join(lines) + "\n", encoding="utf-8")
     files = [f"run_{number}.csv" for number in (1, 2, 3)]
     command = ["record", *files, "--kind", "force", "--transient", "280", "--free", "--predict", "task.toml"]
+    command += ["--uncertainty", "1"]
+    capsys.readouterr()
     assert main([*command, "--plan-row", "1", "--json", "filled.json"]) == 0
     filled = json.loads(Path("filled.json").read_text(encoding="utf-8"))["prediction"]
     for name in ("place", "region", "speed", "prediction", "limit"):
         assert filled[name] == rows[0][name]
     assert filled["measured"] == pytest.approx([61.0, 62.0, 63.0], rel=0.02)
     assert filled["accept"] == "accept"
+    assert "is above the predicted" not in capsys.readouterr().out
 
 
 def test_the_joint_log_is_read_again_and_keeps_its_limits(reported: Any) -> None:

@@ -23,6 +23,7 @@ def written(folder: Path, peak: float, name: str, *, rest: float = 60.0) -> str:
 
 
 LIMITS = ["--kind", "force", "--transient", "280", "--quasi-static", "140"]
+DEVICE = ["--uncertainty", "3"]
 
 
 def test_three_records_within_their_uncertainty_keep_a_limit(
@@ -30,7 +31,7 @@ def test_three_records_within_their_uncertainty_keep_a_limit(
 ) -> None:
     files = [written(tmp_path, peak, f"hand_{peak:.0f}.csv") for peak in (110.0, 112.0, 111.0)]
     out, told = tmp_path / "out", tmp_path / "told.json"
-    assert main(["record", *files, *LIMITS, "--out", str(out), "--json", str(told)]) == 0
+    assert main(["record", *files, *LIMITS, *DEVICE, "--out", str(out), "--json", str(told)]) == 0
     assert capsys.readouterr().out.splitlines()[-1] == "passed  within limits"
     found = json.loads(told.read_text(encoding="utf-8"))
     assert found["verdict"] == "within_limits"
@@ -44,7 +45,13 @@ def test_what_is_not_known_keeps_nothing(tmp_path: Path, capsys: pytest.CaptureF
     assert main(["record", *files, "--kind", "force"]) == 5
     assert main(["record", *files, "--kind", "force", "--transient", "280"]) == 5
     assert main(["record", *files[:2], *LIMITS]) == 5
+    capsys.readouterr()
     assert main(["record", *files, *LIMITS, "--uncertainty", "20"]) == 5
+    assert "taken as 0" not in capsys.readouterr().err
+    # A device whose uncertainty nobody knows; one that is exact.
+    assert main(["record", *files, *LIMITS]) == 5
+    assert "no uncertainty of the device is given and it is taken as 0" in capsys.readouterr().err
+    assert main(["record", *files, *LIMITS, "--uncertainty", "0"]) == 0
     assert main(["record", *files, *LIMITS, "--free", "--uncertainty", "20"]) == 0
     assert main(["record", *files, written(tmp_path, 300.0, "hard.csv"), *LIMITS]) == 3
     assert "exceeds" in capsys.readouterr().out
@@ -74,7 +81,7 @@ def test_a_prediction_stands_beside_the_records(tmp_path: Path, monkeypatch: pyt
         'speed = 0.05\n[robot]\nmass = 8.0\n[[contacts]]\nregion = "chest"\n'
         "[drive]\nreaction_time = 0.01\ndeceleration = 8.0\n"
     )
-    command = ["record", *names, *LIMITS, "--out", "out", "--json", "out.json"]
+    command = ["record", *names, *LIMITS, *DEVICE, "--out", "out", "--json", "out.json"]
     assert main([*command, "--predict", "cell.toml"]) != 0
     assert main([*command, "--predict", "cell.toml", "--plan-row", "1"]) == 0
     found = json.loads(Path("out.json").read_text())["prediction"]
@@ -84,13 +91,17 @@ def test_a_prediction_stands_beside_the_records(tmp_path: Path, monkeypatch: pyt
     assert found["accept"] == "accept"
     assert found["measured"] == pytest.approx([100.0, 104.0, 98.0], abs=0.2)
     assert "accept" in Path("out/plan.csv").read_text()
+    # The load is within its limit, and above what the model of the cell makes of it.
+    assert max(found["measured"]) - found["expanded_uncertainty"] > found["prediction"]
+    assert "is above the predicted" in Path("out/summary.html").read_text()
     assert (
         "never tuned" in Path("out/summary.html").read_text()
         or "nothing was tuned" in Path("out/summary.html").read_text()
     )
     assert main([*command, "--plan-row", "1"]) != 0
     # The limit of the row counts where none is given; the contact is that of the row.
-    without = ["record", *names, "--kind", "force", "--json", "row.json", "--predict", "cell.toml", "--plan-row", "1"]
+    without = ["record", *names, *DEVICE, "--kind", "force", "--json", "row.json"]
+    without += ["--predict", "cell.toml", "--plan-row", "1"]
     assert main(without) == 0
     row = json.loads(Path("row.json").read_text())
     assert row["limits"] == {"transient": 140.0, "quasi_static": 140.0}

@@ -172,7 +172,7 @@ def test_a_blend_keeps_the_tangents_and_both_halves_may_meet() -> None:
     [
         ([{"to": [0, 0]}], "moves must be 2 to"),
         ([{"to": [0, 0]}, {"to": [0, 0]}], r"moves\[1\].to must lead somewhere"),
-        ([{"to": {"joint1": 0.0}}, {"to": [1, 0]}], r"moves\[0\].to.joint2 must be given at the start"),
+        ([{"to": {"joint1": 0.0}}, {"to": [1, 0]}], r"moves\[0\].to must hold every joint.*give joint2 in rad"),
         ([{"to": [0, 0]}, {"to": {"joint9": 1.0}}], r"moves\[1\].to must name joints of the arm.*joint9.*did you mean"),
         ([{"to": [0, 0]}, {"to": [1, 0], "blend": 0.6}, {"to": [1, 1]}], r"moves\[1\].blend must be at most half"),
         ([{"to": [0, 0]}, {"to": [1, 0], "blend": 0.1}], r"moves\[1\].blend must be left out of the last move"),

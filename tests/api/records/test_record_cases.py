@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hrsafety import records
+from hrsafety import contact, records
 
 _SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[4] / "shared"))
 CASES: dict[str, Any] = json.loads((_SHARED / "spec" / "program_cases.json").read_text(encoding="utf-8"))
@@ -64,11 +64,11 @@ def test_forces(case: dict[str, Any]) -> None:
     expected = case["quasi_static"]
     assert found.quasi_static == (None if expected is None else pytest.approx(expected, **close))
     assert len(found.contacts) == len(case["contacts"])
-    for contact, told in zip(found.contacts, case["contacts"], strict=True):
-        assert contact.ends == told["ends"]
+    for each, told in zip(found.contacts, case["contacts"], strict=True):
+        assert each.ends == told["ends"]
         for name in ("start", "end", "transient", "quasi_static"):
             value = told[name]
-            assert getattr(contact, name) == (None if value is None else pytest.approx(value, **close)), name
+            assert getattr(each, name) == (None if value is None else pytest.approx(value, **close)), name
 
 
 @pytest.mark.parametrize("case", CASES["patch"])
@@ -87,6 +87,19 @@ def test_repetitions(case: dict[str, Any]) -> None:
     expected = [case["mean"], case["largest"], case["expanded_uncertainty"]]
     assert [found.mean, found.largest, found.expanded_uncertainty] == pytest.approx(expected, rel=1e-9)
     assert ":".join(filter(None, (found.verdict, found.reason))) == case["verdict"]
+
+
+def test_without_the_uncertainty_of_the_device_no_limit_is_kept() -> None:
+    values = [121.0, 126.0, 118.0]
+    found = records.repetitions(values, 280.0)
+    assert (found.verdict, found.reason) == ("not_checked", "no_device_uncertainty")
+    assert records.repetitions(values, 280.0, device_uncertainty=0.0).verdict == "within_limits"
+    assert records.repetitions(values, 120.0).verdict == "exceeds"
+    row = contact.PlannedMeasurement(
+        place="tool", region="chest", contact="transient", speed=0.25, spring=25e3, limit=280.0
+    )
+    (filled,) = contact.MeasurementPlan(rows=[row]).filled({0: values}).rows
+    assert filled.accept == "no device uncertainty"
 
 
 @pytest.mark.parametrize("seed", range(40))

@@ -87,6 +87,26 @@ def test_what_a_channel_does_not_say_is_asked_for(tmp_path: Path) -> None:
         assert refused.value.code == code, new
 
 
+@pytest.mark.parametrize(
+    ("titles", "names", "units"),
+    [
+        ("Zeit in ms;Kraft in N", ["Zeit", "Kraft"], ["ms", "N"]),
+        ("t / ms;F/N", ["t", "F"], ["ms", "N"]),
+        ("Zeit [ms];p / N/mm²", ["Zeit", "p"], ["ms", "N/mm²"]),
+        ("Zeit [ms];a in m/s²", ["Zeit", "a"], ["ms", "m/s²"]),
+        # A quotient of units, or a name with a slash, is no name with a unit behind it.
+        ("Zeit [ms];v m/s", ["Zeit", "v m/s"], ["ms", None]),
+        ("Zeit [ms];Kraft/Weg", ["Zeit", "Kraft/Weg"], ["ms", None]),
+    ],
+)
+def test_units_behind_a_slash_or_in(titles: str, names: list[str], units: list[str | None], tmp_path: Path) -> None:
+    rows = "\n".join(f"{each},0;{each % 7},25" for each in range(20))
+    found = records.load(written(tmp_path, f"{titles}\n{rows}"))
+    assert list(found.columns) == names
+    assert list(found.units.values()) == units
+    assert found.time[1] == pytest.approx(1e-3)
+
+
 def test_times_are_taken_as_meant(tmp_path: Path) -> None:
     # 24 kHz in whole microseconds is an even grid.
     time = np.arange(2400) / 24e3

@@ -1,9 +1,11 @@
-"""The report of a program: what report.json holds, and the answer in three sentences."""
+"""The report of a program: what report.json holds, and the answer in sentences."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
+
+import numpy as np
 
 from hrsafety import __version__
 from hrsafety._keys import canonical
@@ -107,6 +109,8 @@ def _values(
     return values
 
 
+RETURNED = 0.01
+"""Largest difference of a joint between start and end, in rad or m, of a path that returns."""
 SHARES = (
     "Planned over allowed speed: quantiles of the drawn motions, each with its 95 % interval between order "
     "statistics, and the worst one. Each motion is as fast as the joints and the speed of the tool center point allow."
@@ -204,10 +208,16 @@ def _held(rows: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _answer(study: ProgramStudy) -> Iterator[str]:
-    """Yield the answer in three sentences: whether it may run as planned, what it takes, where the time goes."""
+    """Yield the answer: whether it may run as planned, what it takes, where the time goes, whether it returns."""
     yield _as_planned(study)
     yield _durations(study)
     yield _slowest(study)
+    joints = study.waypoints.joints
+    if np.abs(joints[-1] - joints[0]).max() > RETURNED:
+        yield (
+            "The path ends in another pose than it starts in: the way back is no part of it, neither its time nor its "
+            "contacts."
+        )
 
 
 def _as_planned(study: ProgramStudy) -> str:
