@@ -15,8 +15,10 @@ from hrsafety.sweep.chunks import SweepPlan, computed, planned
 from hrsafety.sweep.designs import Design, checked_design
 from hrsafety.sweep.studies import Study, checked_study
 
-__all__ = ["SweepEstimate", "estimate", "size_words", "time_words"]
+__all__ = ["ADVICE", "SweepEstimate", "estimate", "size_words", "time_words"]
 
+ADVICE = "less with a smaller chunk_rows"
+"""What makes chunks shorter."""
 # Measured rows are taken in ever larger blocks until that took so long, in s.
 _ENOUGH = 0.5
 # And until so many were measured, unless that takes too long, in s.
@@ -25,6 +27,8 @@ _TOO_LONG = 1.0
 _GROWTH = 4
 # Successive multiples of the golden section spread over the design whatever their number.
 _GOLDEN = 0.6180339887498949
+# Chunks that take longer than this, in s, are worth a word.
+_LONG = 120.0
 # Of what tells a chunk from others: a fingerprint and a number.
 _MARK_LENGTH = 36
 
@@ -58,12 +62,23 @@ class SweepEstimate:
     seconds: float
     measured_rows: int
 
+    @property
+    def chunk_seconds(self) -> float:
+        """Time of a chunk in s, which a stop loses at most."""
+        return self.seconds / self.chunk_count
+
+    @property
+    def is_long(self) -> bool:
+        """Whether a chunk takes minutes."""
+        return self.chunk_seconds > _LONG
+
     def __str__(self) -> str:
         """Return the estimate in a line."""
         chunks = "1 chunk" if self.chunk_count == 1 else f"{self.chunk_count:,} chunks"
+        more = "" if not self.is_long else f"; a stop loses up to {time_words(self.chunk_seconds)}, {ADVICE}"
         return (
-            f"{self.rows:,} rows in {chunks}, about {size_words(self.bytes)} in {self.store} files, "
-            f"about {time_words(self.seconds)} of computing in one process ({self.measured_rows:,} rows were measured)"
+            f"{self.rows:,} rows in {chunks}, about {size_words(self.bytes)} in {self.store} files, about "
+            f"{time_words(self.seconds)} of computing in one process ({self.measured_rows:,} rows were measured){more}"
         )
 
 

@@ -13,6 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from hrsafety.errors import InvalidParameterError, Shown
+
 __all__ = ["described", "differences", "digest", "fingerprint"]
 
 # Longer sequences are told apart by a digest.
@@ -40,14 +42,25 @@ def described(value: object) -> Any:
         return _listed([described(each) for each in value.tolist()])
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         public = (field for field in dataclasses.fields(value) if not field.name.startswith("_"))
-        return {"type": type(value).__qualname__, **{f.name: described(getattr(value, f.name)) for f in public}}
+        return {**_class(value), **{f.name: described(getattr(value, f.name)) for f in public}}
     if isinstance(value, Mapping):
         return {str(key): described(each) for key, each in value.items()}
     if isinstance(value, (list, tuple)):
         return _listed([described(each) for each in value])
     if callable(value):
         return _function(value)
-    return {"type": type(value).__qualname__, "sha256": _bytes_digest(pickle.dumps(value, protocol=4))}
+    try:
+        state = pickle.dumps(value, protocol=4)
+    except (pickle.PicklingError, TypeError, AttributeError) as error:
+        rule = "hold what can be pickled, by which its folder is recognized"
+        raise InvalidParameterError("study", rule, Shown(f"{type(value).__qualname__}: {error}")) from error
+    return {**_class(value), "sha256": _bytes_digest(state)}
+
+
+def _class(value: object) -> dict[str, Any]:
+    """Return the name of the class of an object, and of one that is not of this package its source."""
+    own = type(value).__module__.partition(".")[0] == __name__.partition(".")[0]
+    return {"type": type(value).__qualname__, **({} if own else {"source": _source(type(value))})}
 
 
 def _listed(values: list[Any]) -> Any:

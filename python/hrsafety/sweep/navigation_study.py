@@ -18,6 +18,7 @@ from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.batch import gain_sets
 from hrsafety.navigation.gains.worlds import doubts_of, runs_of_sets
+from hrsafety.navigation.laws.python_law import as_law
 from hrsafety.navigation.obstacles.moving_rectangle import Mobile
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.performance import check_weights
@@ -116,8 +117,8 @@ class NavigationStudy(Study):
     scenarios : Scenario or World, sequence of them, or mapping of str to them
         Where, all of one kind; worlds have one robot, a step of their own, and none of the options below but
         ``weights``. With names that appear in the result if it is a mapping. Not with ``scenario``.
-    law : Law or None
-        The law; the default one when ``None``.
+    law : Law, a law in Python, or None
+        The law; the default one when ``None``. One in Python is recognized by its source text and what it holds.
     scenario : callable or None
         ``scenario(row) -> Scenario`` or a sequence of them, one for each of ``names``; row is a
         dict of the axes that are none of the law. It must be importable where rows are
@@ -164,9 +165,7 @@ class NavigationStudy(Study):
 
     def __post_init__(self) -> None:
         """Check the values."""
-        law = nav.VirtualForceField() if self.law is None else self.law
-        if not isinstance(law, nav.Law):
-            raise InvalidParameterError("law", "be a Law or None", law)
+        law = nav.VirtualForceField() if self.law is None else as_law(self.law)
         scenes, names = self._checked_scenarios()
         if not isinstance(self.axis_units, Mapping):
             raise InvalidParameterError("axis_units", "be a mapping", self.axis_units)

@@ -351,6 +351,11 @@ def test_estimated_time_grows_with_the_rows_and_is_near_the_measured_one() -> No
     assert found.seconds == pytest.approx(20.0, rel=0.5)
     assert sweep.estimate(design, study, chunks="1/4").seconds == pytest.approx(5.0, rel=0.5)
     assert found.measured_rows < 1000
+    # One chunk of 20 s; of 400 s a stop loses minutes, which is said.
+    assert "a stop loses" not in str(found)
+    longer = sweep.estimate(sweep.Grid([sweep.Axis(name="speed", low=0.0, high=1.0, points=100_000)]), study)
+    assert longer.chunk_seconds == pytest.approx(longer.seconds / longer.chunk_count)
+    assert re.search(r"a stop loses up to \S+ min, less with a smaller chunk_rows$", str(longer))
 
 
 # ---- on the command line ----------------------------------------------------------------------------

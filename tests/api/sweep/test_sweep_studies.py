@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import functools
+import importlib
 import pickle
 import re
+import sys
+import threading
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -264,7 +268,7 @@ BAD: list[tuple[type, dict[str, Any], str]] = [
     (sweep.NavigationStudy, {"scenarios": [3]}, r"scenarios\[0\] must be a Scenario"),
     (sweep.NavigationStudy, {"scenarios": C2, "scenario": sweep_functions.crossing}, "scenarios must be given, or"),
     (sweep.NavigationStudy, {"scenario": 3}, "scenario must be callable"),
-    (sweep.NavigationStudy, {"scenarios": C2, "law": 3}, "law must be a Law or None"),
+    (sweep.NavigationStudy, {"scenarios": C2, "law": 3}, "law must be a Law, a function that takes a Situation"),
     (sweep.NavigationStudy, {"scenarios": [C2], "names": ["a", "b"]}, "names must be 1"),
     (sweep.NavigationStudy, {"scenarios": [C2, C2], "names": ["a", "a"]}, "names must be different"),
     (sweep.NavigationStudy, {"scenarios": {"a": C2}, "names": ["a"]}, "names must be None"),
@@ -387,6 +391,55 @@ def test_any_law_is_swept_over_its_own_gains() -> None:
         assert arrival == nav.simulate(scenarios.configuration("c1"), law).arrival_time
     with pytest.raises(InvalidParameterError, match="gain_ratio"):
         sweep.run(sweep.Grid([sweep.Axis(name="gain_ratio", values=[0.1])]), study)
+
+
+STRAIGHT = """
+import numpy as np
+
+class Straight:
+    def velocity(self, seen):
+        away = seen.goal - seen.position
+        return {speed} * away / np.hypot(*away)
+"""
+
+
+@pytest.fixture
+def straight(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[float], Any]:
+    """Return a function that writes a module with a law of a speed, and returns the law."""
+    monkeypatch.syspath_prepend(str(tmp_path))
+
+    def made(speed: float) -> Any:
+        monkeypatch.delitem(sys.modules, "law_of_tests", raising=False)
+        (tmp_path / "law_of_tests.py").write_text(STRAIGHT.format(speed=speed), encoding="utf-8")
+        importlib.invalidate_caches()
+        return importlib.import_module("law_of_tests").Straight()
+
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    return made
+
+
+def test_a_law_in_python_is_swept_and_told_apart_by_its_source(
+    straight: Callable[[float], Any], tmp_path: Path
+) -> None:
+    scene, folder = scenarios.configuration("c1"), tmp_path / "runs"
+    periods = sweep.Grid([sweep.Axis(name="control_period", values=[0.05, 0.1])])
+
+    def run(law: Any) -> sweep.SweepResult:
+        return sweep.run(periods, sweep.NavigationStudy(scenarios={"c1": scene}, law=law), out=folder)
+
+    law = straight(0.4)
+    assert run(law)["arrival_time"][1] == nav.simulate(replace(scene, control_period=0.1), law).arrival_time
+    assert run(straight(0.4)).complete
+    with pytest.raises(sweep.SweepError, match=r"study\.law\.function\.source"):
+        run(straight(0.25))
+
+
+def test_a_law_that_cannot_be_pickled_is_refused(straight: Callable[[float], Any]) -> None:
+    law = straight(0.4)
+    law.lock = threading.Lock()
+    study = sweep.NavigationStudy(scenarios={"c1": scenarios.configuration("c1")}, law=law)
+    with pytest.raises(InvalidParameterError, match=r"study must hold what can be pickled.*Straight"):
+        study.settings()
 
 
 def test_a_function_changes_no_rows_and_masks_no_results() -> None:

@@ -20,7 +20,7 @@ from hrsafety.cli.sweep import report as sweep_report
 from hrsafety.cli.sweep.file import SweepFile, load
 from hrsafety.cli.sweep.pictures import make
 from hrsafety.errors import InvalidParameterError, MissingExtraError
-from hrsafety.sweep.estimates import size_words, time_words
+from hrsafety.sweep.estimates import ADVICE, size_words, time_words
 
 __all__ = ["sweep_file"]
 
@@ -107,6 +107,8 @@ def _expected(options: argparse.Namespace, described: SweepFile) -> Iterator[str
     yield f"size     about {size_words(found.bytes)} in {found.store} files"
     measured = f"{found.measured_rows * each:,} measured rows"
     yield f"time     about {time_words(found.seconds)} of computing in one process, from {measured}"
+    if found.is_long:
+        yield f"stop     loses up to {time_words(found.chunk_seconds)}, {ADVICE}"
 
 
 def _share_words(options: argparse.Namespace, result: sweep.SweepResult) -> str:
