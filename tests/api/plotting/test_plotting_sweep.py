@@ -85,6 +85,11 @@ def test_long_results_are_thinned_over_all_levels() -> None:
     points = _thinned(result, ["foam_damping", "hic15"], 100)
     assert 50 < len(points["hic15"]) < 160
     assert len(np.unique(points["foam_damping"])) == 5
+    for draw in (plotting.sweep_scatter, plotting.sweep_parallel):
+        words = [axes.get_ylabel() for axes in draw(result, "hic15", most=100).axes]
+        assert any(f" drawn of {len(result):,}" in each for each in words)
+        words = [axes.get_ylabel() for axes in draw(result, "hic15", most=100_000).axes]
+        assert not any("drawn of" in each for each in words)
     again = _thinned(result, ["foam_damping", "hic15"], 100)
     np.testing.assert_array_equal(points["hic15"], again["hic15"])
 
@@ -96,7 +101,7 @@ def test_long_results_are_thinned_over_all_levels() -> None:
         (plotting.sweep_lines, LINE, "foam_stiffness", "column must be one of"),
         (plotting.sweep_lines, MAP, "hic15", "result must vary one axis"),
         (plotting.sweep_lines, 3, "hic15", "result must be a SweepResult"),
-        (plotting.sweep_map, LINE, "hic15", "result must vary 2 axes"),
+        (plotting.sweep_map, LINE, "hic15", "result must vary 2 axes.*draw sweep_scatter or sweep_parallel"),
         (plotting.sweep_map, RUNS, "energy", "result must be a complete grid"),
         (plotting.sweep_scatter, RUNS, "outcome", "column must be one of"),
         (plotting.sweep_parallel, RUNS, 3, "column must be one of"),

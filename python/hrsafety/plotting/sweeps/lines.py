@@ -162,9 +162,9 @@ def varying_axes(result: SweepResult, number: int | None = None) -> list[Axis]:
     varying = [axis for axis in result.axes if axis.values is None or len(axis.values) > 1]
     if not varying or number not in (None, len(varying)):
         least = "at least one axis" if number is None else ("one axis" if number == 1 else f"{number} axes")
-        raise InvalidParameterError(
-            "result", f"vary {least}", Shown(", ".join(axis.name for axis in varying) or "none")
-        )
+        remedy = "draw sweep_scatter or sweep_parallel, which show any number of axes" if varying else None
+        found = Shown(", ".join(axis.name for axis in varying) or "none")
+        raise InvalidParameterError("result", f"vary {least}", found, remedy)
     for axis in varying:
         along_axis(f"axis {axis.name!r}", ends(axis), rising=False)
     return varying

@@ -99,7 +99,7 @@ def sweep_scatter(result: SweepResult, column: str, *, most: int = MOST_POINTS, 
                 axes.scatter(along, values, s=size, alpha=0.5, linewidths=0, color=color, label=name)
         label_axis(axes, axis, "x")
         if place % columns == 0:
-            axes.set_ylabel(drawn.label)
+            axes.set_ylabel(drawn.label + _part(points[column].size, len(result)))
     if len(cases) > 1:
         handles, labels = grid[0, 0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=MOST_CASES, markerscale=18.0 / size)
@@ -184,8 +184,14 @@ def sweep_parallel(result: SweepResult, column: str, *, most: int = MOST_LINES, 
     axes.grid(visible=False)
     axes.spines[["left", "bottom"]].set_visible(False)
     of_cases = f", mean of {len(result.cases)} cases" if len(result.cases) > 1 else ""
-    figure.colorbar(lines, ax=axes, label=drawn.label + of_cases)
+    rows = len(result) // max(len(result.cases), 1)
+    figure.colorbar(lines, ax=axes, label=drawn.label + of_cases + _part(len(values), rows))
     return figure
+
+
+def _part(drawn: int, every: int) -> str:
+    """Return the words that a picture shows some of all rows, whose extremes may be missing."""
+    return "" if drawn >= every else f"\n{drawn:,} drawn of {every:,}"
 
 
 def _thinned(result: SweepResult, names: list[str], most: int) -> dict[str, Array]:
