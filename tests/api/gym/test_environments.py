@@ -11,6 +11,7 @@ from typing import Any
 
 import gymnasium
 import numpy as np
+import numpy.typing as npt
 import pytest
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
@@ -317,3 +318,27 @@ def test_a_learner_drives_the_robot_of_a_scenario() -> None:
         _, _, terminated, truncated, info = env.step([1.0, 0.0])
         ended, outcome = terminated or truncated, info["outcome"]
     assert outcome == "arrived"
+
+
+@pytest.mark.parametrize("heading", [0.0, 0.9])
+def test_a_picture_shows_the_footprint_of_a_robot_that_keeps_its_heading(heading: float) -> None:
+    footprint = nav.robots.Footprint.rectangle(1.6, 0.4)
+
+    def blue(body: Any, **more: Any) -> npt.NDArray[np.bool_]:
+        robot = nav.Robot(body, start=(0.0, 0.0), goal=(6.0, 0.0), heading=heading)
+        env = gym.CrowdEnv(nav.World(robots=[robot], time_limit=20.0), render_mode="rgb_array", **more)
+        env.reset(seed=0)
+        seen = env.render().astype(np.int64)
+        near = np.abs(seen - [0, 114, 178]).sum(axis=2) < 30
+        return near[: int(0.85 * len(near))]  # without the legend
+
+    radius = float(np.hypot(0.8, 0.2))
+    outline, circle = blue(nav.HolonomicRobot(footprint=footprint)), blue(nav.HolonomicRobot(radius=radius))
+    share = 1.6 * 0.4 / (np.pi * radius**2)
+    assert outline.sum() / circle.sum() == pytest.approx(share, rel=0.1)
+    rows, columns = np.nonzero(outline)
+    tilted = np.polyfit(columns, -rows, 1)[0]
+    assert np.arctan(tilted) == pytest.approx(heading, abs=0.1)
+    # The heading of two wheels is not known here: a circle around the footprint.
+    wheels = blue(nav.DifferentialDriveRobot(footprint=footprint), action="unicycle")
+    assert wheels.sum() == pytest.approx(circle.sum(), rel=0.05)

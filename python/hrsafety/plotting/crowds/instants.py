@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import zip_longest
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
+from hrsafety.navigation.robots.bodies import HolonomicRobot
 from hrsafety.plotting import floor, notes, style
 from hrsafety.plotting.crowds import world_scenes
 
@@ -15,6 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.figure import Figure
 
+    from hrsafety.navigation.crowd.agents import Robot
     from hrsafety.navigation.crowd.world import World
 
 __all__ = ["crowd_instant"]
@@ -76,18 +79,30 @@ def crowd_instant(
         axes.add_collection(LineCollection(list(ends), colors=style.NEUTRAL, linewidths=0.5, alpha=0.5, zorder=2.0))
     for number, way in enumerate(paths):
         axes.plot(*way.T, color=PERSON_COLOR if number else ROBOT_COLOR, linewidth=1.2, alpha=0.6, zorder=2.5)
-    drawn = ((people, PERSON_COLOR, 3.2), (robots, OTHER_COLOR, 4.4), ([robot], ROBOT_COLOR, 4.5))
-    for bodies, color, zorder in drawn:
+    drawn = (
+        (people, (), PERSON_COLOR, 3.2),
+        (robots, world.robots[1:], OTHER_COLOR, 4.4),
+        ([robot], world.robots[:1], ROBOT_COLOR, 4.5),
+    )
+    for bodies, made_as, color, zorder in drawn:
         look: style.Properties = {"facecolor": color, "edgecolor": "white", "linewidth": 0.8, "zorder": zorder}
-        for where, radius in bodies:
-            world_scenes.draw_body(axes, place, np.asarray(where), radius, **look)
+        for (where, radius), made in zip_longest(bodies, made_as):
+            outline = None if made is None or not _is_drawn(made) else made
+            world_scenes.draw_body(axes, place, np.asarray(where), radius, outline, **look)
     return floor.finish(figure, handles, columns=3)
+
+
+def _is_drawn(robot: Robot) -> bool:
+    """Whether a robot is drawn as its footprint: a holonomic one keeps its heading, others turn unseen."""
+    return robot.body.footprint is not None and isinstance(robot.body, HolonomicRobot)
 
 
 def _handles(world: World) -> list[Artist]:
     """Return the legend."""
     look: style.Properties = {"marker": "o", "markersize": 9}
-    handles: list[Artist] = [floor.handle("robot", color=ROBOT_COLOR, **look)]
+    around = any(each.body.footprint is not None and not _is_drawn(each) for each in world.robots)
+    name = "robot, circle around its footprint" if around else "robot"
+    handles: list[Artist] = [floor.handle(name, color=ROBOT_COLOR, **look)]
     if len(world.robots) > 1:
         handles.append(floor.handle("other robot", color=OTHER_COLOR, **look))
     if world.people or world.sources:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
-    from hrsafety.navigation.crowd.agents import Person, Source
+    from hrsafety.navigation.crowd.agents import Person, Robot, Source
     from hrsafety.navigation.crowd.world import WallShape
 
 __all__ = [
@@ -281,10 +281,13 @@ def contacts(run: Trajectory) -> list[tuple[int, int]]:
     return sorted(found)
 
 
-def draw_body(axes: Axes, place: Floor, where: Array, radius: float, **look: Any) -> None:
-    """Draw a person or a robot at each place in view at which it stands."""
+def draw_body(axes: Axes, place: Floor, where: Array, radius: float, robot: Robot | None = None, **look: Any) -> None:
+    """Draw a person, or a robot as its footprint at its first heading, at each place in view at which it stands."""
     from matplotlib.patches import Circle
 
     if np.isfinite(where).all():
         for copy in place.copies(where, radius):
-            axes.add_patch(Circle(tuple(copy), radius, **look))
+            if robot is None:
+                axes.add_patch(Circle(tuple(copy), radius, **look))
+            else:
+                axes.add_patch(shapes.robot(robot.body, copy, robot.heading, **look))
