@@ -166,3 +166,10 @@ def test_who_has_no_velocity_is_estimated_from_places() -> None:
         sideways.append(place[1])
     assert sideways[1] == pytest.approx(sideways[0], abs=0.05)
     assert abs(sideways[1]) > 0.1
+
+
+def test_it_is_replaced_like_any_other_part() -> None:
+    law = SafeNavigation(FIELD, foresight=Foresight())
+    changed = law.replaced(foresight=Foresight(stages=8))
+    assert (changed.foresight, changed.law) == (Foresight(stages=8), FIELD)
+    assert law.replaced(foresight=None).foresight is None

@@ -246,5 +246,16 @@ class SafeNavigation(Law):
 
 
 _FIELDS = frozenset(
-    {"law", "map", "guide", "shield", "filter", "yielding", "preferred_speed", "takeover", "critical_distance"}
+    {
+        "law",
+        "map",
+        "guide",
+        "shield",
+        "filter",
+        "yielding",
+        "foresight",
+        "preferred_speed",
+        "takeover",
+        "critical_distance",
+    }
 )
