@@ -2,7 +2,7 @@
 
 ``python docs/measure_foresight.py`` prints, ``--write`` replaces what stands between the marks of
 docs/guides/foresight.md; ``--only shares`` are the suites, ``--only scenes`` the standard scenes of social navigation,
-``--only adversary`` the search for a fault. The recordings
+``--only outlines`` crowds around robots with a footprint, ``--only adversary`` the search for a fault. The recordings
 are those of ``HRSAFETY_RECORDINGS``, a folder with zara01.csv and zara03.csv.
 """
 
@@ -29,6 +29,9 @@ FORESEES = "field+shield+foresight"
 LAWS = ("field+shield+yielding", "orca+shield+yielding", FORESEES)
 CROWDS, FIRST = 200, 40_000
 """Crowds of two wheels, and the seed of the first one."""
+OUTLINED, FIRST_OUTLINED = 100, 50_000
+"""Crowds of robots with a footprint, and the seed of the first one."""
+FOOTPRINT = nav.robots.Footprint.rectangle(0.508, 0.430)
 SEEDS, MARGIN = range(4, 8), 0.01
 """Seeds of each standard scene, and the margin of shields there, whose robots move in steps of 0.05 s, in m."""
 LEFT_OUT = ("blind_corner", "following_human", "leading_human", "accompanying_peer")
@@ -59,25 +62,35 @@ def shares() -> str:
                 good = sum(row.outcome == "arrived" and not row.contacts for row in found)
                 counts = (percent(each, len(found)) for each in (good, sum(row.at_fault > 0 for row in found)))
                 rows.append(line(where, law, sensing, len(found), *counts, f"{result.mean_arrival(law):.1f}"))
-    return "\n".join([*rows, *two_wheels()]) + "\n"
+    two_wheels = crowded("crowd of 12, two wheels", nav.DifferentialDriveRobot(), range(FIRST, FIRST + CROWDS))
+    return "\n".join([*rows, *two_wheels]) + "\n"
 
 
-def two_wheels() -> list[str]:
-    """Return the rows of a robot with two wheels in crowds of 12."""
+def outlines() -> str:
+    """Return the table of robots with a footprint in crowds of 12."""
+    rows = head("robot", "law", "people measured", "episodes", "success %", "at fault %", "arrival, s")
+    seeds = range(FIRST_OUTLINED, FIRST_OUTLINED + OUTLINED)
+    for name, kind in (("two wheels", nav.DifferentialDriveRobot), ("holonomic", nav.HolonomicRobot)):
+        rows += crowded(name, kind(footprint=FOOTPRINT), seeds)
+    return "\n".join(rows) + "\n"
+
+
+def crowded(name: str, robot: nav.DifferentialDriveRobot | nav.HolonomicRobot, seeds: range) -> list[str]:
+    """Return the rows of a robot in crowds of 12."""
     rows = []
-    drawn = scenarios.random_traffic_batch(range(FIRST, FIRST + CROWDS), obstacles=12)
+    drawn = scenarios.random_traffic_batch(seeds, obstacles=12)
     for sensing, measured in SENSING.items():
         late = nav.Measurement(scale=ERROR, latency=LATENCY, of="obstacles") if measured else None
-        scenes = [replace(each, robot=nav.DifferentialDriveRobot(), measurement=late) for each in drawn]
+        scenes = [replace(each, robot=robot, measurement=late) for each in drawn]
         error = float(np.hypot(ERROR, ERROR)) if measured else 0.0
         for law in LAWS:
-            say("two wheels", sensing, law)
+            say(name, sensing, law)
             built = entry(law).built(person_speed=1.6, latency=LATENCY if measured else 0.0, position_error=error)
             table = nav.simulate_many(scenes, [built], stop_on_contact=True)
             counts = (int((table.outcome == "arrived").sum()), int((table.contacts_at_fault > 0).sum()))
-            cells = (percent(each, CROWDS) for each in counts)
+            cells = (percent(each, len(seeds)) for each in counts)
             mean = f"{np.nanmean(table.arrival_time):.1f}"
-            rows.append(line("crowd of 12, two wheels", law, sensing, CROWDS, *cells, mean))
+            rows.append(line(name, law, sensing, len(seeds), *cells, mean))
     return rows
 
 
@@ -135,6 +148,7 @@ if __name__ == "__main__":
         DOCS / "guides" / "foresight.md",
         {
             "shares": ("shares of measure_foresight.py", shares),
+            "outlines": ("outlines of measure_foresight.py", outlines),
             "scenes": ("scenes of measure_foresight.py", standard_scenes),
             "adversary": ("adversary of measure_foresight.py", adversary),
         },

@@ -271,3 +271,47 @@ def test_a_robot_of_nav2_settings_has_the_padded_footprint(tmp_path: Path) -> No
     assert body.radius == pytest.approx(settings.circumscribed_radius)
     disc = settings.robot(mass=20.0, radius=0.5)
     assert (disc.footprint, disc.radius) == (None, 0.5)
+
+
+AHEAD = nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield(), foresight=nav.Foresight())
+
+
+@pytest.mark.parametrize("kind", [nav.DifferentialDriveRobot, nav.HolonomicRobot])
+@pytest.mark.parametrize("footprint", [RECTANGLE, WEDGE])
+def test_foresight_passes_crowds_with_a_footprint_and_is_never_at_fault(
+    kind: type[nav.DifferentialDriveRobot], footprint: nav.robots.Footprint
+) -> None:
+    robot = kind(footprint=footprint)
+    late = nav.Measurement(scale=0.025, latency=0.1, of="obstacles")
+    shield = nav.Shield(latency=0.1, position_error=math.hypot(0.025, 0.025))
+    for measurement, law in ((None, AHEAD), (late, AHEAD.replaced(shield=shield))):
+        drawn = scenarios.random_traffic_batch(range(60_000, 60_006), obstacles=12)
+        scenes = [replace(each, robot=robot, measurement=measurement) for each in drawn]
+        table = nav.simulate_many(scenes, [law], stop_on_contact=True)
+        assert (table.outcome == "arrived").sum() >= 5
+        assert not table.contacts_at_fault.any()
+
+
+def test_foresight_commands_what_the_shield_verifies_for_the_polygon() -> None:
+    """Somebody beside a corner: the turn that the disc of half the width would take is refused."""
+    beside = nav.Human(start=(-0.05, 0.56), velocity=(0.0, 0.0), radius=0.3)
+    robot = nav.DifferentialDriveRobot(footprint=RECTANGLE)
+    turning = nav.Scenario(robot=robot, start=(0, 0), goal=(0, 9), obstacles=[beside], time_limit=30.0)
+    run = nav.simulate(turning, AHEAD)
+    assert run.outcome == "arrived"
+    assert run.min_clearance[0] > 0.0
+    pursued = replace(turning, goal=(8.0, 0.0), obstacles=[], rest_time=30.0)
+    for body in (robot, nav.HolonomicRobot(footprint=WEDGE)):
+        found = nav.metrics.falsify(replace(pursued, robot=body, time_limit=8.0), AHEAD, episodes=60, seed=3)
+        assert not found.broken
+
+
+def test_foresight_drives_a_rectangle_through_a_gap_that_its_circle_does_not_fit() -> None:
+    gap = nav.StaticMap.from_polylines([[(2, 3), (2, 0.3), (3, 0.3), (3, 3)], [(2, -3), (2, -0.3), (3, -0.3), (3, -3)]])
+    robot = nav.DifferentialDriveRobot(footprint=RECTANGLE, max_acceleration=2.0)
+    place = nav.Scenario(robot=robot, start=(0, 0), goal=(5, 0), walls=gap, arrival_tolerance=0.3, time_limit=60.0)
+    run = nav.simulate(place, AHEAD.replaced(map=gap, guide=nav.Guide()))
+    assert run.outcome == "arrived"
+    assert run.map_clearance > 0.0
+    bare = nav.simulate(place, AHEAD.replaced(map=gap, guide=nav.Guide(), shield=None, law=nav.Khatib()))
+    assert not math.isfinite(bare.map_contact_time)

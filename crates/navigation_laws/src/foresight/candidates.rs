@@ -153,17 +153,17 @@ impl Foreseer {
                 }
             }
         }
-        let radius = self.limits.radius;
+        let least = self.room + ROOM;
         let fastest = self.limits.max_speed.max(before.norm());
-        let near = radius + ROOM + fastest * self.settings.step;
+        let near = least + fastest * self.settings.step;
         let room = scene.walls.clearance_up_to(scene.robot.position, near);
         let walls = room < near;
         let met = self.met(scene, fastest);
         for candidate in &mut candidates {
             let driven = driven(&candidate.target);
             let kept = |place: &Vector2<f64>| {
-                let clearance = scene.walls.clearance_up_to(*place, radius + ROOM);
-                clearance >= radius + ROOM || clearance >= room
+                let clearance = scene.walls.clearance_up_to(*place, least);
+                clearance >= least || clearance >= room
             };
             candidate.price = if walls && !driven.places.iter().all(kept) {
                 f64::INFINITY

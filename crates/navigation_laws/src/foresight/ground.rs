@@ -12,7 +12,7 @@ const BLOCK: usize = 4;
 /// Way to the goal in m from every node of a square grid around the robot, row by row.
 pub(super) fn costs_to_go(
     scene: &Scene<'_>,
-    radius: f64,
+    room: f64,
     across: usize,
     spacing: f64,
     costs: &mut [f64],
@@ -33,7 +33,7 @@ pub(super) fn costs_to_go(
     if scene.walls.is_empty() {
         return;
     }
-    let least = radius + ROOM;
+    let least = room + ROOM;
     let half = 0.5 * (BLOCK - 1) as f64 * spacing;
     let around = std::f64::consts::SQRT_2 * half + 1e-9;
     for first_row in (0..across).step_by(BLOCK) {

@@ -165,6 +165,8 @@ pub struct Foreseer {
     pub(crate) limits: ShieldLimits,
     /// Speed that it prefers, in m/s.
     preferred: f64,
+    /// Distance of its center from walls below which it has no room, in m.
+    room: f64,
     estimates: Estimates,
     prediction: Prediction,
     program: Program,
@@ -178,11 +180,17 @@ pub struct Foreseer {
 }
 
 impl Foreseer {
-    /// Foresight with the limits of a robot, and a speed in m/s that it prefers.
+    /// Foresight with the limits of a robot, a speed in m/s that it prefers, and the distance of its center from walls
+    /// in m below which it has no room. People are kept off the radius of the limits.
     ///
     /// # Errors
     /// Names the number that is not allowed.
-    pub fn new(settings: Foresight, limits: ShieldLimits, preferred: f64) -> Result<Self> {
+    pub fn new(
+        settings: Foresight,
+        limits: ShieldLimits,
+        preferred: f64,
+        room: f64,
+    ) -> Result<Self> {
         let settings = settings.checked()?;
         positive("preferred_speed", preferred)?;
         let reach = candidates::cells_of_first_velocity(limits.max_speed, preferred);
@@ -196,6 +204,7 @@ impl Foreseer {
             settings,
             limits,
             preferred,
+            room,
             estimates: Estimates::default(),
             prediction: Prediction::default(),
             program: Program::new(&settings, preferred, reach),
@@ -229,8 +238,13 @@ impl Foreseer {
         let people = scene.people.iter().filter(somebody);
         self.prediction
             .foresee(&settings, people, &self.estimates, scene.walls, radius);
-        self.program
-            .solve(&settings, scene, &self.prediction, radius, self.processor);
+        self.program.solve(
+            &settings,
+            scene,
+            &self.prediction,
+            self.room,
+            self.processor,
+        );
         let place = scene.robot.position;
         self.ends = [place, place];
         self.impatience.observe(place, period);

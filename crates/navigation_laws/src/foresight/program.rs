@@ -65,11 +65,11 @@ impl Program {
         settings: &Foresight,
         scene: &Scene<'_>,
         prediction: &Prediction,
-        radius: f64,
+        room: f64,
         processor: pulp::Arch,
     ) {
         let across = self.across();
-        costs_to_go(scene, radius, across, self.spacing, &mut self.ground);
+        costs_to_go(scene, room, across, self.spacing, &mut self.ground);
         processor.dispatch(
             #[inline(always)]
             || self.sweep(settings, scene.robot.position, prediction),

@@ -47,7 +47,8 @@ fn decisions_are_those_of_the_prototype() {
         let guard = Guard::new(shield, limits).unwrap();
         let goal = pair(&case["goal"]);
         let settings = Foresight::default();
-        let mut foreseer = Foreseer::new(settings, limits, limits.max_speed).unwrap();
+        let mut foreseer =
+            Foreseer::new(settings, limits, limits.max_speed, limits.radius).unwrap();
         for (number_of_step, step) in case["steps"].as_array().unwrap().iter().enumerate() {
             let robot = RobotState {
                 position: pair(&step["position"]),
@@ -163,7 +164,7 @@ fn numbers_that_are_not_allowed_are_named() {
         };
         assert!(settings.checked().is_err());
     }
-    assert!(Foreseer::new(Foresight::default(), LIMITS, 1e-3).is_err());
+    assert!(Foreseer::new(Foresight::default(), LIMITS, 1e-3, LIMITS.radius).is_err());
 }
 
 #[test]
@@ -241,7 +242,7 @@ fn costs_are_those_of_all_ways() {
     };
     let seen = [sighting([1.0, 0.2], [-0.8, 0.1], 0.0)];
     let scene = scene(&seen, StaticObstacles::NONE, 0.0);
-    let mut foreseer = Foreseer::new(settings, LIMITS, 1.0).unwrap();
+    let mut foreseer = Foreseer::new(settings, LIMITS, 1.0, LIMITS.radius).unwrap();
     let driven = |target: &Target| driven(&scene.robot, target, &LIMITS, settings.step);
     foreseer.decide(&scene, false, driven, |_| Some(()));
     let (spacing, step) = (settings.step / 2.24, settings.step);

@@ -2,10 +2,10 @@
 
 use crate::foresight::{AcceptedTarget, Driven, Foreseer, Scene, Target, taken_up};
 use crate::guide::Guidance;
-use crate::safe::law::SafeLaw;
+use crate::safe::law::{SafeLaw, verified_twist};
 use crate::safe::watch::Watch;
 use crate::shield::{
-    Decision, Guard, Shield, Status, TwistGuard, TwistView, Verifier, View, braking,
+    Decision, Guard, OutlineGuard, Shield, Status, TwistGuard, TwistView, Verifier, View, braking,
 };
 use navigation_world::robots::differential::Twist;
 use navigation_world::world::geometry::RobotState;
@@ -34,7 +34,7 @@ impl SafeLaw {
     pub(super) fn foreseen(
         &self,
         foreseer: &mut Foreseer,
-        guard: Option<&Guard>,
+        (guard, outline): (Option<&Guard>, Option<(&OutlineGuard, f64)>),
         robot: &RobotState<f64>,
         wanted: &mut Vector2<f64>,
         to_goal: Vector2<f64>,
@@ -45,7 +45,8 @@ impl SafeLaw {
             walls: self.around.walls(),
             hidden: self.watch.as_ref().map(Watch::hidden),
         };
-        let mut verifier = guard.map(|guard| Verifier::new(guard, view));
+        let disc = guard.filter(|_| outline.is_none());
+        let mut verifier = disc.map(|guard| Verifier::new(guard, view));
         let step = foreseer.settings().step;
         let driven = |target: &Target| Driven {
             places: taken_up(robot, target.velocity, self.limits.max_acceleration, step),
@@ -54,8 +55,12 @@ impl SafeLaw {
         let take = |target: &Target| {
             let target = self.limits.slowed(target.velocity);
             let command = self.limits.clipped(robot.velocity, target);
-            let verifier = verifier.as_mut();
-            let admits = verifier.is_none_or(|verifier| verifier.admits(command));
+            let admits = if let Some(outline) = outline {
+                self.verified_outline(outline, &view, command)
+            } else {
+                let verifier = verifier.as_mut();
+                verifier.is_none_or(|verifier| verifier.admits(command))
+            };
             admits.then_some(command)
         };
         let mut take = take;
@@ -70,7 +75,7 @@ impl SafeLaw {
     pub(super) fn foreseen_twist(
         &self,
         foreseer: &mut Foreseer,
-        guard: &TwistGuard,
+        (guard, outline): (&TwistGuard, Option<&OutlineGuard>),
         view: &TwistView<'_>,
         wanted: &mut Vector2<f64>,
         to_goal: Vector2<f64>,
@@ -83,7 +88,7 @@ impl SafeLaw {
         };
         let take = |target: &Target| {
             let twist = guard.toward(state, target.velocity, target.backwards);
-            guard.verified(view, twist).then_some(twist)
+            verified_twist((guard, outline), view, twist).then_some(twist)
         };
         let driven = |target: &Target| guard.driven(state, target, step);
         let found = foreseer

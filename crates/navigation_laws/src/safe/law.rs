@@ -102,11 +102,6 @@ impl SafeLaw {
         let twist_guard = family.shield.zip(wheels).map(|(shield, wheels)| {
             TwistGuard::new(shield, DifferentialLimits::from(wheels), &limits)
         });
-        if scenario.footprint.is_some() && family.foresight.is_some() {
-            let rule = "be left out for a robot with a footprint, which its plans do not know";
-            let given = Given::Found("foresight".into());
-            return Err(Failure::invalid("foresight", rule, given));
-        }
         let unseen = family.shield.is_some_and(|shield| shield.unseen.is_some());
         if scenario.footprint.is_some() && unseen {
             let rule =
@@ -122,6 +117,10 @@ impl SafeLaw {
             wheels: wheels.is_some(),
         });
         let twist_guard = twist_guard.transpose()?;
+        // Without a shield nothing verifies the outline beside walls.
+        let room = outline
+            .as_ref()
+            .map_or(robot.radius, |_| scenario.least_room());
         let [_, way] = horizon(&limits, twist_guard.as_ref(), 0.0);
         let watch = Watch::new(family, scenario, way)?;
         let pace = watch.as_ref().and_then(|watch| watch.pace(&limits));
@@ -146,7 +145,7 @@ impl SafeLaw {
                 .transpose()?,
             foreseer: family
                 .foresight
-                .map(|foresight| Foreseer::new(foresight, limits, inner.robot.max_speed))
+                .map(|foresight| Foreseer::new(foresight, limits, inner.robot.max_speed, room))
                 .transpose()?,
             takeover: family.takeover.then(|| Takeover::new(rule)),
             detour: (guidance.is_some() && !mapped).then(Detour::default),
@@ -558,7 +557,9 @@ impl SafeLaw {
         };
         let outline = self.outline_now(now);
         let (mut twist, status) = match foreseer {
-            Some(foreseer) => self.foreseen_twist(foreseer, &guard, &view, wanted, to_goal),
+            Some(foreseer) => {
+                self.foreseen_twist(foreseer, (&guard, outline.as_ref()), &view, wanted, to_goal)
+            }
             None => self.turned((&guard, outline.as_ref()), &view, &robot, *wanted, to_goal),
         };
         match planned {
@@ -597,7 +598,9 @@ impl SafeLaw {
         let outline = self.outline_now(now);
         let outline = outline.as_ref().map(|outline| (outline, situation.heading));
         let mut decision = match foreseer {
-            Some(foreseer) => self.foreseen(foreseer, guard.as_ref(), robot, wanted, to_goal),
+            Some(foreseer) => {
+                self.foreseen(foreseer, (guard.as_ref(), outline), robot, wanted, to_goal)
+            }
             None => self.judged((guard.as_ref(), outline), robot, *wanted, to_goal),
         };
         if guard.is_none() {
@@ -637,14 +640,7 @@ impl SafeLaw {
             .clipped(robot.velocity, self.limits.slowed(wanted));
         // It drives backwards only to give way.
         let twist = |velocity: Vector2<f64>| guard.toward(state, velocity, velocity != kept);
-        let verified = |twist: Twist| match outline {
-            Some(outline) => {
-                let times = guard.limits.period * guard.limits.braking_periods(twist);
-                let command = BodyCommand::of_twist(state, twist, [guard.limits.period, times]);
-                outline.verified(&command, view.people, &view.walls)
-            }
-            None => guard.verified(view, twist),
-        };
+        let verified = |twist: Twist| verified_twist((guard, outline), view, twist);
         match self.give_way(robot, wanted, to_goal, |velocity| verified(twist(velocity))) {
             Some(velocity) if velocity == kept => (twist(velocity), Status::Kept),
             Some(velocity) => (twist(velocity), Status::Changed),
@@ -675,16 +671,10 @@ impl SafeLaw {
             .clipped(robot.velocity, self.limits.slowed(wanted));
         let verifier = guard.filter(|_| self.yielder.is_some() && outline.is_none());
         let mut verifier = verifier.map(|guard| Verifier::new(guard, view));
-        let of_outline = |outline: &OutlineGuard, heading: f64, velocity: Vector2<f64>| {
-            let period = self.limits.period;
-            let braking = braking_periods(velocity.norm(), &self.limits) * period;
-            let command = BodyCommand::of_velocity(robot, heading, velocity, [period, braking]);
-            outline.verified(&command, view.people, &view.walls)
-        };
         let verified = |velocity: Vector2<f64>| {
-            if let Some((outline, heading)) = outline {
+            if let Some(outline) = outline {
                 return self.limits.reaches(robot.velocity, velocity)
-                    && of_outline(outline, heading, velocity);
+                    && self.verified_outline(outline, &view, velocity);
             }
             let verifier = verifier.as_mut();
             verifier.is_none_or(|verifier| verifier.admits(velocity))
@@ -697,9 +687,9 @@ impl SafeLaw {
             };
             return Decision { velocity, status };
         }
-        if let Some((guard, (outline, heading))) = guard.zip(outline) {
+        if let Some((guard, outline)) = guard.zip(outline) {
             return guard.decide_by(&view, wanted, |velocity| {
-                of_outline(outline, heading, velocity)
+                self.verified_outline(outline, &view, velocity)
             });
         }
         match guard {
@@ -710,6 +700,35 @@ impl SafeLaw {
             },
         }
     }
+
+    /// Whether a velocity is verified for the outline of a robot that keeps its heading in rad.
+    pub(super) fn verified_outline(
+        &self,
+        (outline, heading): (&OutlineGuard, f64),
+        view: &View<'_>,
+        velocity: Vector2<f64>,
+    ) -> bool {
+        let period = self.limits.period;
+        let braking = braking_periods(velocity.norm(), &self.limits) * period;
+        let times = [period, braking];
+        let command = BodyCommand::of_velocity(&view.robot, heading, velocity, times);
+        outline.verified(&command, view.people, &view.walls)
+    }
+}
+
+/// Whether a twist is verified, for the outline of the robot where it is no disc.
+pub(super) fn verified_twist(
+    (guard, outline): (&TwistGuard, Option<&OutlineGuard>),
+    view: &TwistView<'_>,
+    twist: Twist,
+) -> bool {
+    let Some(outline) = outline else {
+        return guard.verified(view, twist);
+    };
+    let period = guard.limits.period;
+    let times = [period, period * guard.limits.braking_periods(twist)];
+    let command = BodyCommand::of_twist(&view.robot, twist, times);
+    outline.verified(&command, view.people, &view.walls)
 }
 
 /// Longest time in s and way in m until a robot of a speed in m/s rests, whatever it is told next.

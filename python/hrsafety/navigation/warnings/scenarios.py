@@ -95,8 +95,8 @@ def circled(name: str, robot: HolonomicRobot | DifferentialDriveRobot) -> Iterat
         yield ResultWarning(
             "circle_around_footprint",
             f"{name}.footprint",
-            f"laws, regions and yielding take the circle of {robot.radius:.4g} m around the footprint for the robot; "
-            "contacts, clearances and the shield are those of the footprint itself",
+            f"laws, regions, yielding and foresight take the circle of {robot.radius:.4g} m around the footprint for "
+            "the robot; contacts, clearances and the shield are those of the footprint itself",
             safe_side=True,  # the circle keeps the robot farther away
         )
 
