@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
@@ -121,7 +122,7 @@ class ArenaStudy(Study):
 
     def _built(self, walls: tuple[Any, ...], noise: float, latency: float) -> nav.Law:
         """Return the law of the entry among walls, with a guide around them."""
-        map = nav.StaticMap.from_polylines(walls) if walls else None
+        map = _map(walls) if walls else None
         law = self.entry.law
         if isinstance(law, nav.SafeNavigation):
             return law if law.map is not None else law.replaced(map=map, guide=law.guide or nav.maps.Guide())
@@ -130,6 +131,12 @@ class ArenaStudy(Study):
         return guided.built(
             person_speed=PERSON_SPEED, latency=latency, position_error=error, margin=SCENE_ERROR, map=map
         )
+
+
+@functools.lru_cache(maxsize=24)
+def _map(walls: tuple[Any, ...]) -> nav.StaticMap:
+    """Return the map of walls, whose plans all entries share."""
+    return nav.StaticMap.from_polylines(walls)
 
 
 def _finished(worlds: Sequence[World], threads: int | None) -> dict[int, WorldRun]:

@@ -269,20 +269,13 @@ def run(
     whom = [word("people", each, PEOPLE) for each in _named("people", people, PEOPLE)]
     seen = [word("sensing", each, tuple(SENSINGS)) for each in _named("sensing", sensing, tuple(SENSINGS))]
     cells = [ArenaCell(name, who, how) for name in entries for who in whom for how in seen]
-    each_cell, told = len(places) * numbers, callback("progress", progress)
-    found: dict[ArenaCell, dict[str, Any]] = {}
-    studies: dict[ArenaCell, ArenaStudy] = {}
-    for index, cell in enumerate(cells):
-
-        def heard(done: int, _: int, before: int = index * each_cell) -> None:
-            if told is not None:
-                told(before + done, len(cells) * each_cell)
-
-        studies[cell] = study = ArenaStudy(
-            entry=entries[cell.entry], reacting=cell.people == "reacting", sensing=cell.sensing
-        )
-        given = {"executor": executor, "client": client, "threads": threads}
-        found[cell] = _episodes(study, places, numbers, _folder(out, cell), given, heard)
+    studies = {
+        cell: ArenaStudy(entry=entries[cell.entry], reacting=cell.people == "reacting", sensing=cell.sensing)
+        for cell in cells
+    }
+    folders = {cell: _folder(out, cell) for cell in cells}
+    given = {"executor": executor, "client": client, "threads": threads}
+    found = _episodes(studies, folders, places, numbers, given, callback("progress", progress))
     worlds = [scenarios.social(name, seed) for name in places for seed in range(numbers)]
     certified = [each.arrival_time for each in certify_many(worlds, threads=threads)]
     return Leaderboard(
@@ -337,31 +330,37 @@ def _folder(out: str | PathLike[str] | None, cell: ArenaCell) -> Path | None:
 
 
 def _episodes(
-    study: ArenaStudy,
+    studies: Mapping[ArenaCell, ArenaStudy],
+    folders: Mapping[ArenaCell, Path | None],
     places: Sequence[str],
     seeds: int,
-    folder: Path | None,
     given: Mapping[str, Any],
-    heard: Progress,
-) -> dict[str, Any]:
-    """Return the episodes of a cell: blocks of seeds of each scene, so that a larger call adds to them."""
-    columns: dict[str, list[Any]] = {column.name: [] for column in COLUMNS}
+    told: Progress | None,
+) -> dict[ArenaCell, dict[str, Any]]:
+    """Return the episodes of all cells: blocks of seeds of each scene, so that a larger call adds to them.
+
+    All cells go through a block before the next one, so that they share the plans of their guides.
+    """
+    rows: dict[ArenaCell, dict[str, list[Any]]] = {cell: {each.name: [] for each in COLUMNS} for cell in studies}
     done = 0
     for place in places:
-        rows: dict[str, list[Any]] = {name: [] for name in columns}
         for begin in range(0, seeds, BLOCK):
             block = range(begin, min(seeds, begin + BLOCK))
             axes = ("scene", [scenarios.SOCIAL.index(place)]), ("seed", block)
             design = sweep.Grid(tuple(sweep.Axis(name=name, values=tuple(map(float, own))) for name, own in axes))
-            kept = None if folder is None else folder / f"{place}-{block.start}-{block.stop - 1}"
-            result = sweep.run(design, study, out=kept, chunk_rows=TASK, **given)
-            for name, own in rows.items():
-                own.append(np.asarray(result[name]))
-            done += len(block)
-            heard(done, len(places) * seeds)
-        for name, own in rows.items():
-            columns[name].append(np.concatenate(own))
-    return {name: np.stack(own) for name, own in columns.items()}
+            for cell, study in studies.items():
+                folder = folders[cell]
+                kept = None if folder is None else folder / f"{place}-{block.start}-{block.stop - 1}"
+                result = sweep.run(design, study, out=kept, chunk_rows=TASK, **given)
+                for name, own in rows[cell].items():
+                    own.append(np.asarray(result[name]))
+                done += len(block)
+                if told is not None:
+                    told(done, len(studies) * len(places) * seeds)
+    shape = len(places), seeds
+    return {
+        cell: {name: np.concatenate(parts).reshape(shape) for name, parts in own.items()} for cell, own in rows.items()
+    }
 
 
 def _doubts(

@@ -1,5 +1,8 @@
 //! The guide at work for one robot: it plans again around who stands.
 
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, PoisonError};
+
 use nalgebra::Vector2;
 
 use crate::guide::plan::Planning;
@@ -9,6 +12,87 @@ use navigation_world::world::shape::PlacedShape;
 /// Most nodes that a plan made again settles in one look: an update of a robot takes no longer, and a
 /// run and a robot take the plan at the same look, however fast they are.
 const NODES_OF_A_LOOK: usize = 2000;
+
+/// Most nodes of all plans around people that are kept; beyond them the oldest go.
+const MOST_NODES_KEPT: usize = 1_000_000;
+
+/// A plan around people who stand.
+#[derive(Clone, Debug)]
+struct PlanAround {
+    /// The plan without people.
+    alone: Plan,
+    standing: Vec<PlacedShape>,
+    /// Looks that it takes to make it.
+    looks: usize,
+    plan: Plan,
+}
+
+/// Plans around people who stand, shared by runs: a run takes one at the look at which it would have made it.
+#[derive(Clone, Debug, Default)]
+pub struct PlansAround(Arc<Mutex<VecDeque<PlanAround>>>);
+
+impl PlansAround {
+    fn find(&self, alone: &Plan, standing: &[PlacedShape]) -> Option<PlanAround> {
+        let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let same = |each: &&PlanAround| each.alone.is_copy_of(alone) && each.standing == standing;
+        kept.iter().find(same).cloned()
+    }
+
+    fn keep(&self, made: PlanAround) {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.push_back(made);
+        let mut nodes: usize = kept.iter().map(|each| each.plan.node_count()).sum();
+        while nodes > MOST_NODES_KEPT
+            && let Some(oldest) = kept.pop_front()
+        {
+            nodes -= oldest.plan.node_count();
+        }
+    }
+}
+
+/// How a plan around people is come by.
+#[derive(Clone, Debug)]
+enum Source {
+    Made(Planning),
+    Kept(PlanAround),
+}
+
+/// A plan around people that is not in use yet.
+#[derive(Clone, Debug)]
+struct PendingPlan {
+    standing: Vec<PlacedShape>,
+    /// Looks since it was begun.
+    looks: usize,
+    source: Source,
+}
+
+impl PendingPlan {
+    /// Works on it for one look; whether it is complete.
+    fn advance(&mut self) -> bool {
+        self.looks += 1;
+        match &mut self.source {
+            Source::Made(planning) => planning.advance(NODES_OF_A_LOOK),
+            Source::Kept(kept) => self.looks >= kept.looks,
+        }
+    }
+
+    /// The plan, when it is complete.
+    fn finish(self, alone: &Plan, plans: &PlansAround) -> Plan {
+        match self.source {
+            Source::Kept(kept) => kept.plan,
+            Source::Made(planning) => {
+                let plan = planning.finish();
+                plans.keep(PlanAround {
+                    alone: alone.clone(),
+                    standing: self.standing,
+                    looks: self.looks,
+                    plan: plan.clone(),
+                });
+                plan
+            }
+        }
+    }
+}
 
 /// Plans of one run.
 #[derive(Clone, Debug)]
@@ -20,7 +104,8 @@ pub struct Guidance {
     /// The plan around those who stand, if somebody does and there is one.
     around: Option<Plan>,
     /// The plan around those who stand now, while it is made.
-    planning: Option<Planning>,
+    planning: Option<PendingPlan>,
+    plans: PlansAround,
     standing: Standing,
     /// Whether others stand than the last plan was begun for.
     changed: bool,
@@ -36,9 +121,16 @@ impl Guidance {
             alone: plan,
             around: None,
             planning: None,
+            plans: PlansAround::default(),
             standing: Standing::default(),
             changed: false,
         }
+    }
+
+    /// It, with plans around people that other runs share.
+    #[must_use]
+    pub fn sharing(self, plans: PlansAround) -> Self {
+        Self { plans, ..self }
     }
 
     /// The plan in use.
@@ -80,27 +172,35 @@ impl Guidance {
                 return self.around.take().is_some();
             }
         }
-        let complete = self
-            .planning
-            .take_if(|planning| planning.advance(NODES_OF_A_LOOK));
-        let Some(planning) = complete else {
+        let Some(planning) = self.planning.take_if(PendingPlan::advance) else {
             return false;
         };
-        let (had, plan) = (self.around.is_some(), planning.finish());
+        let plan = planning.finish(&self.alone, &self.plans);
+        let had = self.around.is_some();
         self.around = plan.view_or_way_back(position).is_some().then_some(plan);
         had || self.around.is_some()
     }
 
     /// Begins a plan around those who stand; `None` where somebody stands on the goal.
-    fn begin(&self, people: impl Iterator<Item = Option<PlacedShape>>) -> Option<Planning> {
+    fn begin(&self, people: impl Iterator<Item = Option<PlacedShape>>) -> Option<PendingPlan> {
         let people: Vec<Option<PlacedShape>> = people.collect();
         let standing = self.standing.places().filter_map(|(index, center)| {
             let placed = people.get(index).copied()??;
             Some(PlacedShape { center, ..placed })
         });
-        let shapes: Vec<PlacedShape> = standing.collect();
-        let map = self.alone.map().with_shapes(&shapes);
-        self.alone.begin_again(self.guide, &map, self.robot).ok()
+        let standing: Vec<PlacedShape> = standing.collect();
+        let source = if let Some(kept) = self.plans.find(&self.alone, &standing) {
+            Source::Kept(kept)
+        } else {
+            let map = self.alone.map().with_shapes(&standing);
+            let begun = self.alone.begin_again(self.guide, &map, self.robot);
+            Source::Made(begun.ok()?)
+        };
+        Some(PendingPlan {
+            standing,
+            looks: 0,
+            source,
+        })
     }
 
     /// Cost at a position and the local goal there, outside of the box of the nodes on the way back into it;

@@ -20,7 +20,7 @@ use nalgebra::Vector2;
 use crate::Stop;
 use crate::guide::nodes::Nodes;
 pub use detour::Detour;
-pub use guidance::Guidance;
+pub use guidance::{Guidance, PlansAround};
 use navigation_world::world::map::StaticMap;
 pub use nodes::MOST_NODES;
 use numeric::error::{Failure, Given, Result, finite_pair, not_negative, positive};

@@ -177,6 +177,15 @@ impl Plan {
         Planning::new(guide, self.nodes, map, robot, to)
     }
 
+    /// Whether it is the other one, or a copy of it.
+    pub(super) fn is_copy_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.found, &other.found)
+    }
+
+    pub(super) fn node_count(&self) -> usize {
+        self.nodes.count()
+    }
+
     /// The goal in m.
     #[must_use]
     pub fn goal(&self) -> Vector2<f64> {

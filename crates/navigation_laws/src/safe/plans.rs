@@ -3,12 +3,12 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::Stop;
-use crate::guide::{Guide, Pace, Plan, RobotRoom};
+use crate::guide::{Guide, Pace, Plan, PlansAround, RobotRoom};
 use navigation_world::world::map::{MapShapes, StaticMap};
 use numeric::error::Result;
 use unknown_places::unseen::Ground;
 
-/// Most plans that are kept; a batch of more different ways plans anew.
+/// Most plans that are kept; beyond them the oldest go.
 const MOST_KEPT: usize = 64;
 
 /// Room for the robot, start and goal, and what its pace depends on, bit by bit.
@@ -19,7 +19,12 @@ type Grounds = Vec<([[u64; 2]; 2], Arc<Ground>)>;
 
 /// Plans that were made in one map, and cells for people who are not seen, shared by all copies.
 #[derive(Clone, Debug, Default)]
-pub struct Plans(Arc<Mutex<Vec<(Key, Guide, Plan)>>>, Arc<Mutex<Grounds>>);
+pub struct Plans {
+    alone: Arc<Mutex<Vec<(Key, Guide, Plan)>>>,
+    /// Plans around people who stand.
+    pub(super) around: PlansAround,
+    grounds: Arc<Mutex<Grounds>>,
+}
 
 impl Plans {
     /// The plan of a guide in a map, for a robot, from a start to a goal.
@@ -39,16 +44,17 @@ impl Plans {
         let slow = |pace: &Pace| [pace.max_speed, pace.deceleration, pace.period];
         let [e, f, g] = pace.as_ref().map_or([0.0; 3], slow);
         let key = [robot.least, robot.turning, a, b, c, d, e, f, g].map(f64::to_bits);
-        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut kept = self.alone.lock().unwrap_or_else(PoisonError::into_inner);
         let same = |(known, by, _): &&(Key, Guide, Plan)| *known == key && by == guide;
         if let Some((.., plan)) = kept.iter().find(same) {
             return Ok(plan.clone());
         }
         let map = map.cloned().unwrap_or_else(|| MapShapes::new().map());
         let plan = guide.paced_plan(&map, robot, ends, pace, Stop::never())?;
-        if kept.len() < MOST_KEPT {
-            kept.push((key, *guide, plan.clone()));
+        if kept.len() == MOST_KEPT {
+            kept.remove(0);
         }
+        kept.push((key, *guide, plan.clone()));
         Ok(plan)
     }
 
@@ -59,7 +65,7 @@ impl Plans {
         make: impl FnOnce() -> Result<Ground>,
     ) -> Result<Arc<Ground>> {
         let key = bounds.map(|corner| corner.map(f64::to_bits));
-        let mut kept = self.1.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut kept = self.grounds.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, ground)) = kept.iter().find(|(known, _)| *known == key) {
             return Ok(ground.clone());
         }

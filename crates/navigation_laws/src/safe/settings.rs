@@ -164,7 +164,8 @@ impl SafeNavigation {
         let plan = self
             .plans
             .get(&guide, self.map.as_ref(), robot, ends, pace)?;
-        Ok(Some(Guidance::new(guide, robot, plan)))
+        let around = self.plans.around.clone();
+        Ok(Some(Guidance::new(guide, robot, plan).sharing(around)))
     }
 }
 

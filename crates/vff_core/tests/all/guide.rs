@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use proptest::prelude::*;
 use vff_core::error::Failure;
 use vff_core::laws::Stop;
-use vff_core::laws::guide::{Detour, Guidance, Guide, Plan, Takeover, TakeoverRule};
+use vff_core::laws::guide::{Detour, Guidance, Guide, Plan, PlansAround, Takeover, TakeoverRule};
 use vff_core::world::map::{MapShapes, StaticMap};
 use vff_core::world::shape::PlacedShape;
 
@@ -293,6 +293,47 @@ fn the_plan_leads_around_who_stands_until_he_leaves() {
     };
     both(7.0);
     assert_eq!(both(9.0), direct);
+}
+
+#[test]
+fn plans_that_runs_share_are_taken_at_the_look_at_which_each_would_have_made_them() {
+    let map = walls(&[[[2.0, -4.0], [2.0, 0.0]], [[2.0, 1.0], [2.0, 4.0]]]);
+    let guide = Guide {
+        bounds: Some([[-2.0, -6.0], [6.0, 6.0]]),
+        ..Guide::default()
+    };
+    let ends = [[0.0, 0.5], [4.0, 0.5]];
+    let plan = guide.plan(&map, 0.3, ends, Stop::never()).unwrap();
+    let at = Point::from(ends[0]);
+    let costs = |plan: &Plan, plans: &PlansAround, places: &[[f64; 2]]| {
+        let mut guidance = Guidance::new(guide, 0.3, plan.clone()).sharing(plans.clone());
+        let mut found = Vec::new();
+        for (index, place) in places.iter().enumerate() {
+            for look in 0..120_u32 {
+                let time = 10.0 * index as f64 + 0.25 * f64::from(look);
+                let person = Some(PlacedShape::disc(*place, 0.3));
+                guidance.observe(time, at, std::iter::once(person));
+                found.push(guidance.plan().cost(at).map(f64::to_bits));
+            }
+        }
+        found
+    };
+    // The middle of the door, another place, and the door again.
+    let places = [[2.0, 0.5], [1.0, 0.4], [2.0, 0.5]];
+    let alone = costs(&plan, &PlansAround::default(), &places);
+    assert!(alone.iter().any(|cost| *cost != alone[0]));
+    let shared = PlansAround::default();
+    for _ in 0..2 {
+        assert_eq!(costs(&plan, &shared, &places), alone);
+    }
+    // Those of another map are others.
+    let open = guide
+        .plan(&MapShapes::new().map(), 0.3, ends, Stop::never())
+        .unwrap();
+    assert_eq!(
+        costs(&open, &shared, &places),
+        costs(&open, &PlansAround::default(), &places)
+    );
 }
 
 #[test]
