@@ -76,6 +76,7 @@ impl Pace {
         let first = middle.map(|axis| axis.floor() as i64 - wide);
         let side = 2 * wide + 1;
         let mut seen = vec![false; (side * side) as usize];
+        let mut cells = Vec::new();
         let index = |[column, row]: [i64; 2]| {
             let [column, row] = [column - first[0], row - first[1]];
             let within = column >= 0 && row >= 0 && column < side && row < side;
@@ -91,32 +92,32 @@ impl Pace {
                 let free = ground
                     .cell_at(cell)
                     .is_some_and(|cell| !ground.occupied().contains(cell));
-                if let (true, Some(place)) = (free, index(cell)) {
-                    seen[place] = true;
+                if let (true, Some(place)) = (free, index(cell))
+                    && !std::mem::replace(&mut seen[place], true)
+                {
+                    cells.push(cell);
                 }
                 free
             });
         }
         let mut nearest = [f64::INFINITY; 16];
-        for row in 1..side - 1 {
-            for column in 1..side - 1 {
-                let cell = [first[0] + column, first[1] + row];
-                let at = (row * side + column) as usize;
-                let beside = [at - 1, at + 1, at - side as usize, at + side as usize];
-                let hidden = !seen[at]
-                    && ground
-                        .cell_at(cell)
-                        .is_some_and(|cell| ground.walkable().contains(cell));
-                if !hidden || !beside.into_iter().any(|place| seen[place]) {
-                    continue;
-                }
-                let offset = [0, 1].map(|axis| cell[axis] as f64 + 0.5 - middle[axis]);
-                let away = offset[0].hypot(offset[1]) * ground.cell();
-                for (least, (x, y, _)) in nearest.iter_mut().zip(LINKS) {
-                    // Ways lead to the goal, from which the links are searched.
-                    if offset[0] * x as f64 + offset[1] * y as f64 <= 0.0 {
-                        *least = least.min(away);
-                    }
+        let beside = |[column, row]: [i64; 2]| {
+            [[-1, 0], [1, 0], [0, -1], [0, 1]].map(|[x, y]| [column + x, row + y])
+        };
+        for cell in cells.into_iter().flat_map(beside) {
+            let hidden = index(cell).is_some_and(|place| !seen[place])
+                && ground
+                    .cell_at(cell)
+                    .is_some_and(|cell| ground.walkable().contains(cell));
+            if !hidden {
+                continue;
+            }
+            let offset = [0, 1].map(|axis| cell[axis] as f64 + 0.5 - middle[axis]);
+            let away = offset[0].hypot(offset[1]) * ground.cell();
+            for (least, (x, y, _)) in nearest.iter_mut().zip(LINKS) {
+                // Ways lead to the goal, from which the links are searched.
+                if offset[0] * x as f64 + offset[1] * y as f64 <= 0.0 {
+                    *least = least.min(away);
                 }
             }
         }
