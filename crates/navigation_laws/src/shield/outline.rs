@@ -19,6 +19,7 @@ use navigation_world::robots::differential::Twist;
 use navigation_world::world::footprint::{BodyMotion, Footprint};
 use navigation_world::world::frame::Frame;
 use navigation_world::world::geometry::RobotState;
+use navigation_world::world::shape::{PlacedShape, Shape};
 use numeric::lanes::Vector2;
 use plan::{BodyPlan, rays};
 
@@ -115,12 +116,18 @@ impl OutlineGuard {
 
     /// Whether nobody can be in the room ahead at any time of a plan.
     fn avoids(&self, plan: &BodyPlan, person: &Person) -> bool {
-        let depth = self.shield.around() + person.placed.shape.extent();
+        let extent = person.placed.shape.extent();
+        let depth = match person.placed.shape {
+            Shape::Disc { .. } => self.shield.around() + extent,
+            // A rectangle can touch where its center is not ahead: none of its points may be there.
+            Shape::Rectangle { .. } => self.shield.around(),
+        };
         let grown = self.shield.grown(person);
         let around = self.outline.outer_radius() + depth;
         let end = plan.end();
         let offset = (person.placed.center - plan.start().position).norm();
-        if offset - around - grown - plan.way() - person.reach(end) > 0.0 {
+        let near = self.outline.outer_radius() + self.shield.around() + extent;
+        if offset - near - grown - plan.way() - person.reach(end) > 0.0 {
             return true;
         }
         let rate = plan.rate(around) + person.rate(end);
@@ -132,12 +139,20 @@ impl OutlineGuard {
             let ahead = |instant: usize, depth: f64| {
                 let at = &part.instants[instant];
                 let distance = |way: Vector2<f64>| {
-                    let center = person.placed.center + way - at.frame.position;
-                    let own = at.frame.inward(center);
-                    let rooms = part.motions.iter();
-                    rooms.fold(f64::INFINITY, |least, motion| {
-                        least.min(self.outline.distance_from_room_ahead(own, *motion, depth))
-                    })
+                    let placed = PlacedShape {
+                        center: person.placed.center + way,
+                        ..person.placed
+                    };
+                    let (own, outline) = (placed.seen_from(&at.frame), &self.outline);
+                    let rooms = part.motions.iter().map(|motion| match own.shape {
+                        Shape::Disc { .. } => {
+                            outline.distance_from_room_ahead(own.center, *motion, depth)
+                        }
+                        Shape::Rectangle { .. } => {
+                            outline.rectangle_from_room_ahead(&own, *motion, depth)
+                        }
+                    });
+                    rooms.fold(f64::INFINITY, f64::min)
                 };
                 person.beyond(at.time, distance)
             };

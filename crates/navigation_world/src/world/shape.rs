@@ -2,6 +2,7 @@
 
 use nalgebra::Vector2;
 
+use crate::world::frame::Frame;
 use numeric::error::{Result, finite, finite_pair, not_negative, positive};
 use numeric::lanes::{Planar, Real};
 
@@ -248,6 +249,26 @@ impl PlacedShape {
             }
         }
         Ok(self)
+    }
+
+    /// The shape in the coordinates of a frame.
+    #[must_use]
+    pub fn seen_from(&self, frame: &Frame) -> Self {
+        Self {
+            center: frame.inward(self.center - frame.position),
+            shape: match self.shape {
+                Shape::Disc { radius } => Shape::Disc { radius },
+                Shape::Rectangle {
+                    half_length,
+                    half_width,
+                    axis,
+                } => Shape::Rectangle {
+                    half_length,
+                    half_width,
+                    axis: frame.inward(axis),
+                },
+            },
+        }
     }
 
     /// Vector from a point to the nearest point of the shape, zero inside.

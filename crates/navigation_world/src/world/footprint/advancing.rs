@@ -3,6 +3,7 @@
 use nalgebra::Vector2;
 
 use super::{Footprint, Side};
+use crate::world::shape::{PlacedShape, Shape};
 
 /// Twist of a robot at an instant: velocity ahead in m/s and turn rate in rad/s, positive to the left.
 pub type Twist = [f64; 2];
@@ -70,19 +71,79 @@ impl Footprint {
         });
         strips.chain(sectors).fold(f64::INFINITY, f64::min)
     }
+
+    /// Lower bound in m of the distance of a rectangle, in coordinates of the body, from the same room; infinite at rest.
+    /// Sectors count as whole discs around their corners.
+    #[must_use]
+    pub fn rectangle_from_room_ahead(
+        &self,
+        rectangle: &PlacedShape,
+        motion: impl Into<BodyMotion>,
+        depth: f64,
+    ) -> f64 {
+        let motion = &motion.into();
+        let [a, b, c, d] = rectangle.corners();
+        let edges = [[a, b], [b, d], [d, c], [c, a]];
+        let from = |room: &PlacedShape| {
+            if rectangle.distance(room.center) <= 0.0 {
+                return 0.0;
+            }
+            let edges = edges.map(|[start, end]| room.distance_of_segment(start, end));
+            edges.into_iter().fold(f64::INFINITY, f64::min)
+        };
+        let strips = self
+            .sides
+            .iter()
+            .filter_map(|side| side.strip(motion, depth));
+        let count = self.sides.len();
+        let sectors = (0..count).filter_map(|index| {
+            let corner = self.corners[(index + 1) % count];
+            let normals = [index, (index + 1) % count].map(|side| self.sides[side].normal);
+            let outward = normals.map(|normal| motion.at(corner).dot(&normal) > 0.0);
+            outward
+                .contains(&true)
+                .then(|| PlacedShape::disc(corner.into(), depth))
+        });
+        strips
+            .chain(sectors)
+            .map(|room| from(&room))
+            .fold(f64::INFINITY, f64::min)
+    }
 }
 
 impl Side {
-    /// Distance of a point in m from the strip ahead of the part of the side that moves outward.
-    fn distance_from_strip(&self, point: Vector2<f64>, motion: &BodyMotion, depth: f64) -> f64 {
+    /// Ends of the part of the side that moves outward, in m from its start.
+    fn outward(&self, motion: &BodyMotion) -> Option<[f64; 2]> {
         let outward = |share: f64| motion.at(self.start + self.along * share).dot(&self.normal);
         let (first, last) = (outward(0.0), outward(self.length));
         let zero = self.length * first / (first - last);
-        let [from, to] = match (first > 0.0, last > 0.0) {
-            (true, true) => [0.0, self.length],
-            (true, false) => [0.0, zero],
-            (false, true) => [zero, self.length],
-            (false, false) => return f64::INFINITY,
+        match (first > 0.0, last > 0.0) {
+            (true, true) => Some([0.0, self.length]),
+            (true, false) => Some([0.0, zero]),
+            (false, true) => Some([zero, self.length]),
+            (false, false) => None,
+        }
+    }
+
+    /// The strip ahead of the part of the side that moves outward.
+    fn strip(&self, motion: &BodyMotion, depth: f64) -> Option<PlacedShape> {
+        let [from, to] = self.outward(motion)?;
+        let half = 0.5 * (self.offset + depth);
+        let middle = self.start.dot(&self.along) + 0.5 * (from + to);
+        Some(PlacedShape {
+            center: self.along * middle + self.normal * half,
+            shape: Shape::Rectangle {
+                half_length: 0.5 * (to - from),
+                half_width: half,
+                axis: self.along,
+            },
+        })
+    }
+
+    /// Distance of a point in m from the strip ahead of the part of the side that moves outward.
+    fn distance_from_strip(&self, point: Vector2<f64>, motion: &BodyMotion, depth: f64) -> f64 {
+        let Some([from, to]) = self.outward(motion) else {
+            return f64::INFINITY;
         };
         let start = self.start.dot(&self.along);
         let (along, beyond) = (point.dot(&self.along) - start, point.dot(&self.normal));

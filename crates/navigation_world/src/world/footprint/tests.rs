@@ -242,6 +242,31 @@ proptest! {
     }
 
     #[test]
+    fn a_rectangle_is_as_far_from_the_room_ahead_as_the_nearest_of_its_points(
+        outline in outlines(), ahead in -1.0..1.0f64, turn in -2.0..2.0f64, depth in 0.01..0.3f64,
+        center in prop::array::uniform2(-1.5..1.5f64), sides in prop::array::uniform2(0.1..1.2f64), angle in -4.0..4.0f64
+    ) {
+        let rectangle = PlacedShape::turned(center, sides, angle);
+        let found = outline.rectangle_from_room_ahead(&rectangle, [ahead, turn], depth);
+        let [a, b, c, d] = rectangle.corners();
+        let points = contour(&[a, b, d, c], 60);
+        let nearest = |distance: &dyn Fn(Vector2<f64>) -> f64| points.iter().map(|point| distance(*point)).fold(f64::INFINITY, f64::min);
+        let of_points = nearest(&|point| outline.distance_from_room_ahead(point, [ahead, turn], depth));
+        prop_assert!(found <= of_points + 1e-9, "{found} {of_points}");
+        // Corners that move outward are discs.
+        let corners = outline.corners();
+        let of_discs = nearest(&|point| {
+            let apart = corners.iter().map(|corner| (point - corner).norm() - depth);
+            apart.fold(f64::INFINITY, f64::min).max(0.0)
+        });
+        let covers = outline.sides.iter().any(|side| {
+            let middle = side.normal * (0.5 * (side.offset + depth)) + side.along * (side.start.dot(&side.along) + 0.5 * side.length);
+            rectangle.distance(middle) <= 0.05
+        });
+        prop_assert!(covers || found >= of_points.min(of_discs) - 0.02, "{found} {of_points} {of_discs}");
+    }
+
+    #[test]
     fn moved_outlines_stay_off_what_all_their_poses_stay_off(
         outline in outlines(), way in prop::array::uniform2(-0.8..0.8f64), angle in prop_oneof![Just(0.0), -2.0..2.0f64],
         ends in prop::array::uniform4(-2.0..2.0f64)
