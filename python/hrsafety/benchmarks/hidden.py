@@ -146,8 +146,8 @@ def hidden_entry(word: str) -> HiddenEntry:
             person_radius=PERSON,
             # Plans are never faster than the robot.
             creep_speed=values.get("creep", 0.0) if values.get("reckon", 1.0) else ROBOT.max_speed,
-            cell=values.get("cell", 0.05),
-            sampling=values.get("sampling", 0.05),
+            cell=values.get("cell", 0.025),
+            sampling=values.get("sampling", 0.0125),
         ),
     )
 

@@ -49,7 +49,7 @@ impl Default for Unseen {
             person_core: 0.15,
             cell: 0.05,
             creep_speed: 0.0,
-            sampling: 0.05,
+            sampling: 0.0125,
             pose_error: 0.005,
             heading_error: 0.0,
             range_error: 0.0,

@@ -72,7 +72,7 @@ class Unseen(Parameters):
     person_core: float = 0.15
     cell: float = 0.05
     creep_speed: float = 0.0
-    sampling: float = 0.05
+    sampling: float = 0.0125
     pose_error: float = 0.005
     heading_error: float = 0.0
     range_error: float = 0.0
