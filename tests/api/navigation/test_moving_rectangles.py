@@ -224,6 +224,18 @@ def test_a_shield_is_never_at_fault_among_rectangles(law: nav.Law) -> None:
     assert table.contacts_at_fault.sum() == 0
 
 
+@pytest.mark.parametrize("wheels", [True, False])
+def test_a_shield_of_an_outline_is_never_at_fault_among_rectangles(wheels: bool) -> None:
+    """With the disc around each rectangle in its place the robot was at fault in three of these scenes."""
+    footprint = nav.robots.Footprint.rectangle(0.508, 0.430)
+    kind = nav.DifferentialDriveRobot if wheels else nav.HolonomicRobot
+    drawn = crossings(200, 8)
+    scenes = [replace(drawn[index], robot=kind(footprint=footprint)) for index in (63, 133, 148, *range(25))]
+    shield = Shield(person_speed=1.6)
+    for law in (SafeNavigation(ORCA, shield=shield, yielding=Yielding()), SafeNavigation(BLIND, shield=shield)):
+        assert nav.simulate_many(scenes, law).contacts_at_fault.sum() == 0
+
+
 def test_a_shield_that_assumes_slower_rectangles_is_at_fault() -> None:
     """The check above can fail."""
     table = nav.simulate_many(crossings(40, 1), SafeNavigation(BLIND, shield=Shield(person_speed=0.0)))
