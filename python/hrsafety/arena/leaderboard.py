@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import Executor
+from concurrent.futures import Executor, ThreadPoolExecutor
+from itertools import product
 from os import PathLike
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
@@ -35,6 +36,8 @@ PEOPLE = ("reacting", "not_reacting")
 FILES = (".toml", ".yaml", ".yml")
 TASK, BLOCK = 50, 20
 """Episodes of a task, and seeds that are kept together."""
+WAITING = 32
+"""Tasks on their way to an executor or a cluster at once."""
 MOST_SEEDS = 100_000
 REPLICATES = 2000
 """How often seeds are drawn again for the fronts."""
@@ -342,21 +345,31 @@ def _episodes(
     All cells go through a block before the next one, so that they share the plans of their guides.
     """
     rows: dict[ArenaCell, dict[str, list[Any]]] = {cell: {each.name: [] for each in COLUMNS} for cell in studies}
-    done = 0
-    for place in places:
-        for begin in range(0, seeds, BLOCK):
-            block = range(begin, min(seeds, begin + BLOCK))
-            axes = ("scene", [scenarios.SOCIAL.index(place)]), ("seed", block)
-            design = sweep.Grid(tuple(sweep.Axis(name=name, values=tuple(map(float, own))) for name, own in axes))
-            for cell, study in studies.items():
-                folder = folders[cell]
-                kept = None if folder is None else folder / f"{place}-{block.start}-{block.stop - 1}"
-                result = sweep.run(design, study, out=kept, chunk_rows=TASK, **given)
-                for name, own in rows[cell].items():
-                    own.append(np.asarray(result[name]))
-                done += len(block)
-                if told is not None:
-                    told(done, len(studies) * len(places) * seeds)
+    blocks = [range(begin, min(seeds, begin + BLOCK)) for begin in range(0, seeds, BLOCK)]
+    tasks = list(product(places, blocks, studies))
+
+    def computed(task: tuple[str, range, ArenaCell]) -> Any:
+        place, block, cell = task
+        axes = ("scene", [scenarios.SOCIAL.index(place)]), ("seed", block)
+        design = sweep.Grid(tuple(sweep.Axis(name=name, values=tuple(map(float, own))) for name, own in axes))
+        folder = folders[cell]
+        kept = None if folder is None else folder / f"{place}-{block.start}-{block.stop - 1}"
+        return sweep.run(design, studies[cell], out=kept, chunk_rows=TASK, **given)
+
+    # Elsewhere many are computed at once; here each has all cores.
+    elsewhere = given["executor"] is not None or given["client"] is not None
+    pool = ThreadPoolExecutor(WAITING) if elsewhere else None
+    try:
+        done = 0
+        for (_, block, cell), result in zip(tasks, (pool.map if pool else map)(computed, tasks), strict=True):
+            for name, own in rows[cell].items():
+                own.append(np.asarray(result[name]))
+            done += len(block)
+            if told is not None:
+                told(done, len(studies) * len(places) * seeds)
+    finally:
+        if pool is not None:
+            pool.shutdown(wait=False, cancel_futures=True)
     shape = len(places), seeds
     return {
         cell: {name: np.concatenate(parts).reshape(shape) for name, parts in own.items()} for cell, own in rows.items()

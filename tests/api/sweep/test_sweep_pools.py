@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hrsafety import InvalidParameterError, sweep
+from hrsafety import InvalidParameterError, arena, sweep
 from reference import sweep_functions
 
 SPEEDS = sweep.Sobol([sweep.Axis(name="closing_speed", unit="m/s", low=0.2, high=2.0)], 2048, seed=3)
@@ -149,6 +149,21 @@ def test_cluster_gives_the_same_bits(client: Any, tmp_path: Path, expected: byte
     assert seen[0] == (0, 2048)
     assert seen[-1] == (2048, 2048)
     assert len(seen) == 22
+
+
+def test_standard_scenes_on_a_cluster_have_the_same_bits(client: Any, tmp_path: Path) -> None:
+    few: dict[str, Any] = {
+        "scenes": ["frontal_approach", "pedestrian_overtaking"],
+        "seeds": 2,
+        "people": ["not_reacting"],
+    }
+    laws = ["straight", "straight+barrier"]
+    here = arena.run(laws, **few)
+    there = arena.run(laws, **few, client=client, out=tmp_path)
+    for cell, found in here.episodes.items():
+        for name, own in found.items():
+            np.testing.assert_array_equal(there.episodes[cell][name], own)
+    assert len(list(tmp_path.rglob("*.npz"))) == 4
 
 
 def test_worker_that_is_killed_costs_nothing_but_time(client: Any, tmp_path: Path, expected: bytes) -> None:
