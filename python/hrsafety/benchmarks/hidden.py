@@ -117,7 +117,7 @@ def hidden_entry(word: str) -> HiddenEntry:
     word : str
         ``corner``, ``doors`` or ``rooms``, with settings in brackets where they are others than usual: ``creep``, the
         speed up to which plans reckon with seen people only, in m/s; ``reckon=0`` for a shield that reckons with those
-        only; ``cell`` in m and ``sampling`` in s of `Unseen`.
+        only; ``cell`` in m, 0.025 unless given, and ``sampling`` in s of `Unseen`.
 
     Returns
     -------
