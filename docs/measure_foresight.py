@@ -2,8 +2,9 @@
 
 ``python docs/measure_foresight.py`` prints, ``--write`` replaces what stands between the marks of
 docs/guides/foresight.md; ``--only shares`` are the suites, ``--only scenes`` the standard scenes of social navigation,
-``--only outlines`` crowds around robots with a footprint, ``--only adversary`` the search for a fault. The recordings
-are those of ``HRSAFETY_RECORDINGS``, a folder with zara01.csv and zara03.csv.
+``--only outlines`` crowds around robots with a footprint, ``--only adversary`` the search for a fault, ``--only first``
+the first rows of the page, which are some of its table of suites. The recordings are those of ``HRSAFETY_RECORDINGS``, a
+folder with zara01.csv and zara03.csv.
 """
 
 from __future__ import annotations
@@ -22,9 +23,11 @@ from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.benchmarks import benchmark, entry
 from hrsafety.navigation.crowd.simulation import simulated
-from page_tables import DOCS, ERROR, LATE, LATENCY, SENSING, head, line, percent, print_or_write
+from page_tables import DOCS, ERROR, LATE, LATENCY, SENSING, head, line, percent, print_or_write, selected, written
 from properties.pursued_robot import episode
 
+PAGE = DOCS / "guides" / "foresight.md"
+FIRST_MARKS, SHARES_MARKS = "first rows of measure_foresight.py", "shares of measure_foresight.py"
 FORESEES = "field+shield+foresight"
 LAWS = ("field+shield+yielding", "orca+shield+yielding", FORESEES)
 CROWDS, FIRST = 200, 40_000
@@ -64,6 +67,13 @@ def shares() -> str:
                 rows.append(line(where, law, sensing, len(found), *counts, f"{result.mean_arrival(law):.1f}"))
     two_wheels = crowded("crowd of 12, two wheels", nav.DifferentialDriveRobot(), range(FIRST, FIRST + CROWDS))
     return "\n".join([*rows, *two_wheels]) + "\n"
+
+
+def first() -> str:
+    """Return the rows of crowds and of S5 with people who are measured late, from the table of suites of the page."""
+    table = written(PAGE.read_text(encoding="utf-8"), SHARES_MARKS)
+    columns = ("suite", "law", "episodes", "success %", "at fault %", "arrival, s")
+    return selected(table, lambda row: row["people measured"] == LATE and "zara" not in row["suite"], columns)
 
 
 def outlines() -> str:
@@ -145,9 +155,10 @@ def adversary() -> str:
 
 if __name__ == "__main__":
     print_or_write(
-        DOCS / "guides" / "foresight.md",
+        PAGE,
         {
-            "shares": ("shares of measure_foresight.py", shares),
+            "shares": (SHARES_MARKS, shares),
+            "first": (FIRST_MARKS, first),
             "outlines": ("outlines of measure_foresight.py", outlines),
             "scenes": ("scenes of measure_foresight.py", standard_scenes),
             "adversary": ("adversary of measure_foresight.py", adversary),

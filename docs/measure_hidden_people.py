@@ -1,8 +1,9 @@
 """Print encounters with people who were hidden, or write them into the guide.
 
 ``python docs/measure_hidden_people.py --places 30`` prints a table, ``--write`` replaces what stands between the marks
-of docs/guides/people_behind_corners.md. Encounters are kept in the folder ``HRSAFETY_ROWS`` where that is set, place
-by place, and the run resumes there; ``--kept`` counts those alone.
+of docs/guides/people_behind_corners.md; ``--only first`` are the first rows of the page, which are some of its table.
+Encounters are kept in the folder ``HRSAFETY_ROWS`` where that is set, place by place, and the run resumes there;
+``--kept`` counts those alone.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import argparse
 import json
 import math
 import os
+import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -18,9 +20,10 @@ from typing import Any
 import numpy as np
 
 from hrsafety.benchmarks.hidden import LIMIT, SUITE_LAWS, WALKING, encounters, hidden_entry
-from page_tables import DOCS, head, line, percent, print_or_write
+from page_tables import DOCS, head, line, percent, print_or_write, selected, written
 
 PAGE = DOCS / "guides" / "people_behind_corners.md"
+FIRST_MARKS, TABLE_MARKS = "first rows of measure_hidden_people.py", "hidden people"
 MOST = 60
 """Encounters in a place: one every half second, at most."""
 
@@ -86,11 +89,21 @@ def table(places: int, words: list[str], *, only_kept: bool) -> str:
     return "\n".join(lines) + "\n"
 
 
+def first() -> str:
+    """Return the rows of robots that do not creep, with and without unseen people, from the table of the page."""
+    table = written(PAGE.read_text(encoding="utf-8"), TABLE_MARKS)
+    columns = ("place and shield", "encounters", "at fault %", "time with nobody there: median, worst s")
+    return selected(table, lambda row: not {"creep", "cell"} & set(re.findall(r"\w+", row["place and shield"])), columns)
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--places", type=int, default=10, help="places of each kind")
     parser.add_argument("--laws", nargs="*", default=list(SUITE_LAWS))
     parser.add_argument("--kept", action="store_true", help="no new encounters")
     given, sys.argv[1:] = parser.parse_known_args()
-    made = {"encounters": ("hidden people", lambda: table(given.places, given.laws, only_kept=given.kept))}
+    made = {
+        "encounters": (TABLE_MARKS, lambda: table(given.places, given.laws, only_kept=given.kept)),
+        "first": (FIRST_MARKS, first),
+    }
     print_or_write(PAGE, made)

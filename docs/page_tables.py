@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from hrsafety import navigation as nav
@@ -54,6 +54,23 @@ def written(text: str, name: str) -> str:
     """Return the tables that a page holds."""
     begin, end = marks(name)
     return text.split(begin)[1].split(end)[0]
+
+
+def selected(table: str, keep: Callable[[dict[str, str]], bool], columns: Sequence[str]) -> str:
+    """Return some columns of those rows of a table that a reader decides by.
+
+    Parameters
+    ----------
+    table : str
+        The whole table, as it stands on its page.
+    keep : callable
+        Takes the cells of a row by the titles of their columns, and returns whether the row is shown.
+    columns : sequence of str
+        Titles of the columns that are shown.
+    """
+    titles, _, *rows = ([cell.strip() for cell in row.strip("| \n").split(" | ")] for row in table.strip().splitlines())
+    found = [dict(zip(titles, row, strict=True)) for row in rows]
+    return "\n".join([*head(*columns), *(line(*(row[name] for name in columns)) for row in found if keep(row))]) + "\n"
 
 
 def print_or_write(page: Path, parts: Mapping[str, tuple[str, Callable[[], str]]]) -> None:

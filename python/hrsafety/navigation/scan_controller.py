@@ -149,7 +149,7 @@ class ScanController:
     Parameters
     ----------
     rollouts : ArcRollouts
-        How it finds its way.
+        Choice of the twist.
     robot : DifferentialDriveRobot
         Speeds, accelerations and footprint; one without a footprint counts as a polygon of 16 sides around its disc.
     goal : (float, float)
@@ -163,11 +163,11 @@ class ScanController:
     scan_timeout : float
         After so many seconds without a scan of one of the lidars the robot stops.
     oldest_scan : float
-        Scans that are older than this in s count for nothing.
+        Scans that are older than this in s are ignored.
     position_tracking : float
-        How far in m the robot may be from where its plan has it until rest; plans keep so much more away.
+        Largest distance in m of the robot from its plan until rest; plans keep so much more distance.
     heading_tracking : float
-        How far in rad its heading may be; plans keep the way of the farthest corner more away.
+        Largest error in rad of its heading; plans keep the way of the farthest corner more distance.
 
     Raises
     ------

@@ -21,13 +21,13 @@ class ArcRollouts(Parameters):
 
     A guide searches the time to the goal over the cells of a rolling map; unknown ground can be passed, at a price.
     91 twists are tried, each rolled out on two arcs for as long as the robot needs to stop, and rated by the time to
-    the goal from where they lead and by how near they come to what is known. The first twist is executed whose plan,
+    the goal from their ends and by their distance from known obstacles. The first twist is executed whose plan,
     the twist and braking after it, is verified by the exact swept distance of the outline to the points of occupied
     cells and to the front of the unknown; where none is, the plan before runs on until rest.
 
-    In a static world in which whatever lies in cells that count as free is within ``margin`` of the point of an
-    occupied cell, the robot touches nothing. **Not covered**: things thinner than the beams are apart, glass, what is
-    not in the plane of the scan, people and whatever else moves.
+    In a static world the robot touches nothing, provided that every obstacle in a free cell lies within ``margin`` of
+    the point of an occupied cell. **Not covered**: obstacles thinner than the distance of the beams, glass, obstacles
+    outside the plane of the scan, people and other moving bodies.
 
     Parameters
     ----------
@@ -36,13 +36,13 @@ class ArcRollouts(Parameters):
     margin : float
         Distance from everything known that plans keep, in m; it covers errors of map and pose.
     clearance : float
-        Distance in m beyond the circle within the outline that the guide keeps from what stands, where it can.
+        Distance in m beyond the circle within the outline that the guide keeps from obstacles, where it can.
     narrow_weight : float
         Price of ground where the robot cannot turn, as a share of its time.
     near_weight : float
-        Price of ground near to what stands, as a share of its time.
+        Price of ground near obstacles, as a share of its time.
     near_distance : float
-        Distance of the middle of the robot within which that is near, in m.
+        Distance of the middle of the robot from obstacles within which ground counts as near, in m.
     unknown_weight : float
         Price of unknown ground, as a share of its time.
     beyond : float
@@ -54,7 +54,7 @@ class ArcRollouts(Parameters):
     verify : bool
         Whether plans are verified. Without it contacts are to be expected.
     seed : int
-        Of the twists that are driven where the robot makes no progress.
+        Seed of the twists that are driven where the robot makes no progress.
 
     Raises
     ------

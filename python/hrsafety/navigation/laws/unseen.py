@@ -1,4 +1,4 @@
-"""People whom nobody sees: what a shield assumes of them."""
+"""People whom the robot does not see: what a shield assumes of them."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ MOST_BEAMS = 100_000
 class Unseen(Parameters):
     """People whom the robot does not see, for a shield that reckons with them.
 
-    The shield keeps in mind where somebody can be who is not seen: everywhere at first, then where no beam went, and
-    wherever somebody can have gone from there since. A plan is verified only if nobody from there can come ahead of the
-    robot before it rests. So whoever steps out from behind a corner meets a robot that rests or does not move toward
-    him. It needs the map whose walls hide people, and scans; in a run people behind walls, behind others or out of
-    range are not told of.
+    The shield stores where an unseen person can be: everywhere at first, then where no beam went, and wherever a person
+    can have walked from there since. A plan is verified only if nobody from there can come ahead of the robot before it
+    rests, so that a person who steps out from behind a corner meets a robot that rests or does not move toward that
+    person. The shield needs the map whose walls hide people, and scans; in a run the law is not told of people behind
+    walls, behind others or out of range.
 
-    Assumed is: a person is a disc around a core that never overlaps a wall of the map and ends every beam that meets
+    Assumptions: a person is a disc around a core that never overlaps a wall of the map and ends every beam that meets
     it; nobody is faster than ``person_speed`` of the shield; every wall that ends beams is in the map; the pose of the
-    robot and its beams are as exact as is said here. Nothing is promised about people who crawl below the beams or sit
-    behind glass, who come through doors that the map takes for walls, or out of nothing. That the robot arrives is not
-    promised either: where unseen places are near its way it waits, unless it may creep.
+    robot and its beams are as exact as the arguments say. People who crawl below the beams or sit behind glass, who
+    come through doors that the map takes for walls, or out of nothing are not covered. Arrival is not guaranteed: the
+    robot waits where unseen places are near its way, unless it may creep.
 
     Parameters
     ----------
@@ -37,24 +37,24 @@ class Unseen(Parameters):
     person_core : float
         Radius in m of the core of a person.
     cell : float
-        Side of the cells in m, at most ``(person_core - pose_error)/(1 + sqrt 2)``. Smaller ones round less: the robot
+        Side of the cells in m, at most ``(person_core - pose_error)/(1 + sqrt 2)``. Smaller cells round less: the robot
         is faster at openings, for four times the work with half of the side.
     creep_speed : float
-        Plans never faster than this, in m/s, reckon with those only who are seen; 0: no plans.
+        Speed in m/s up to which a plan is verified against seen people only; 0: no such plans.
     sampling : float
-        Time in s between the instants at which a plan is looked at.
+        Time in s between the instants at which a plan is verified.
     pose_error, heading_error : float
-        Largest error of the robot's own position in m and heading in rad; with the latter far parts of beams count for
-        nothing.
+        Largest error of the robot's own position in m and heading in rad; with an error of the heading far parts of
+        beams empty no cells.
     range_error : float
         Largest error of a measured range in m.
     beams : int
-        Beams of a scan in a run. They empty a place where they are less than a cell apart.
+        Beams of a scan in a run. They empty cells where they are less than a cell apart.
     range : float
-        How far beams count, in m.
+        Range of the beams in m.
     field_of_view : float
-        Angle in rad that the beams of a run divide. What is behind a robot that does not look all around stays unseen,
-        and it hardly moves.
+        Angle in rad that the beams of a run divide. The space behind a robot that does not look all around stays
+        unseen, and the robot hardly moves.
 
     Raises
     ------
