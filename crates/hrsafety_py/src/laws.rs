@@ -28,6 +28,11 @@ impl Law {
     /// A law whose numbers are allowed, made of all that was given.
     fn made(given: &Keywords<'_>, law: impl Into<AnyLaw>) -> PyResult<Self> {
         given.done()?;
+        Self::of(law)
+    }
+
+    /// A law whose numbers are allowed.
+    pub fn of(law: impl Into<AnyLaw>) -> PyResult<Self> {
         Ok(Self {
             any: law.into().checked().map_err(CoreError::from)?,
             field: None,

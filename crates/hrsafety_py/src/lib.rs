@@ -193,5 +193,5 @@ mod _hrsafety {
     #[pymodule_export]
     use crate::twists::choose_twist;
     #[pymodule_export]
-    use crate::unknown::{ArcRollouts, ScanController, UnknownMap, unknown_trial};
+    use crate::unknown::{ArcRollouts, ScanController, UnknownMap, exploring_law};
 }

@@ -263,7 +263,7 @@ value_class! {
         let mounting = frame(given.take("mounting")?);
         taken!(given: lidar::Lidar {
             map = map.map(|map| map.0.clone()).unwrap_or_default(), beams, mounting = mounting, field_of_view, angle_min,
-            range_min, range_max, range_noise, dropout, sees_obstacles, kappa, influence, reach, max_speed,
+            range_min, range_max, range_noise, dropout, latency, sees_obstacles, kappa, influence, reach, max_speed,
         })
     }
 

@@ -22,7 +22,7 @@ macro_rules! robot_class {
     ($(#[$about:meta])* $name:ident($core:ty) of $given:ident $value:block) => {
         $(#[$about])*
         #[pyclass(frozen, module = "hrsafety._hrsafety")]
-        pub struct $name(pub $core, Outline);
+        pub struct $name(pub $core, pub Outline);
 
         #[pymethods]
         impl $name {
@@ -43,7 +43,7 @@ macro_rules! robot_class {
 }
 
 /// Outline of a robot that is no disc.
-type Outline = Option<Arc<footprint::Footprint>>;
+pub type Outline = Option<Arc<footprint::Footprint>>;
 
 robot_class! {
     /// Holonomic robot.

@@ -1,24 +1,24 @@
-//! Places that a robot has never seen: its map, a controller that is told scans, and whole episodes.
+//! Places that a robot has never seen: its map, the law that finds a way, and a controller that is told scans.
 
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::error::Result;
-use vff_core::robots::differential::DifferentialLimits;
+use vff_core::laws;
+use vff_core::laws::arc_rollouts::scanner;
 use vff_core::unknown::explore::{
-    self, ExplorerOptions, Order, Robot, Scanner, Status, TimedScan, Trust,
+    self, Explorer, ExplorerOptions, Order, Robot, Status, TimedScan, Trust,
 };
 use vff_core::unknown::guide::GuideOptions;
 use vff_core::unknown::map::{Kind, MapOptions};
-use vff_core::unknown::trial::{Ended, Moment, Trial};
 
 use crate::arrays::fields;
 use crate::errors::CoreError;
 use crate::keywords::{Keywords, parameter_class, taken, value_class};
-use crate::maps::{Lidar, StaticMap};
-use crate::robots::footprint::Footprint;
+use crate::laws::Law;
+use crate::maps::Lidar;
+use crate::parameters::DifferentialDriveRobot;
 use crate::run::stepped::Stepped;
-use crate::watch::{Report, here};
 
 const BUSY: &str = "an update of this controller is under way; update it from one place";
 
@@ -40,31 +40,10 @@ value_class! {
     }
 }
 
-/// Largest speed, acceleration, deceleration, turn rate and its change.
-type Limits = [f64; 5];
-
-fn robot(
-    footprint: &Footprint,
-    [
-        max_speed,
-        max_acceleration,
-        max_deceleration,
-        max_turn_rate,
-        change,
-    ]: Limits,
-    period: f64,
-) -> Robot {
-    Robot {
-        footprint: footprint.0.clone(),
-        limits: DifferentialLimits {
-            max_speed,
-            max_acceleration,
-            max_deceleration,
-            max_turn_rate,
-            max_angular_acceleration: change,
-        },
-        period,
-    }
+/// The law that finds its way so.
+#[pyfunction]
+pub fn exploring_law(rollouts: &ArcRollouts) -> PyResult<Law> {
+    Law::of(laws::arc_rollouts::ArcRollouts(rollouts.0))
 }
 
 /// A robot that is told poses and scans.
@@ -77,11 +56,10 @@ type Pose = ([f64; 2], f64);
 #[pymethods]
 impl ScanController {
     #[new]
-    #[pyo3(signature = (rollouts, footprint, limits, period, lidars, **given))]
+    #[pyo3(signature = (rollouts, robot, period, lidars, **given))]
     fn new(
         rollouts: &ArcRollouts,
-        footprint: &Footprint,
-        limits: Limits,
+        robot: &DifferentialDriveRobot,
         period: f64,
         lidars: Vec<PyRef<'_, Lidar>>,
         given: Option<Keywords<'_>>,
@@ -91,16 +69,9 @@ impl ScanController {
             taken!(given: Trust { scan_timeout, oldest_scan, position_tracking, heading_tracking });
         let goal = (given.take("goal")?, given.take("arrival_tolerance")?);
         given.done()?;
-        let scanner = |lidar: &PyRef<'_, Lidar>| Scanner {
-            mounting: lidar.0.mounting,
-            bearings: (0..lidar.0.beams)
-                .map(|beam| lidar.0.bearing(beam))
-                .collect(),
-            range_min: lidar.0.range_min,
-            range_max: lidar.0.range_max,
-        };
-        let scanners = lidars.iter().map(scanner).collect();
-        let robot = robot(footprint, limits, period);
+        let scanners = lidars.iter().map(|lidar| scanner(&lidar.0)).collect();
+        let robot = Robot::of(&robot.0, robot.1.as_deref(), period);
+        let robot = robot.map_err(CoreError::from)?;
         let core = explore::Controller::new(robot, rollouts.0, trust, scanners, goal);
         Ok(Self(Stepped::new(core.map_err(CoreError::from)?, BUSY)))
     }
@@ -117,6 +88,7 @@ impl ScanController {
             Ok(TimedScan {
                 lidar: *lidar,
                 time: *time,
+                heading: None,
                 ranges: ranges.as_slice()?,
             })
         });
@@ -133,31 +105,60 @@ impl ScanController {
 
     /// Lowest corner of the cells in m, and their kinds row by row: 0 unknown, 1 free, 2 occupied.
     fn cells<'py>(&self, py: Python<'py>) -> PyResult<([f64; 2], Bound<'py, PyArray2<u8>>)> {
-        let core = self.0.idle()?;
-        let cells = core.explorer().cells();
-        let size = cells.size();
-        let kind = |row: usize, column: usize| match cells.kind(column, row) {
-            Kind::Unknown => 0,
-            Kind::Free => 1,
-            Kind::Occupied => 2,
-        };
-        let kinds: Vec<u8> = (0..size * size)
-            .map(|at| kind(at / size, at % size))
-            .collect();
-        let low = cells.low().map(|axis| axis as f64 * cells.cell());
-        Ok((low, kinds.into_pyarray(py).reshape([size, size])?))
+        cells_of(py, self.0.idle()?.explorer())
     }
 
     /// Places of the plan from a place on.
     fn way(&self, place: [f64; 2]) -> PyResult<Vec<[f64; 2]>> {
-        let core = self.0.idle()?;
-        let way = core.explorer().plan().map(|plan| plan.way(place.into()));
-        Ok(way
-            .unwrap_or_default()
-            .into_iter()
-            .map(Into::into)
-            .collect())
+        Ok(way_of(self.0.idle()?.explorer(), place))
     }
+}
+
+/// Cells of a rolling map.
+type Cells<'py> = ([f64; 2], Bound<'py, PyArray2<u8>>);
+
+/// Lowest corner of the cells in m, and their kinds row by row: 0 unknown, 1 free, 2 occupied.
+pub fn cells_of<'py>(py: Python<'py>, explorer: &Explorer) -> PyResult<Cells<'py>> {
+    let cells = explorer.cells();
+    let size = cells.size();
+    let kind = |row: usize, column: usize| match cells.kind(column, row) {
+        Kind::Unknown => 0,
+        Kind::Free => 1,
+        Kind::Occupied => 2,
+    };
+    let kinds: Vec<u8> = (0..size * size)
+        .map(|at| kind(at / size, at % size))
+        .collect();
+    let low = cells.low().map(|axis| axis as f64 * cells.cell());
+    Ok((low, kinds.into_pyarray(py).reshape([size, size])?))
+}
+
+/// Places of the plan from a place on; none where it has no plan.
+fn way_of(explorer: &Explorer, place: [f64; 2]) -> Vec<[f64; 2]> {
+    let way = explorer.plan().map(|plan| plan.way(place.into()));
+    let way = way.unwrap_or_default();
+    way.into_iter().map(Into::into).collect()
+}
+
+/// Cells of the map that a law makes, side of a cell in m, and the way from a place on.
+pub type Explored<'py> = ([f64; 2], Bound<'py, PyArray2<u8>>, f64, Vec<[f64; 2]>);
+
+/// What a law knows of a place from scans.
+pub fn explored<'py>(
+    py: Python<'py>,
+    explorer: Option<&Explorer>,
+    place: [f64; 2],
+) -> PyResult<Option<Explored<'py>>> {
+    let Some(explorer) = explorer else {
+        return Ok(None);
+    };
+    let (low, kinds) = cells_of(py, explorer)?;
+    Ok(Some((
+        low,
+        kinds,
+        explorer.cells().cell(),
+        way_of(explorer, place),
+    )))
 }
 
 fn word(status: Status) -> &'static str {
@@ -185,54 +186,5 @@ fn fields_of<'py>(py: Python<'py>, order: &Order) -> PyResult<Bound<'py, PyDict>
         value clock_set_back = doubts.clock;
         value ignored_scans = doubts.ignored;
         value plan = plan;
-    })
-}
-
-/// Outcome of an episode in a place that the robot does not know.
-#[pyfunction]
-#[pyo3(signature = (rollouts, footprint, limits, period, place, **given))]
-pub fn unknown_trial<'py>(
-    py: Python<'py>,
-    rollouts: &ArcRollouts,
-    footprint: &Footprint,
-    limits: Limits,
-    period: f64,
-    place: &StaticMap,
-    given: Option<Keywords<'py>>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let given = given.unwrap_or_default();
-    let timed: bool = given.take("timed")?;
-    let lidar: PyRef<'_, Lidar> = given.take("lidar")?;
-    let trial = taken!(given: Trial {
-        robot = robot(footprint, limits, period), options = rollouts.0, place = place.0.clone(), start, heading, goal,
-        tolerance as arrival_tolerance, time_limit, lidar = lidar.0.clone(), length_drift, heading_drift, late, seed,
-    });
-    given.done()?;
-    let (outcome, times) = here(py, Report::none(), |_| {
-        let (mut begun, mut times) = (std::time::Instant::now(), Vec::new());
-        let outcome = trial.run(&mut |moment| match moment {
-            Moment::Scanned if timed => begun = std::time::Instant::now(),
-            Moment::Decided { .. } if timed => times.push(begun.elapsed().as_secs_f64()),
-            _ => {}
-        })?;
-        Ok::<_, numeric::error::Failure>((outcome, times))
-    })?;
-    let ended = match outcome.ended {
-        Ended::Arrived => "arrived",
-        Ended::Collided => "collided",
-        Ended::TimedOut => "timed_out",
-    };
-    let rows = outcome.poses.len();
-    let poses: Vec<f64> = outcome.poses.into_iter().flatten().collect();
-    Ok(fields! { py;
-        value outcome = ended;
-        value arrival_time = outcome.time;
-        value end_time = outcome.end_time;
-        value clearance = outcome.clearance;
-        value path_length = outcome.path;
-        value recoveries = outcome.recoveries;
-        value braking = outcome.braking;
-        array [rows, 3] poses = poses;
-        vector decision_times = times;
     })
 }

@@ -40,6 +40,7 @@ macro_rules! other_laws {
     };
 }
 
+pub mod arc_rollouts;
 mod borenstein_koren;
 pub mod dwb;
 pub mod dynamic_window;
@@ -78,18 +79,23 @@ pub use numeric::error::Stop;
 
 use crate::local_planning::TwistPlanner;
 use crate::trace::{Examined, Trace};
+use navigation_world::robots::differential::Twist;
+use navigation_world::sensing::sensor::{LidarScan, Sensor};
 use navigation_world::world::geometry::{Body, RobotState};
 use navigation_world::world::map::StaticMap;
 use navigation_world::world::scenario::{PlacedObstacle, Scenario};
 use numeric::error::{Failure, Given, Result};
 use numeric::lanes::{Real, Vector2};
+use unknown_places::explore::Explorer;
 use unknown_places::unseen::Belief;
 
-/// What was scanned since a law was asked last, for laws that reckon with people whom nobody sees.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// What was scanned since a law was asked last.
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Scan<'a> {
-    /// Beams and people that the scan shows.
+    /// Beams and people that the scan shows, for laws that reckon with people whom nobody sees.
     pub shown: Shown<'a>,
+    /// Scans of this sample, for laws that make their own map.
+    pub lidars: Lidars<'a>,
     /// How much more time than the clock tells may have gone by since then, in s.
     pub more: f64,
 }
@@ -120,8 +126,26 @@ impl Scan<'static> {
         shown: Shown::All {
             range: f64::INFINITY,
         },
+        lidars: Lidars(&[]),
         more: 0.0,
     };
+}
+
+/// Lidars among the sensors of a robot.
+#[derive(Clone, Copy, Default)]
+pub struct Lidars<'a>(pub &'a [Box<dyn Sensor>]);
+
+impl<'a> Lidars<'a> {
+    /// Last scan of each lidar, in the order of the sensors.
+    pub fn scans(self) -> impl Iterator<Item = LidarScan<'a>> {
+        self.0.iter().filter_map(|sensor| sensor.scan())
+    }
+}
+
+impl std::fmt::Debug for Lidars<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_list().entries(self.scans()).finish()
+    }
 }
 
 /// What a law knows when it is asked for a force. `B`: numbers of the scene, which robots side by
@@ -238,6 +262,11 @@ pub trait Law<R: Real>: Send {
         true
     }
 
+    /// Twist of the last command, of a law that steers two wheels by it and not by the velocity that its force reaches.
+    fn twist(&self) -> Option<Twist> {
+        None
+    }
+
     /// Record of the parts around the law in the last control period, if there are any.
     fn trace(&self) -> Option<Trace> {
         None
@@ -245,6 +274,11 @@ pub trait Law<R: Real>: Send {
 
     /// Where those can be whom nobody sees, if the law reckons with them.
     fn unseen(&self) -> Option<Unwatched<'_>> {
+        None
+    }
+
+    /// What it knows of a place from scans, if it makes its own map.
+    fn explored(&self) -> Option<&Explorer> {
         None
     }
 
@@ -307,6 +341,10 @@ pub trait LawFamily: Send + Sync {
     }
     /// Whether it scans its map by itself, to reckon with people whom it does not see.
     fn scans(&self) -> bool {
+        false
+    }
+    /// Whether it makes its own map of the scans of the robot's lidars.
+    fn maps_its_scans(&self) -> bool {
         false
     }
     /// Map that the law knows, beside the obstacles of a scenario: runs count contacts with it.

@@ -11,5 +11,4 @@
 pub mod explore;
 pub mod guide;
 pub mod map;
-pub mod trial;
 pub mod unseen;

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,9 +15,8 @@ from hrsafety.benchmarks.entries import Entry, settings_of
 from hrsafety.benchmarks.protocol import Case, Suite
 from hrsafety.benchmarks.results import Row
 from hrsafety.errors import InvalidParameterError
-from hrsafety.navigation.unknown_trial import unknown_trial
 
-__all__ = ["UNKNOWN", "RolloutEntry", "rollout_entry", "trial"]
+__all__ = ["UNKNOWN", "RolloutEntry", "driving_time", "rollout_entry", "trial"]
 
 LENGTH, WIDTH = 0.508, 0.430
 """Of the rectangle, in m."""
@@ -28,6 +26,10 @@ PERIOD = 0.05
 """Control period in s."""
 START, GOAL, HEADING = (-2.25, 3.0), (-2.25, 13.0), 0.5 * math.pi
 """Of BARN, in m and rad."""
+SAMPLES = 20
+"""Motion steps of a control period."""
+LEFT = 0.1
+"""An episode is timed from where the robot leaves this distance from its start, in m."""
 BEAMS, FIELD_OF_VIEW, RANGE = 720, 1.5 * math.pi, 10.0
 """Of the lidar, in rad and m."""
 LENGTH_DRIFT, HEADING_DRIFT = 0.01, math.radians(0.5)
@@ -62,7 +64,7 @@ class RolloutEntry(Entry):
         Largest range in m.
     """
 
-    law: nav.ArcRollouts  # type: ignore[assignment]  # no law that is asked for forces
+    law: nav.ArcRollouts
     acceleration: float
     turn_acceleration: float
     noise: float
@@ -116,8 +118,8 @@ def rollout_entry(word: str) -> RolloutEntry:
     )
 
 
-def trial(entry: RolloutEntry, place: nav.StaticMap, seed: int, *, timed: bool = False, **ends: Any) -> dict[str, Any]:
-    """Run an episode.
+def trial(entry: RolloutEntry, place: nav.StaticMap, seed: int, **ends: Any) -> nav.Trajectory:
+    """Run an episode until the goal, the first contact or the time limit.
 
     Parameters
     ----------
@@ -127,15 +129,13 @@ def trial(entry: RolloutEntry, place: nav.StaticMap, seed: int, *, timed: bool =
         What is there.
     seed : int
         Of noise and drift.
-    timed : bool
-        Whether decisions are timed.
     **ends
         Start, heading, goal, arrival tolerance and time limit where they are not those of BARN.
 
     Returns
     -------
-    dict
-        Outcome, times, clearance, poses and times of decisions.
+    Trajectory
+        Commands act at once, every 2.5 ms is recorded.
     """
     robot = nav.DifferentialDriveRobot(
         max_speed=SPEED,
@@ -144,46 +144,45 @@ def trial(entry: RolloutEntry, place: nav.StaticMap, seed: int, *, timed: bool =
         max_turn_acceleration=entry.turn_acceleration,
         footprint=nav.robots.Footprint.rectangle(LENGTH, WIDTH),
     )
-    settings = {
-        **{"start": START, "heading": HEADING, "goal": GOAL, "arrival_tolerance": 1.0, "time_limit": barn.LIMIT},
-        **ends,
-    }
+    given: dict[str, Any] = {"start": START, "heading": HEADING, "goal": GOAL, "arrival_tolerance": 1.0, **ends}
+    limit = given.pop("time_limit", barn.LIMIT)
+    scene = nav.Scenario(
+        robot=robot, walls=place, control_period=PERIOD, time_limit=limit, rest_time=limit, seed=seed, **given
+    )
     lidar = nav.Lidar(
+        map=place,
         beams=BEAMS,
         field_of_view=FIELD_OF_VIEW,
         range_max=entry.range,
         range_noise=entry.noise,
         dropout=entry.dropout,
+        latency=entry.late * PERIOD,
     )
-    return unknown_trial(
-        replace(entry.law, seed=seed),
-        robot,
-        place,
-        lidar,
-        control_period=PERIOD,
-        length_drift=LENGTH_DRIFT * entry.drift,
-        heading_drift=HEADING_DRIFT * entry.drift,
-        late=entry.late,
-        seed=seed,
-        timed=timed,
-        **settings,
-    )
+    odometry = nav.sensing.Odometry(length_error=LENGTH_DRIFT * entry.drift, heading_error=HEADING_DRIFT * entry.drift)
+    built = nav.robots.AsBuilt(sensors=[lidar, odometry])
+    return nav.simulate(scene, entry.law, built=built, step=PERIOD / SAMPLES, stop_on_contact=True)
 
 
-def _row(case: int, found: dict[str, Any]) -> Row:
-    arrived, touched = found["outcome"] == "arrived", int(found["outcome"] == "collided")
+def driving_time(run: nav.Trajectory) -> float:
+    """Return the time in s from leaving the circle around the start to the end of a run."""
+    left = np.hypot(*(run.position - run.scenario.start).T) > LEFT
+    return float(run.time[-1] - (run.time[int(np.argmax(left))] if left.any() else 0.0))
+
+
+def _row(case: int, run: nav.Trajectory) -> Row:
+    arrived, touched = run.outcome == "arrived", int(run.outcome == "collided")
     return Row(
         case=case,
-        outcome=found["outcome"],
-        arrival_time=found["arrival_time"] if arrived else math.nan,
-        end_time=found["end_time"],
+        outcome=run.outcome,
+        arrival_time=driving_time(run) if arrived else math.nan,
+        end_time=float(run.time[-1]),
         contacts=touched,
         # Everything stands: who touches it is at fault.
         toward=touched,
         at_fault=touched,
         walls=touched,
         apart=0,
-        clearance=found["clearance"],
+        clearance=run.map_clearance,
     )
 
 

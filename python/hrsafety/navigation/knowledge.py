@@ -18,6 +18,7 @@ from hrsafety.navigation.robots.bodies import least_reach
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.sensing.measurement import Measurement
+from hrsafety.navigation.sensing.odometry import Odometry
 from hrsafety.navigation.sensing.robot_sensor import RobotSensor
 from hrsafety.navigation.sensing.vision import Vision
 from hrsafety.navigation.warnings.scenarios import BELOW_SAFE, ROUNDING, own_speed
@@ -29,6 +30,9 @@ REGION_BEYOND_RANGE = "region_beyond_range"
 BLIND_NEARBY = "blind_nearby"
 UNSEEN_AT_START = "unseen_at_start"
 
+OF_REGIONS = (BELOW_SAFE, REGION_BEYOND_RANGE)
+"""Codes of sensors whose readings have regions that do not fit; a law that makes its own map has none."""
+
 LOST = 1e-3
 """Probability of more lost frames, one after the other, than a warning counts on."""
 
@@ -39,7 +43,7 @@ class Sensing(NamedTuple):
     Attributes
     ----------
     robot : str
-        ``"exact"``, ``"measurement"`` or ``"camera"``.
+        ``"exact"``, ``"measurement"``, ``"odometry"`` or ``"camera"``.
     obstacles : tuple of str
         ``"exact"``, or those of ``"measurement"``, ``"camera"``, ``"ultrasonic"`` and ``"lidar"`` that told of
         them.
@@ -104,6 +108,8 @@ def told_by(measurement: Measurement | None, built: AsBuilt) -> Sensing:
         **{sensor.NAME: sensor.TELLS for sensor in built.sensors},
     }
     robot = "measurement" if measured in ("both", "robot") else "exact"
+    if any(isinstance(sensor, Odometry) for sensor in built.sensors):
+        robot = Odometry.NAME
     return Sensing(
         robot="camera" if built.robot_vision is not None else robot,
         obstacles=tuple(word for word, tells in told.items() if tells) or ("exact",),

@@ -19,6 +19,7 @@ from hrsafety.navigation.laws.situation import Situation, fixed, point_mass_of, 
 from hrsafety.navigation.outcomes import Outcome
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.robots.bodies import HolonomicRobot
+from hrsafety.navigation.scan_controller import KnownCells
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.simulation import refuse_in_worlds
 from hrsafety.navigation.trajectory import Trajectory
@@ -263,6 +264,43 @@ class Run:
         """
         found = self._native.unseen_places(self._index(robot))
         return None if found is None else np.array(found).reshape(-1, 2)
+
+    def known_cells(self, robot: int | None = None) -> KnownCells | None:
+        """Return what a law that makes its own map of scans knows since the last control period.
+
+        Parameters
+        ----------
+        robot : int or None
+            Index of the robot; ``None``: the only one.
+
+        Returns
+        -------
+        KnownCells or None
+            Cells, and the way that the law plans; ``None`` for other laws.
+
+        Raises
+        ------
+        InvalidParameterError
+            If there is no such robot.
+
+        Examples
+        --------
+        >>> from hrsafety import navigation as nav
+        >>> walls = nav.StaticMap.from_polylines([[(1.5, -1.0), (1.5, 1.0)]])
+        >>> place = nav.Scenario(robot=nav.DifferentialDriveRobot(), start=(0, 0), goal=(3, 0), walls=walls)
+        >>> run = nav.Run(place, nav.ArcRollouts(), nav.robots.AsBuilt(sensors=[nav.Lidar(map=walls)]))
+        >>> seen = run.step()
+        >>> cells = run.known_cells()
+        >>> bool((cells.kinds == 2).any()), len(cells.way) > 1  # the wall was seen, and a way around it is planned
+        (True, True)
+        """
+        index = self._index(robot)
+        seen = situation_of(self._native.situation(index), *self._robots[index])
+        found = self._native.explored(index, (float(seen.position[0]), float(seen.position[1])))
+        if found is None:
+            return None
+        (x, y), kinds, cell, way = found
+        return KnownCells(kinds, (x, y), cell, np.array(way, dtype=float).reshape(-1, 2))
 
     def step(
         self,

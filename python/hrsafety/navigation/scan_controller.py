@@ -15,14 +15,10 @@ from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError, SimulationError
 from hrsafety.navigation.laws.arc_rollouts import ArcRollouts
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot
-from hrsafety.navigation.robots.footprint import Footprint
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["KnownCells", "LidarScan", "ScanCommand", "ScanController", "outline_of", "twist_limits"]
-
-SIDES = 16
-"""Of the polygon around the disc of a robot without another outline."""
+__all__ = ["KnownCells", "LidarScan", "ScanCommand", "ScanController"]
 
 
 class LidarScan(NamedTuple):
@@ -109,30 +105,14 @@ class KnownCells(NamedTuple):
         Lowest corner in m.
     cell : float
         Side of a cell in m.
+    way : ndarray, shape (n, 2)
+        Places in m of the way of the guide from the robot on; empty where no way is known.
     """
 
     kinds: npt.NDArray[np.uint8]
     low: Pair
     cell: float
-
-
-def outline_of(robot: DifferentialDriveRobot) -> Footprint:
-    """Return the footprint of a robot, or a polygon around its disc."""
-    if robot.footprint is not None:
-        return robot.footprint
-    radius = robot.radius / math.cos(math.pi / SIDES)
-    angles = 2.0 * math.pi * (np.arange(SIDES) + 0.5) / SIDES
-    return Footprint(tuple((radius * math.cos(angle), radius * math.sin(angle)) for angle in angles))
-
-
-def twist_limits(robot: DifferentialDriveRobot) -> list[float]:
-    """Return largest speed, acceleration, deceleration, turn rate and change of the turn rate."""
-    wheels = 2.0 * robot.max_speed / robot.wheel_span
-    turn_rate = wheels if robot.max_turn_rate is None else min(wheels, robot.max_turn_rate)
-    change = robot.max_angular_acceleration
-    if robot.max_turn_acceleration is not None:
-        change = min(change, robot.max_turn_acceleration)
-    return [robot.max_speed, robot.max_acceleration, robot.deceleration, turn_rate, change]
+    way: Array
 
 
 class ScanController:
@@ -187,7 +167,7 @@ class ScanController:
     360
     """
 
-    __slots__ = ("_cell", "_goal", "_lidars", "_native", "_outline", "_rollouts")
+    __slots__ = ("_body", "_cell", "_goal", "_lidars", "_native", "_place", "_rollouts")
 
     def __init__(
         self,
@@ -205,17 +185,16 @@ class ScanController:
     ) -> None:
         self._rollouts = instance("rollouts", rollouts, ArcRollouts)
         self._cell = rollouts.map.cell
-        body = instance("robot", robot, DifferentialDriveRobot)
-        self._outline = outline_of(body)
+        self._place: Pair | None = None
+        self._body = instance("robot", robot, DifferentialDriveRobot)
         self._lidars = tuple(
             instance(f"lidars[{index}]", lidar, Lidar)
             for index, lidar in enumerate(sequence("lidars", "be a sequence of lidars", lidars))
         )
         self._goal = pair("goal", goal)
         self._native = _hrsafety.ScanController(
-            rollouts._native,
-            self._outline._native,
-            twist_limits(body),
+            rollouts._rollouts,
+            self._body._native,
             positive("control_period", control_period),
             [lidar._lidar for lidar in self._lidars],
             goal=self._goal,
@@ -235,7 +214,9 @@ class ScanController:
                 ResultWarning("not_verified", "verify", "plans are not verified: nothing keeps the robot from contact")
             )
         for index, lidar in enumerate(self._lidars):
-            covered = max(0.0, -float(self._outline.distance([lidar.mounting[:2]])[0]))
+            outline, place = self._body.footprint, lidar.mounting[:2]
+            inside = self._body.radius - math.hypot(*place) if outline is None else -float(outline.distance([place])[0])
+            covered = max(0.0, inside)
             if lidar.range_min > covered:
                 text = (
                     f"lidars[{index}] reads what is nearer than range_min, {lidar.range_min:.4g} m, as that far away, "
@@ -281,6 +262,7 @@ class ScanController:
             missing = "position" if position is None else "heading"
             raise InvalidParameterError(missing, "be given together with the other of position and heading", None)
         pose = None if position is None or heading is None else (pair("position", position), number("heading", heading))
+        self._place = None if pose is None else pose[0]
         told = [self._scan(index, scan, now) for index, scan in enumerate(sequence("scans", "be scans", scans))]
         fields: dict[str, Any] = self._native.update(now, pose, told)
         fields["plan"] = tuple((at, (rates[0], rates[1])) for at, rates in fields["plan"])
@@ -315,7 +297,9 @@ class ScanController:
     def known_cells(self) -> KnownCells:
         """Cells of the map at the last update."""
         low, kinds = self._native.cells()
-        return KnownCells(kinds, (low[0], low[1]), self._cell)
+        place = self._place
+        way = np.empty((0, 2)) if place is None else self.way(place)
+        return KnownCells(kinds, (low[0], low[1]), self._cell, way)
 
     def way(self, position: npt.ArrayLike) -> Array:
         """Return the way of the guide from a place on.

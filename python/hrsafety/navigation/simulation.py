@@ -266,7 +266,7 @@ def evaluate(
         return Performance(
             **parts,
             trajectory=Trajectory(scenario=scenario, law=law, built=robot, motion_step=float(step), **real),
-            nominal=Trajectory(scenario=free, law=law, built=robot.seeing_all(), motion_step=float(step), **ideal),
+            nominal=Trajectory(scenario=free, law=law, built=robot.seeing_all(law), motion_step=float(step), **ideal),
         )
     scores, run, nominal = _hrsafety.evaluate(
         scenario._native, law._native, check_weights(weights), integrator, number("step", step), flag("hold", hold)

@@ -12,7 +12,7 @@ import pytest
 
 from hrsafety import navigation as nav
 from hrsafety.benchmarks import benchmark
-from hrsafety.benchmarks.unknown import dead_end, rollout_entry, trial
+from hrsafety.benchmarks.unknown import dead_end, driving_time, rollout_entry, trial
 from hrsafety.errors import InvalidParameterError, ShapeError
 
 OUTLINE = nav.robots.Footprint.rectangle(0.5, 0.4)
@@ -224,10 +224,10 @@ def test_runs_without_noise_are_those_of_the_specification(shared: Path) -> None
     for case in cases["runs_without_noise"][1:]:
         place = nav.StaticMap.from_barn(worlds, case["world"])
         found = trial(rollout_entry("rollouts(noise=0)"), place, 0)
-        assert found["outcome"] == "arrived"
-        assert found["arrival_time"] == pytest.approx(case["time"], rel=0.03)
-        assert found["path_length"] == pytest.approx(case["path"], rel=0.03)
-        assert found["clearance"] > 0.03
+        assert found.outcome == "arrived"
+        assert driving_time(found) == pytest.approx(case["time"], rel=0.03)
+        assert found.path_length == pytest.approx(case["path"], rel=0.03)
+        assert found.map_clearance > 0.03
 
 
 def test_plans_are_verified_or_contacts_follow_at_low_deceleration(shared: Path) -> None:

@@ -16,6 +16,7 @@ use crate::python_law::{PointMass, point_mass};
 use crate::run::episode::{BUSY, Order, Told, Verified, request_of, told, verified};
 use crate::run::situation::situation_fields;
 use crate::run::stepped::Stepped;
+use crate::unknown::{Explored, explored};
 
 /// A world under way.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
@@ -93,6 +94,17 @@ impl WorldRun {
     fn unseen_places(&self, robot: usize) -> PyResult<Option<Vec<[f64; 2]>>> {
         let world = self.0.idle()?;
         Ok(robot_of(&world, robot)?.unseen_places())
+    }
+
+    /// What the law of a robot knows of the place from scans, with the way from a place on, if it makes its own map.
+    fn explored<'py>(
+        &self,
+        py: Python<'py>,
+        robot: usize,
+        place: [f64; 2],
+    ) -> PyResult<Option<Explored<'py>>> {
+        let world = self.0.idle()?;
+        explored(py, robot_of(&world, robot)?.explored(), place)
     }
 
     /// Number of the person whom each obstacle that a robot sees is, if it is one; none where sensors tell of them.

@@ -15,6 +15,7 @@ use crate::robots::as_built::{AsBuilt, as_built_fields};
 use crate::run::situation::situation_fields;
 use crate::run::stepped::Stepped;
 use crate::run::trajectory_fields;
+use crate::unknown::{Explored, explored};
 
 /// Wanted and commanded velocity, whether the law was taken over from, and the status.
 pub type Told = ([f64; 2], [f64; 2], bool, &'static str);
@@ -129,6 +130,16 @@ impl Run {
     /// Centers in m of the cells where the law reckons with people whom it does not see, if it does.
     fn unseen_places(&self, _robot: usize) -> PyResult<Option<Vec<[f64; 2]>>> {
         Ok(self.0.idle()?.unseen_places())
+    }
+
+    /// What the law knows of the place from scans, with the way from a place on, if it makes its own map.
+    fn explored<'py>(
+        &self,
+        py: Python<'py>,
+        _robot: usize,
+        place: [f64; 2],
+    ) -> PyResult<Option<Explored<'py>>> {
+        explored(py, self.0.idle()?.explored(), place)
     }
 
     /// Plan that the shield verified last, if there is one.

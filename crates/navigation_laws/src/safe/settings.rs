@@ -72,6 +72,13 @@ impl SafeNavigation {
     /// # Errors
     /// Names the number that is not.
     pub fn checked(self) -> Result<Self> {
+        if self.law.maps_its_scans() {
+            let rule = "be a law that is told of obstacles: plans that another part changes are not those that were verified";
+            let given = Given::Found("ArcRollouts".into());
+            return Err(
+                Failure::invalid("law", rule, given).mended_by("run ArcRollouts by themselves")
+            );
+        }
         if let Some(shield) = self.shield {
             shield.checked()?;
             if shield.unseen.is_some() && self.map.is_none() {

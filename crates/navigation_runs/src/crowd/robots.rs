@@ -19,6 +19,7 @@ use navigation_world::world::geometry::RobotState;
 use navigation_world::world::scenario::{Rules, Scenario};
 use numeric::error::Result;
 use numeric::lanes::Vector2;
+use unknown_places::explore::Explorer;
 
 /// Places for people of each source at first.
 const GUESTS: usize = 16;
@@ -120,7 +121,7 @@ fn shown<'a>(
         bodies: sensing.map_or(bodies, |sensing| sensing.sensors.bodies(bodies)),
         ages: sensing.map_or(&[], |sensing| sensing.sensors.ages()),
         scan: match sensing {
-            Some(sensing) if sensing.sensors.tells() => Scan::default(),
+            Some(sensing) if sensing.sensors.tells() => sensing.sensors.scan(),
             _ => sight.scan(),
         },
         ..situation
@@ -261,6 +262,12 @@ impl CrowdRobot {
     #[must_use]
     pub fn unseen_places(&self) -> Option<Vec<[f64; 2]>> {
         Some(self.law()?.unseen()?.places())
+    }
+
+    /// What the law knows of the place from scans, if it makes its own map.
+    #[must_use]
+    pub fn explored(&self) -> Option<&Explorer> {
+        self.law()?.explored()
     }
 
     /// What parts around the law verified in the last control period, if there is a shield.
@@ -405,6 +412,7 @@ impl CrowdRobot {
         };
         let toward =
             |velocity, known: &Situation<'_, f64>| force_toward(velocity, known, self.mass);
+        let mut twist = None;
         let force = match (self.request, self.pilot.as_deref_mut()) {
             _ if !self.arrival_time.is_nan() => toward(Vector2::zeros(), &situation),
             (Request::Force(force), _) => force.into(),
@@ -426,7 +434,9 @@ impl CrowdRobot {
                         if let Some(goal) = sensing.and_then(|sensing| sensing.sensors.goal()) {
                             send(&mut **law, goal)?;
                         }
-                        law.command(&seen).force
+                        let force = law.command(&seen).force;
+                        twist = law.twist();
+                        force
                     }
                     None => Vector2::zeros(),
                 }
@@ -435,7 +445,7 @@ impl CrowdRobot {
         };
         match &mut self.chassis {
             Chassis::Point(point) => point.hold(force),
-            Chassis::Motors(drive, _) => drive.hold(&known.order(force)),
+            Chassis::Motors(drive, _) => drive.hold(&known.order(force, twist)),
         }
         Ok(force.norm().is_finite())
     }

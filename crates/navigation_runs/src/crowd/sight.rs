@@ -266,7 +266,7 @@ impl Sight {
     pub fn scan(&self) -> Scan<'static> {
         Scan {
             shown: Shown::All { range: self.range },
-            more: 0.0,
+            ..Scan::ALL
         }
     }
 

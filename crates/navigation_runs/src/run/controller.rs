@@ -328,6 +328,7 @@ impl Controller {
                     }
                 },
                 more: self.more,
+                ..Scan::default()
             },
             stop,
         });

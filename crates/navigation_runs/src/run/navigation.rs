@@ -19,11 +19,13 @@ use crate::run::scene::{Scene, bodies_at};
 use crate::run::walls::Maps;
 use navigation_laws::trace::{Examined, Trace};
 use navigation_laws::{Command, Law, Situation, Stop, force_toward, send};
+use navigation_world::robots::differential::Twist;
 use navigation_world::robots::drives::{MotorDrive, Order, PoseFix, Reading};
 use navigation_world::world::geometry::{Body, RobotState};
 use navigation_world::world::scenario::Scenario;
 use numeric::error::Result;
 use numeric::lanes::{Planar, Vector2};
+use unknown_places::explore::Explorer;
 
 /// Source of the command of a control period.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -72,10 +74,11 @@ impl MeasuredState {
         measured.unwrap_or_else(|| robot.known_heading())
     }
 
-    /// A force with what the robot knows when it is told of it.
-    pub fn order(&self, force: Vector2<f64>) -> Order {
+    /// A force or twist with what the robot knows when it is told of it.
+    pub fn order(&self, force: Vector2<f64>, twist: Option<Twist>) -> Order {
         Order {
             force,
+            twist,
             fix: self.fix,
             clear: self.clear,
         }
@@ -196,6 +199,12 @@ impl<L: Listener> Episode<Navigation<L>> {
         Some(self.parts.law.as_ref()?.unseen()?.places())
     }
 
+    /// What the law knows of the place from scans, if it makes its own map.
+    #[must_use]
+    pub fn explored(&self) -> Option<&Explorer> {
+        self.parts.law.as_ref()?.explored()
+    }
+
     /// Plan that was verified in the last control period, if there is a shield.
     #[must_use]
     pub fn examined(&self) -> Option<Examined> {
@@ -242,7 +251,9 @@ impl<L: Listener> Parts for Navigation<L> {
         };
         self.runs.check_force(command.force, time)?;
         self.runs.count_sample();
-        self.robot.hold(&self.known.order(command.force));
+        let law = self.law.as_ref().filter(|_| request == Request::Law);
+        let twist = law.and_then(|law| law.twist());
+        self.robot.hold(&self.known.order(command.force, twist));
         self.listener
             .sample(&command, self.known.robot.position.lane(0));
         Ok(true)

@@ -4,6 +4,7 @@
 use crate::crowd::SocialForce;
 use crate::run::any_law::AnyLaw;
 use navigation_laws::VirtualForceField;
+use navigation_laws::arc_rollouts::ArcRollouts;
 use navigation_laws::local_planning::Steered;
 use navigation_laws::pairwise::Pairwise;
 use navigation_laws::planning::family::Planned;
@@ -20,6 +21,12 @@ impl From<VirtualForceField> for AnyLaw {
 impl From<&VirtualForceField> for AnyLaw {
     fn from(law: &VirtualForceField) -> Self {
         (*law).into()
+    }
+}
+
+impl From<ArcRollouts> for AnyLaw {
+    fn from(law: ArcRollouts) -> Self {
+        Self::one_by_one(law)
     }
 }
 

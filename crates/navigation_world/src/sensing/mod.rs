@@ -6,6 +6,7 @@ macro_rules! robot_sensors {
         $list! {
             ultrasonic::Ultrasonic,
             sound_localizer::SoundLocalizer,
+            odometry::Odometry,
         }
     };
 }
@@ -19,6 +20,7 @@ mod linearized;
 mod marks;
 pub mod measurement;
 pub mod noisy;
+pub mod odometry;
 mod options;
 mod rotation;
 pub mod sampled;

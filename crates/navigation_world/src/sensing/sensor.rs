@@ -1,5 +1,6 @@
 //! Interface of sensors: watch the scene, and tell the controller of the robot or of obstacles.
 
+use crate::sensing::lidar::Lidar;
 use crate::world::frame::{Frame, Heading};
 use crate::world::geometry::{Body, RobotState};
 use crate::world::obstacle::Regions;
@@ -76,6 +77,17 @@ pub struct Located {
     pub heading: Option<f64>,
 }
 
+/// Last scan of a lidar.
+#[derive(Clone, Copy, Debug)]
+pub struct LidarScan<'a> {
+    /// Mounting, beams and ranges of the lidar.
+    pub lidar: &'a Lidar,
+    /// When it was made in s.
+    pub time: f64,
+    /// In m: `range_max` where nothing was hit, NaN where a beam dropped out; empty before the first scan.
+    pub ranges: &'a [f64],
+}
+
 /// A sensor on the robot or above the scene. What it does not tell of, another one may; what none
 /// tells of is known exactly.
 pub trait Sensor: Send {
@@ -99,6 +111,11 @@ pub trait Sensor: Send {
 
     /// Goal in m to which the sensor sends the robot, once it has found one.
     fn goal(&self) -> Option<Vector2<f64>> {
+        None
+    }
+
+    /// Last scan that has arrived, of a lidar.
+    fn scan(&self) -> Option<LidarScan<'_>> {
         None
     }
 

@@ -60,6 +60,8 @@ pub struct TimedScan<'a> {
     pub lidar: usize,
     /// When it was made in s.
     pub time: f64,
+    /// Heading in rad of what carries the lidar, where the robot has another one.
+    pub heading: Option<f64>,
     /// Ranges in m.
     pub ranges: &'a [f64],
 }
@@ -348,8 +350,11 @@ impl Controller {
             return Ok(());
         }
         let scanner = &self.scanners[scan.lidar];
+        let carrier = scan
+            .heading
+            .map_or(pose, |heading| Frame::at(pose.position.into(), heading));
         let entered = Scan {
-            pose: pose.carrying(&scanner.mounting),
+            pose: carrier.carrying(&scanner.mounting),
             beams: &self.beams[scan.lidar],
             ranges: scan.ranges,
             range_min: scanner.range_min,

@@ -1,7 +1,10 @@
 //! Scans and a pose in, a verified twist out, once in a control period.
 
+use std::f64::consts::TAU;
+
 use nalgebra::Vector2;
 use navigation_world::robots::differential::{DifferentialLimits, Twist};
+use navigation_world::robots::{DifferentialDriveRobot, HolonomicRobot};
 use navigation_world::world::footprint::Footprint;
 use navigation_world::world::frame::Frame;
 use numeric::error::{Failure, Given, Result, finite_pair, not_negative, positive};
@@ -24,6 +27,64 @@ pub struct Robot {
     pub limits: DifferentialLimits,
     /// Control period in s.
     pub period: f64,
+}
+
+/// Sides of the polygon around the disc of a robot without another outline.
+const SIDES: u32 = 16;
+/// Largest turn rate in rad/s of the course of a disc that moves in any direction.
+const FASTEST_TURN: f64 = 3.0;
+
+impl Robot {
+    /// A robot with its footprint, or a polygon around its disc, and a control period in s.
+    ///
+    /// # Errors
+    /// The polygon around its disc is too small or too large.
+    pub fn of(
+        wheels: &DifferentialDriveRobot,
+        footprint: Option<&Footprint>,
+        period: f64,
+    ) -> Result<Self> {
+        Ok(Self {
+            footprint: footprint
+                .map_or_else(|| around_disc(wheels.radius), |own| Ok(own.clone()))?,
+            limits: DifferentialLimits::from(wheels),
+            period,
+        })
+    }
+
+    /// A disc that moves in any direction, as one that drives along a course: what it accelerates along the course and
+    /// across it stays together within its limit.
+    ///
+    /// # Errors
+    /// The polygon around the disc is too small or too large.
+    pub fn on_course(disc: &HolonomicRobot, period: f64) -> Result<Self> {
+        let part = std::f64::consts::FRAC_1_SQRT_2;
+        let slowest = disc.max_deceleration.map_or(disc.max_acceleration, |most| {
+            most.min(disc.max_acceleration)
+        });
+        let max_turn_rate = (part * slowest / disc.max_speed).min(FASTEST_TURN);
+        Ok(Self {
+            footprint: around_disc(disc.radius)?,
+            limits: DifferentialLimits {
+                max_speed: disc.max_speed,
+                max_acceleration: part * disc.max_acceleration,
+                max_deceleration: part * slowest,
+                max_turn_rate,
+                max_angular_acceleration: max_turn_rate / period,
+            },
+            period,
+        })
+    }
+}
+
+/// A polygon around a disc.
+fn around_disc(radius: f64) -> Result<Footprint> {
+    let step = TAU / f64::from(SIDES);
+    let corner = |side: u32| {
+        let (sin, cos) = ((f64::from(side) + 0.5) * step).sin_cos();
+        [cos, sin].map(|part| radius / (0.5 * step).cos() * part)
+    };
+    Footprint::polygon(&(0..SIDES).map(corner).collect::<Vec<_>>())
 }
 
 /// Options of map, guide and rollouts.

@@ -12,7 +12,7 @@ import numpy as np
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair
 from hrsafety.navigation.crowd.agents import FASTEST_DRAWN, Person, Robot, Source, middle_of
-from hrsafety.navigation.knowledge import warnings_of
+from hrsafety.navigation.knowledge import OF_REGIONS, warnings_of
 from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles.moving import MovingDisc
@@ -20,6 +20,7 @@ from hrsafety.navigation.robots.bodies import NUMBERS
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.warnings.filters import of_filter
+from hrsafety.navigation.warnings.scans import unwatched
 from hrsafety.navigation.warnings.scenarios import circled, own_speed
 from hrsafety.navigation.warnings.shields import (
     ASSUMES_LESS,
@@ -34,7 +35,16 @@ from hrsafety.navigation.warnings.shields import (
 from hrsafety.navigation.warnings.walls import unknown_walls
 from hrsafety.plausibility import RANGES, ResultWarning, gathered, implausible
 
-__all__ = ["of_footprints", "of_numbers", "of_people", "of_robots", "of_sensors", "of_unknown_walls", "of_walls"]
+__all__ = [
+    "of_footprints",
+    "of_numbers",
+    "of_people",
+    "of_robots",
+    "of_scans",
+    "of_sensors",
+    "of_unknown_walls",
+    "of_walls",
+]
 
 MOST_TIME = 1e7
 """Longest time of a world, in s."""
@@ -173,6 +183,24 @@ def of_walls(
     return (*gathered(inside, "starts"), *gathered(behind, "goals"), *gathered(through, "recordings"))
 
 
+def of_scans(people: Sequence[Person], sources: Sequence[Source], robots: Sequence[Robot]) -> tuple[ResultWarning, ...]:
+    """Return the doubts of laws that make their own map of scans, the first of each kind with how many follow.
+
+    Parameters
+    ----------
+    people, sources, robots : sequence of Person, Source, Robot
+        Who is in the world.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        With the codes of `hrsafety.navigation.warnings.scans.unwatched`.
+    """
+    movers = len(people) + len(sources) + len(robots) - 1
+    found = [(f"robots[{index}]", tuple(unwatched(robot.law, movers))) for index, robot in enumerate(robots)]
+    return gathered(found, "robots")
+
+
 def of_sensors(
     people: Sequence[Person], robots: Sequence[Robot], step: float, walls: StaticMap | None
 ) -> tuple[ResultWarning, ...]:
@@ -207,7 +235,8 @@ def of_sensors(
             arrival_tolerance=robot.arrival_tolerance,
             measurement=robot.measurement,
         )
-        told = warnings_of(scene, built)
+        regions = not getattr(robot.law, "MAPS_SCANS", False)
+        told = (each for each in warnings_of(scene, built) if regions or each.code not in OF_REGIONS)
         found.append(
             (f"robots[{index}]", tuple(replace(each, subject=f"robots[{index}].{each.subject}") for each in told))
         )

@@ -66,7 +66,7 @@ def lone(world: World, robot: int) -> Lone:
         heading=own.heading,
     )
     built = own.as_built()
-    return Lone(scene, None if built is None else built.seeing_all(), period / math.ceil(period / STEP - 1e-9))
+    return Lone(scene, None if built is None else built.seeing_all(own.law), period / math.ceil(period / STEP - 1e-9))
 
 
 def scores(run: Trajectory, nominal: Trajectory, weights: tuple[float, float, float]) -> dict[str, float]:

@@ -57,6 +57,8 @@ class Law(Parameters):
         Color of its runs in pictures; empty for a neutral one.
     PLANS : bool
         Whether it chooses a velocity or a path instead of a force.
+    MAPS_SCANS : bool
+        Whether it knows its surroundings from the scans of the robot's lidars alone.
     GAIN_NAMES : tuple of str
         Names of the gains, in the order in which batches and searches take them.
     GAIN_BOUNDS : mapping of str to (float, float)
@@ -72,6 +74,7 @@ class Law(Parameters):
     OTHER_NAMES: ClassVar[tuple[str, ...]]
     COLOR: ClassVar[str]
     PLANS: ClassVar[bool]
+    MAPS_SCANS: ClassVar[bool] = False
     GAIN_NAMES: ClassVar[tuple[str, ...]]
     GAIN_BOUNDS: ClassVar[Mapping[str, tuple[float, float]]]
     GAIN_UNITS: ClassVar[Mapping[str, str]]

@@ -18,6 +18,7 @@ from hrsafety.navigation.robots.tracking_laws import (
     VirtualTorque,
 )
 from hrsafety.navigation.robots.wheels import WheelDrive
+from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.sensing.robot_sensor import RobotSensor
 from hrsafety.navigation.sensing.vision import Vision
 
@@ -131,8 +132,14 @@ class AsBuilt(Parameters):
         instance("tracking", self.tracking, FullSpeedTracking, NonlinearTracking, ExponentialTracking, VirtualTorque)
         self._set(_native=self._build())
 
-    def seeing_all(self) -> AsBuilt:
+    def seeing_all(self, law: object = None) -> AsBuilt:
         """Return the same robot with exact sensing.
+
+        Parameters
+        ----------
+        law : Law or None
+            What drives it: one that makes its own map of scans keeps its lidars, which then see nothing and err in
+            nothing.
 
         Returns
         -------
@@ -145,7 +152,9 @@ class AsBuilt(Parameters):
         >>> nav.robots.AsBuilt(sensors=[nav.sensing.Ultrasonic()]).seeing_all() == nav.robots.AsBuilt()
         True
         """
-        return replace(self, robot_vision=None, obstacle_vision=None, sensors=())
+        kept = [each for each in self.sensors if isinstance(each, Lidar) and getattr(law, "MAPS_SCANS", False)]
+        lidars = tuple(replace(each, map=None, range_noise=0.0, dropout=0.0, latency=0.0) for each in kept)
+        return replace(self, robot_vision=None, obstacle_vision=None, sensors=lidars)
 
     def _sensors(self) -> list[_hrsafety.Sensor]:
         kind, found = _hrsafety.Sensor, []

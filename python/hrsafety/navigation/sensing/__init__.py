@@ -25,6 +25,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     )
     from hrsafety.navigation.sensing.lidar import Lidar as Lidar
     from hrsafety.navigation.sensing.measurement import Measurement as Measurement
+    from hrsafety.navigation.sensing.odometry import Odometry as Odometry
     from hrsafety.navigation.sensing.robot_sensor import RobotSensor as RobotSensor
     from hrsafety.navigation.sensing.sound_localizer import SoundLocalizer as SoundLocalizer
     from hrsafety.navigation.sensing.ultrasonic import Ultrasonic as Ultrasonic

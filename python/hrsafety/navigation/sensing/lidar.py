@@ -49,6 +49,9 @@ class Lidar(RobotSensor):
         Standard deviation of a range in m.
     dropout : float
         Probability with which a beam reads nothing at all.
+    latency : float
+        Age of scans when they arrive, in s. They are entered with the pose that the robot took itself to have when
+        they were made; before the first one nothing is known.
     sees_obstacles : bool
         Whether it sees people and other obstacles of the scene, too.
     kappa : float
@@ -86,6 +89,7 @@ class Lidar(RobotSensor):
     range_max: float = 10.0
     range_noise: float = 0.0
     dropout: float = 0.0
+    latency: float = 0.0
     sees_obstacles: bool = True
     kappa: float = 0.5
     influence: float = 0.3
@@ -103,7 +107,7 @@ class Lidar(RobotSensor):
         if mounting.shape != (3,):
             raise ShapeError("mounting", "(3,)", mounting.shape)
         self._set(mounting=tuple(finite("mounting", value) for value in mounting.tolist()))
-        names = ("field_of_view", "range_min", "range_max", "range_noise", "dropout", "kappa", "influence", "max_speed")
+        names = ("field_of_view", "range_min", "range_max", "range_noise", "dropout", "latency", "kappa", "influence")
         lidar = _hrsafety.Lidar(
             map=None if self.map is None else self.map._native,
             beams=count("beams", self.beams, most=MOST_RAYS),
@@ -111,7 +115,7 @@ class Lidar(RobotSensor):
             mounting=list(self.mounting),
             reach=self.reach,
             angle_min=self.angle_min,
-            **self._as_numbers(*names),
+            **self._as_numbers(*names, "max_speed"),
         )
         self._set(_lidar=lidar, _native=_hrsafety.Sensor.lidar(lidar))
 

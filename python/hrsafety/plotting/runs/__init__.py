@@ -6,6 +6,7 @@ from hrsafety.plotting.runs.energies import energy
 from hrsafety.plotting.runs.fields import force_field, potential_valley
 from hrsafety.plotting.runs.histories import distances, lyapunov
 from hrsafety.plotting.runs.judgements import judged_way, worst_moments
+from hrsafety.plotting.runs.known_places import known_cells
 from hrsafety.plotting.runs.layouts import layout
 from hrsafety.plotting.runs.plans import guide_plan
 from hrsafety.plotting.runs.scenes import paths
@@ -19,6 +20,7 @@ __all__ = [
     "force_field",
     "guide_plan",
     "judged_way",
+    "known_cells",
     "layout",
     "lyapunov",
     "paths",

@@ -154,11 +154,11 @@ struct Many<'a> {
 impl Many<'_> {
     fn run(&self, progress: &(dyn Fn(usize) + Sync)) -> Result<ManyRuns> {
         let (count, ways) = (self.scenarios.len(), Ways::new(self.scenarios));
-        let ideal = self.built.seeing_all();
         let along = ways.scenarios.len();
         let nominal = try_map(self.laws.len() * along, |index| {
-            let way = &ways.scenarios[index % along];
-            self.one(way, index / along, &ideal, NoListener)
+            let (way, law) = (&ways.scenarios[index % along], index / along);
+            let ideal = self.built.seeing_all(&self.laws[law]);
+            self.one(way, law, &ideal, NoListener)
                 .map(|(run, _)| Nominal::of(&run.totals()))
                 .map_err(|error| error.of_run(|_| ways.run_of(index % along, index / along)))
         })?;

@@ -17,6 +17,7 @@ pub(super) use run::clock_of;
 pub(crate) use run::robot_under;
 pub use run::{evaluate_as_built, simulate_as_built};
 
+use crate::run::any_law::AnyLaw;
 use navigation_world::robots::drives::Start;
 use navigation_world::robots::wheels::{OmniKinematics, Slip, WheelDrive};
 use navigation_world::sensing::SensorOptions;
@@ -99,10 +100,16 @@ impl AsBuilt {
         }
     }
 
-    /// Copy without errors of measurement.
-    fn seeing_all(&self) -> Self {
+    /// Copy without errors of measurement; a law that makes its own map of scans keeps lidars that see nothing.
+    fn seeing_all(&self, law: &AnyLaw) -> Self {
+        let blind = |sensor: &SensorOptions| match sensor {
+            SensorOptions::Lidar(lidar) if law.maps_its_scans() => {
+                Some(SensorOptions::Lidar(lidar.ideal_without_map()))
+            }
+            _ => None,
+        };
         Self {
-            sensors: Vec::new(),
+            sensors: self.sensors.iter().filter_map(blind).collect(),
             ..self.clone()
         }
     }

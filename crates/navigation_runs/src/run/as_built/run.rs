@@ -49,7 +49,12 @@ pub fn evaluate_as_built(
     interrupted: Interrupted<'_>,
 ) -> Result<Scored> {
     let run = simulate_as_built(scenario, law, built, interrupted)?;
-    let nominal = simulate_as_built(&scenario.nominal(), law, &built.seeing_all(), interrupted)?;
+    let nominal = simulate_as_built(
+        &scenario.nominal(),
+        law,
+        &built.seeing_all(law),
+        interrupted,
+    )?;
     let score = performance(scenario, &run.0, &nominal.0, weights);
     Ok((score, run, nominal))
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::run::as_built::AsBuilt;
-use navigation_laws::Scan;
+use navigation_laws::{Lidars, Scan};
 use navigation_world::robots::drives::{PoseFix, Reading};
 use navigation_world::sensing::noisy::NoisyPositions;
 use navigation_world::sensing::sensor::{Sensor, Truth};
@@ -59,8 +59,10 @@ impl BuiltSensors {
         }
         let tells = sensors.iter().any(|sensor| sensor.obstacles().is_some());
         let seen: Vec<Body> = obstacles.iter().map(hidden).collect();
+        let scans = sensors.iter().filter_map(|sensor| sensor.scan());
         let known = tells.then(|| Scenario {
             obstacles,
+            lidars: scans.map(|scan| scan.lidar.clone()).collect(),
             ..scenario.clone()
         });
         Ok(Self {
@@ -83,9 +85,12 @@ impl BuiltSensors {
     }
 
     /// What a law can scan by itself: nothing where sensors tell of obstacles in their own way.
-    pub fn scan(&self) -> Scan<'static> {
+    pub fn scan(&self) -> Scan<'_> {
         if self.tells() {
-            Scan::default()
+            Scan {
+                lidars: Lidars(&self.sensors),
+                ..Scan::default()
+            }
         } else {
             Scan::ALL
         }

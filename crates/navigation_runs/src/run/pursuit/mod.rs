@@ -471,7 +471,8 @@ impl Parts for PursuitParts<'_> {
         }
         self.keep();
         self.check_belief();
-        self.robot.hold(&self.known.order(command.force));
+        self.robot
+            .hold(&self.known.order(command.force, self.law.twist()));
         Ok(true)
     }
 

@@ -17,6 +17,7 @@ pub use velocity::velocity_of;
 pub use virtual_velocity::VirtualVelocity;
 
 use crate::robots::HolonomicRobot;
+use crate::robots::differential::Twist;
 use crate::world::frame::Frame;
 use crate::world::geometry::RobotState;
 use numeric::lanes::{Planar, Vector2};
@@ -94,6 +95,8 @@ pub struct PoseFix {
 pub struct Order {
     /// Commanded force in N.
     pub force: Vector2<f64>,
+    /// Commanded twist of a robot with two wheels, in place of the velocity that the force reaches.
+    pub twist: Option<Twist>,
     /// The pose as measured now, `None` where it is known exactly.
     pub fix: Option<PoseFix>,
     /// Set where the robot is outside every active region, as far as it knows.

@@ -264,7 +264,11 @@ impl Drive for TwoWheels {
             Steering::Follow(tracker) => tracker.permit_goal_phase(order.clear),
             Steering::Torque(_) => {}
             Steering::Velocity(velocity) => {
-                velocity.hold(order.force, self.known.heading, self.twist);
+                let heading = self.known.heading;
+                let target = order
+                    .twist
+                    .unwrap_or_else(|| velocity.reached_by(order.force, heading, self.twist));
+                velocity.hold(self.twist, target);
             }
         }
     }

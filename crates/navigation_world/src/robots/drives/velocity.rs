@@ -76,13 +76,16 @@ impl VelocitySteering {
         }
     }
 
-    /// Holds the force that reaches a velocity.
-    pub fn hold(&mut self, force: Vector2<f64>, heading: f64, now: Twist) {
+    /// Twist of the velocity that a force reaches.
+    pub fn reached_by(&self, force: Vector2<f64>, heading: f64, now: Twist) -> Twist {
         let (sin, cos) = heading.sin_cos();
         let velocity = Vector2::new(cos, sin) * now.speed + force * (self.period / self.mass);
-        self.from = now;
-        self.target = twist_of(velocity, heading, self.period);
-        self.over = 0.0;
+        twist_of(velocity, heading, self.period)
+    }
+
+    /// Takes up a twist from the present one on.
+    pub fn hold(&mut self, now: Twist, target: Twist) {
+        (self.from, self.target, self.over) = (now, target, 0.0);
     }
 
     /// Twist to have after the next motion step.

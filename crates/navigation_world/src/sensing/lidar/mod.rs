@@ -20,6 +20,8 @@ pub use scans::Scans;
 
 /// Most beams of a scan.
 pub const MOST_BEAMS: usize = 100_000;
+/// Longest latency in s: it bounds the memory of scans.
+const MAX_LATENCY: f64 = 5.0;
 /// Force laws brake this near to a boundary point beyond the radius of the robot, in m.
 const AT_THE_WALL: f64 = 0.001;
 /// Streams of dropouts are so far above those of noise.
@@ -52,6 +54,8 @@ pub struct Lidar {
     pub range_noise: f64,
     /// Probability with which a beam reads nothing at all.
     pub dropout: f64,
+    /// Age of scans when they arrive, in s.
+    pub latency: f64,
     /// Set for a lidar that sees the obstacles of the scene, too.
     pub sees_obstacles: bool,
     /// Share `kappa` behind which points are left out.
@@ -76,6 +80,7 @@ impl Default for Lidar {
             range_max: 10.0,
             range_noise: 0.0,
             dropout: 0.0,
+            latency: 0.0,
             sees_obstacles: true,
             kappa: 0.5,
             influence: 0.3,
@@ -139,6 +144,14 @@ impl Lidar {
             return Err(Failure::invalid("range_max", "be above range_min", given));
         }
         not_negative("range_noise", self.range_noise)?;
+        if not_negative("latency", self.latency)? > MAX_LATENCY {
+            let rule = format!("be at most {MAX_LATENCY} s");
+            return Err(Failure::invalid(
+                "latency",
+                rule,
+                Given::Number(self.latency),
+            ));
+        }
         checked_kappa(self.kappa)?;
         positive("influence", self.influence)?;
         if let Some(reach) = self.reach {
@@ -256,6 +269,18 @@ impl Lidar {
 }
 
 impl Lidar {
+    /// The lidar in an empty place, without errors.
+    #[must_use]
+    pub fn ideal_without_map(&self) -> Self {
+        Self {
+            map: StaticMap::default(),
+            range_noise: 0.0,
+            dropout: 0.0,
+            latency: 0.0,
+            ..self.clone()
+        }
+    }
+
     /// Regions of what it reads: at the wall and `influence` ahead of it, or sized for the largest speed of what is seen.
     ///
     /// # Errors

@@ -1,9 +1,11 @@
 //! A lidar at work: what its scans tell a law.
 
+use std::collections::VecDeque;
+
 use nalgebra::Vector2;
 
 use super::{Lidar, ScanNoise, boundary_points_of};
-use crate::sensing::sensor::{Sensor, Truth};
+use crate::sensing::sensor::{LidarScan, Sensor, Truth};
 use crate::world::frame::Frame;
 use crate::world::geometry::Body;
 use crate::world::map::MOST_POINTS;
@@ -15,6 +17,9 @@ use numeric::error::{Failure, Given, Result};
 /// Streams of the noise of lidars, counted up from here, above those of sonars.
 const LIDAR_STREAM: u64 = (1 << 61) + (1 << 60);
 
+/// Rounding of instants in s.
+const ROUNDING: f64 = 1e-9;
+
 /// A lidar at work.
 pub struct Scans {
     options: Lidar,
@@ -23,6 +28,10 @@ pub struct Scans {
     noise: ScanNoise,
     shapes: Vec<PlacedShape>,
     ranges: Vec<f64>,
+    /// When the last scan that arrived was made, in s.
+    scanned: f64,
+    /// Scans that have not arrived, with instant in s and pose of the robot as it knew it.
+    late: VecDeque<(f64, Frame, Vec<f64>)>,
     points: Vec<Vector2<f64>>,
     boundary: Vec<[f64; 2]>,
     /// Points of scans that were told, with their instants in s.
@@ -54,6 +63,8 @@ impl Scans {
             noise: ScanNoise::new(scenario.seed, LIDAR_STREAM + index),
             shapes: Vec::with_capacity(scenario.obstacles.len()),
             ranges: Vec::with_capacity(options.beams),
+            scanned: f64::NEG_INFINITY,
+            late: VecDeque::new(),
             points: Vec::with_capacity(options.beams),
             boundary: Vec::with_capacity(MOST_POINTS),
             told: Vec::new(),
@@ -80,17 +91,58 @@ impl Sensor for Scans {
         }
         let actual = truth.frame();
         let options = &self.options;
-        options.scan(&actual, &self.shapes, &mut self.noise, &mut self.ranges);
-        if options.dropout > 0.0 {
-            self.keep(truth.time, known);
+        let mut ranges = if options.latency > 0.0 {
+            Vec::with_capacity(options.beams)
         } else {
-            options.points(known, &self.ranges, &mut self.points);
+            std::mem::take(&mut self.ranges)
+        };
+        options.scan(&actual, &self.shapes, &mut self.noise, &mut ranges);
+        if options.latency > 0.0 {
+            self.late.push_back((truth.time, *known, ranges));
+            let arrived = truth.time - options.latency + ROUNDING;
+            let Some((scanned, pose, ranges)) = newest(&mut self.late, arrived) else {
+                return self.tell(known, bodies);
+            };
+            (self.scanned, self.ranges) = (scanned, ranges);
+            self.hit(&pose);
+        } else {
+            (self.scanned, self.ranges) = (truth.time, ranges);
+            self.hit(known);
         }
         self.tell(known, bodies);
     }
+
+    fn scan(&self) -> Option<LidarScan<'_>> {
+        Some(LidarScan {
+            lidar: &self.options,
+            time: self.scanned,
+            ranges: &self.ranges,
+        })
+    }
+}
+
+/// The last scan that was made until a time in s; those before it are dropped.
+fn newest(
+    late: &mut VecDeque<(f64, Frame, Vec<f64>)>,
+    until: f64,
+) -> Option<(f64, Frame, Vec<f64>)> {
+    let mut found = None;
+    while late.front().is_some_and(|(made, ..)| *made <= until) {
+        found = late.pop_front();
+    }
+    found
 }
 
 impl Scans {
+    /// Points of the scan that has arrived, made at a pose of the robot.
+    fn hit(&mut self, pose: &Frame) {
+        if self.options.dropout > 0.0 {
+            self.keep(self.scanned, pose);
+        } else {
+            self.options.points(pose, &self.ranges, &mut self.points);
+        }
+    }
+
     /// Points as a law can know them.
     #[must_use]
     pub fn points(&self) -> &[PlacedObstacle] {

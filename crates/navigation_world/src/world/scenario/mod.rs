@@ -8,6 +8,7 @@ pub use placed::PlacedObstacle;
 use placed::{place, place_all};
 
 use crate::robots::{DifferentialDriveRobot, HolonomicRobot};
+use crate::sensing::lidar::Lidar;
 use crate::sensing::measurement::Measurement;
 use crate::world::footprint::Footprint;
 use crate::world::frame::Frame;
@@ -79,6 +80,8 @@ pub struct Scenario {
     pub map: Option<StaticMap>,
     /// Walls beside the obstacles: touched, seen by sensors, and not told of to laws.
     pub walls: Option<StaticMap>,
+    /// Lidars whose scans a law is told.
+    pub lidars: Arc<[Lidar]>,
     /// Why laws that keep to regions cannot reach the goal, if they cannot.
     pub blocked: Option<Box<Failure>>,
 }
@@ -206,6 +209,7 @@ impl Scenario {
             seed: 0,
             map: None,
             walls: None,
+            lidars: Arc::default(),
             blocked,
         })
     }
@@ -249,6 +253,7 @@ impl Scenario {
             seed: 0,
             map: None,
             walls: None,
+            lidars: Arc::default(),
             blocked: None,
         })
     }
@@ -333,6 +338,7 @@ impl Scenario {
             seed: 0,
             map: self.map.clone(),
             walls: None,
+            lidars: Arc::default(),
             blocked: None,
         }
     }

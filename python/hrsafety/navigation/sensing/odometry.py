@@ -1,0 +1,50 @@
+"""Odometry that drifts: a robot that reckons where it is from the way of its wheels."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+from hrsafety._records import dataclass
+from hrsafety.navigation.sensing.robot_sensor import RobotSensor
+
+__all__ = ["Odometry"]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Odometry(RobotSensor):
+    """Odometry of a robot, whose errors grow with its way: its law knows the robot's pose by it alone.
+
+    Lengths are wrong by a share, and the heading goes wrong evenly along the way. Signs are drawn by the seed of the
+    scenario, one for each run. Slip of wheels with controllers is a thing of its own, `Slip`.
+
+    Parameters
+    ----------
+    length_error : float
+        Share by which lengths are wrong.
+    heading_error : float
+        Angle by which the heading goes wrong, in rad/m.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is negative or not finite.
+
+    Examples
+    --------
+    >>> from hrsafety import navigation as nav
+    >>> odometry = nav.sensing.Odometry(length_error=0.01)
+    >>> scene = nav.Scenario(robot=nav.DifferentialDriveRobot(), start=(0, 0), goal=(4, 0))
+    >>> run = nav.simulate(scene, nav.VirtualForceField(), built=nav.robots.AsBuilt(sensors=[odometry]))
+    >>> abs(run.position[-1, 0] - 4.0) < 0.12  # in truth, where it arrived
+    True
+    """
+
+    NAME: ClassVar[str] = "odometry"
+    TELLS: ClassVar[bool] = False
+
+    length_error: float = 0.01
+    heading_error: Annotated[float, "rad/m"] = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        self._make(**self._as_numbers("length_error", "heading_error"))
