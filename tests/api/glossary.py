@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-# A parameter of a law, a criterion: described once, in the table of its page.
+# A parameter of a law, a criterion: described once, in a table of its page.
 TABLES = {"guides/laws.md": "| law | parameter | symbol |", "theory/impact.md": "| metric | identifier | symbol |"}
 
 
@@ -16,7 +16,8 @@ def rows() -> list[list[str]]:
     """Return the cells of every row."""
     lines = (DOCS / "theory" / "symbols.md").read_text(encoding="utf-8").splitlines()
     for page, header in TABLES.items():
-        lines += (DOCS / page).read_text(encoding="utf-8").split(header)[1].split("\n\n")[0].splitlines()
+        for table in (DOCS / page).read_text(encoding="utf-8").split(header)[1:]:
+            lines += table.split("\n\n")[0].splitlines()
     return [line.strip().strip("|").split("|") for line in lines if line.startswith("|")]
 
 

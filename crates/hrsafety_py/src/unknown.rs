@@ -5,7 +5,6 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vff_core::error::Result;
 use vff_core::laws;
-use vff_core::laws::arc_rollouts::scanner;
 use vff_core::unknown::explore::{
     self, Explorer, ExplorerOptions, Order, Robot, Status, TimedScan, Trust,
 };
@@ -69,7 +68,7 @@ impl ScanController {
             taken!(given: Trust { scan_timeout, oldest_scan, position_tracking, heading_tracking });
         let goal = (given.take("goal")?, given.take("arrival_tolerance")?);
         given.done()?;
-        let scanners = lidars.iter().map(|lidar| scanner(&lidar.0)).collect();
+        let scanners = lidars.iter().map(|lidar| lidar.0.scanner()).collect();
         let robot = Robot::of(&robot.0, robot.1.as_deref(), period);
         let robot = robot.map_err(CoreError::from)?;
         let core = explore::Controller::new(robot, rollouts.0, trust, scanners, goal);

@@ -5,12 +5,11 @@ use crate::trace::Trace;
 use crate::{Command, Law, LawFamily, Situation, force_toward};
 use navigation_world::robots::differential::Twist;
 use navigation_world::robots::drives::velocity_of;
-use navigation_world::sensing::lidar::Lidar;
 use navigation_world::world::scenario::Scenario;
 use numeric::error::{Failure, Given, Result};
 use numeric::lanes::Vector2;
 use unknown_places::explore::{
-    self, Controller, Explorer, ExplorerOptions, Robot, Scanner, TimedScan, Trust,
+    self, Controller, Explorer, ExplorerOptions, Robot, TimedScan, Trust,
 };
 use unknown_places::guide::GuideOptions;
 
@@ -129,7 +128,7 @@ impl LawFamily for ArcRollouts {
             heading: to_goal.y.atan2(to_goal.x),
             turn_rate: 0.0,
         });
-        let scanners = scenario.lidars.iter().map(scanner).collect();
+        let scanners = scenario.lidars.to_vec();
         let goal = (scenario.goal, AT_GOAL * rules.arrival_tolerance);
         Ok(Box::new(Exploring {
             controller: Controller::new(robot, options, Trust::default(), scanners, goal)?,
@@ -138,17 +137,6 @@ impl LawFamily for ArcRollouts {
             twist: None,
             trace: None,
         }))
-    }
-}
-
-/// A lidar as the controller of scans knows it.
-#[must_use]
-pub fn scanner(lidar: &Lidar) -> Scanner {
-    Scanner {
-        mounting: lidar.mounting,
-        bearings: (0..lidar.beams).map(|beam| lidar.bearing(beam)).collect(),
-        range_min: lidar.range_min,
-        range_max: lidar.range_max,
     }
 }
 

@@ -66,6 +66,12 @@ def test_a_run_is_what_a_scan_controller_does_that_is_told_the_same() -> None:
         assert command.status != "braking"
 
 
+def test_the_core_reads_and_gives_back_their_gains() -> None:
+    law = nav.ArcRollouts(margin=0.04, beyond=1.0)
+    assert law._native.gains == list(law.gains)
+    assert law._native.gain_names == list(law.GAIN_NAMES)
+
+
 def test_every_verb_takes_them() -> None:
     scenes = [scene(), scene(goal=(6.0, 1.5))]
     law = nav.ArcRollouts()

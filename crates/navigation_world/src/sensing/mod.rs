@@ -24,6 +24,7 @@ pub mod odometry;
 mod options;
 mod rotation;
 pub mod sampled;
+pub mod scanner;
 pub mod sensor;
 pub mod sonar;
 pub mod sound;

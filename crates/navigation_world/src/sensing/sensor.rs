@@ -1,6 +1,6 @@
 //! Interface of sensors: watch the scene, and tell the controller of the robot or of obstacles.
 
-use crate::sensing::lidar::Lidar;
+use crate::sensing::scanner::Scanner;
 use crate::world::frame::{Frame, Heading};
 use crate::world::geometry::{Body, RobotState};
 use crate::world::obstacle::Regions;
@@ -80,8 +80,8 @@ pub struct Located {
 /// Last scan of a lidar.
 #[derive(Clone, Copy, Debug)]
 pub struct LidarScan<'a> {
-    /// Mounting, beams and ranges of the lidar.
-    pub lidar: &'a Lidar,
+    /// The lidar.
+    pub scanner: &'a Scanner,
     /// When it was made in s.
     pub time: f64,
     /// In m: `range_max` where nothing was hit, NaN where a beam dropped out; empty before the first scan.

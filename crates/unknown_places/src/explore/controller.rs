@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector2;
 use navigation_world::robots::differential::{Integration, Twist};
+use navigation_world::sensing::scanner::Scanner;
 use navigation_world::world::frame::Frame;
 use numeric::error::{Failure, Given, Result, finite, finite_pair, not_negative, positive};
 
@@ -15,19 +16,6 @@ use crate::map::Scan;
 const MOST_POSES: usize = 4096;
 /// A robot that is farther than this from where its plan has it, in m, did not drive there: its pose jumped.
 const JUMP: f64 = 0.05;
-
-/// A lidar on the robot.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Scanner {
-    /// Its pose on the robot.
-    pub mounting: Frame,
-    /// Angles of its beams from straight ahead of it in rad.
-    pub bearings: Vec<f64>,
-    /// Least range in m.
-    pub range_min: f64,
-    /// Largest range in m.
-    pub range_max: f64,
-}
 
 /// Bounds of scans and poses within which the robot drives.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -428,26 +416,4 @@ fn with_margin(robot: &Robot, options: ExplorerOptions, trust: Trust) -> Explore
 fn apart(one: &Frame, other: &Frame) -> [f64; 2] {
     let turn = (one.angle() - other.angle() + PI).rem_euclid(TAU) - PI;
     [(other.position - one.position).norm(), turn.abs()]
-}
-
-impl Scanner {
-    fn checked(&self) -> Result<()> {
-        self.mounting.checked()?;
-        if self.bearings.is_empty() {
-            return Err(Failure::invalid("beams", "be at least 1", Given::Count(0)));
-        }
-        for bearing in &self.bearings {
-            finite("bearings", *bearing)?;
-        }
-        not_negative("range_min", self.range_min)?;
-        positive("range_max", self.range_max)?;
-        if self.range_max <= self.range_min {
-            return Err(Failure::invalid(
-                "range_max",
-                "be above range_min",
-                Given::Number(self.range_max),
-            ));
-        }
-        Ok(())
-    }
 }

@@ -11,7 +11,7 @@ mod recovery;
 mod rollouts;
 mod verify;
 
-pub use controller::{Controller, Doubts, Order, Scanner, TimedScan, Trust};
+pub use controller::{Controller, Doubts, Order, TimedScan, Trust};
 pub use explorer::{Decision, Explorer, ExplorerOptions, Robot, Status};
 pub use rollouts::{COMMANDS, Rated, Reach, Rollouts};
 pub use verify::{Chassis, Obstacle};

@@ -62,7 +62,7 @@ impl BuiltSensors {
         let scans = sensors.iter().filter_map(|sensor| sensor.scan());
         let known = tells.then(|| Scenario {
             obstacles,
-            lidars: scans.map(|scan| scan.lidar.clone()).collect(),
+            lidars: scans.map(|scan| scan.scanner.clone()).collect(),
             ..scenario.clone()
         });
         Ok(Self {

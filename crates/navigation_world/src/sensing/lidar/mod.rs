@@ -7,6 +7,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Vector2;
 use numeric::random::Stream;
 
+use crate::sensing::scanner::Scanner;
 use crate::sensing::sensor::{RobotSensor, Sensor};
 use crate::sensing::sonar::ranging::Normals;
 use crate::world::frame::Frame;
@@ -269,6 +270,17 @@ impl Lidar {
 }
 
 impl Lidar {
+    /// What its scans are to be read with.
+    #[must_use]
+    pub fn scanner(&self) -> Scanner {
+        Scanner {
+            mounting: self.mounting,
+            bearings: (0..self.beams).map(|beam| self.bearing(beam)).collect(),
+            range_min: self.range_min,
+            range_max: self.range_max,
+        }
+    }
+
     /// The lidar in an empty place, without errors.
     #[must_use]
     pub fn ideal_without_map(&self) -> Self {

@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use nalgebra::Vector2;
 
 use super::{Lidar, ScanNoise, boundary_points_of};
+use crate::sensing::scanner::Scanner;
 use crate::sensing::sensor::{LidarScan, Sensor, Truth};
 use crate::world::frame::Frame;
 use crate::world::geometry::Body;
@@ -23,6 +24,7 @@ const ROUNDING: f64 = 1e-9;
 /// A lidar at work.
 pub struct Scans {
     options: Lidar,
+    scanner: Scanner,
     obstacles: Vec<PlacedObstacle>,
     reach: f64,
     noise: ScanNoise,
@@ -58,6 +60,7 @@ impl Scans {
             speed_bound: Some(options.max_speed),
         };
         Ok(Self {
+            scanner: options.scanner(),
             obstacles: vec![placed; MOST_POINTS],
             reach: options.reach.unwrap_or(regions.active_radius),
             noise: ScanNoise::new(scenario.seed, LIDAR_STREAM + index),
@@ -114,7 +117,7 @@ impl Sensor for Scans {
 
     fn scan(&self) -> Option<LidarScan<'_>> {
         Some(LidarScan {
-            lidar: &self.options,
+            scanner: &self.scanner,
             time: self.scanned,
             ranges: &self.ranges,
         })

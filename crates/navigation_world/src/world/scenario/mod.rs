@@ -8,8 +8,8 @@ pub use placed::PlacedObstacle;
 use placed::{place, place_all};
 
 use crate::robots::{DifferentialDriveRobot, HolonomicRobot};
-use crate::sensing::lidar::Lidar;
 use crate::sensing::measurement::Measurement;
+use crate::sensing::scanner::Scanner;
 use crate::world::footprint::Footprint;
 use crate::world::frame::Frame;
 use crate::world::map::StaticMap;
@@ -81,7 +81,7 @@ pub struct Scenario {
     /// Walls beside the obstacles: touched, seen by sensors, and not told of to laws.
     pub walls: Option<StaticMap>,
     /// Lidars whose scans a law is told.
-    pub lidars: Arc<[Lidar]>,
+    pub lidars: Arc<[Scanner]>,
     /// Why laws that keep to regions cannot reach the goal, if they cannot.
     pub blocked: Option<Box<Failure>>,
 }
