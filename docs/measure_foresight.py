@@ -3,8 +3,8 @@
 ``python docs/measure_foresight.py`` prints, ``--write`` replaces what stands between the marks of
 docs/guides/foresight.md; ``--only shares`` are the suites, ``--only scenes`` the standard scenes of social navigation,
 ``--only outlines`` crowds around robots with a footprint, ``--only adversary`` the search for a fault, ``--only first``
-the first rows of the page, which are some of its table of suites. The recordings are those of ``HRSAFETY_RECORDINGS``, a
-folder with zara01.csv and zara03.csv.
+the first rows of the page, which are some of its table of suites. The recordings are those of
+``HRSAFETY_RECORDINGS``, a folder with zara01.csv and zara03.csv.
 """
 
 from __future__ import annotations

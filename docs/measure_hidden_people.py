@@ -93,7 +93,9 @@ def first() -> str:
     """Return the rows of robots that do not creep, with and without unseen people, from the table of the page."""
     table = written(PAGE.read_text(encoding="utf-8"), TABLE_MARKS)
     columns = ("place and shield", "encounters", "at fault %", "time with nobody there: median, worst s")
-    return selected(table, lambda row: not {"creep", "cell"} & set(re.findall(r"\w+", row["place and shield"])), columns)
+    return selected(
+        table, lambda row: not {"creep", "cell"} & set(re.findall(r"\w+", row["place and shield"])), columns
+    )
 
 
 if __name__ == "__main__":
