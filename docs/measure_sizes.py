@@ -24,8 +24,8 @@ LARGEST = 10
 
 CAPABILITIES = {
     "lanes, checks, random numbers, threads, tables, errors, binding of these": (
-        "numeric hrsafety_module vff_core hrsafety_py/lib hrsafety_py/keywords hrsafety_py/parameters hrsafety_py/watch "
-        "hrsafety_py _arguments _atomic _display _keys _records _namespace _statistics errors plausibility tables"
+        "numeric hrsafety_module vff_core hrsafety_py _arguments _atomic _display _keys _records _namespace "
+        "_statistics errors plausibility tables"
     ),
     "robots, drives, footprints, scenarios, maps, guides, the loop and its lanes": (
         "navigation_world/robots navigation_world/world navigation_world navigation_runs/run navigation_runs "
@@ -40,7 +40,8 @@ CAPABILITIES = {
     ),
     "shield, yielding, foresight, searched persons": (
         "navigation_laws/shield navigation_laws/safe navigation_laws/yielding navigation_laws/foresight "
-        "navigation_runs/run/pursuit hrsafety_py/safe navigation/pursuits navigation/controller navigation/safety_record"
+        "navigation_runs/run/pursuit hrsafety_py/safe navigation/pursuits navigation/controller "
+        "navigation/safety_record"
     ),
     "filters of the field": "navigation_laws/filters",
     "laws that run on robots": (
@@ -60,8 +61,8 @@ CAPABILITIES = {
     ),
     "impacts, injury criteria, foam, identification": "impact_core impact hrsafety_py/impact",
     "contacts, coverings, allowed speeds, separation": (
-        "impact_core/allowed impact_core/collision impact_core/covering impact_core/contact impact_core/separation contact "
-        "standards hrsafety_py/contact"
+        "impact_core/allowed impact_core/collision impact_core/covering impact_core/contact impact_core/separation "
+        "contact standards hrsafety_py/contact"
     ),
     "masses of arms from URDF and MJCF": "impact_core/arm arms",
     "robot programs": "impact_core/program program hrsafety_py/program",
@@ -84,9 +85,11 @@ BEGINNINGS = {beginning: name for name, each in CAPABILITIES.items() for beginni
 @functools.cache
 def sources() -> tuple[Path, ...]:
     """Return the source files, below the root of the project."""
-    listed = subprocess.run(["git", "ls-files", RUST, PYTHON], cwd=ROOT, capture_output=True, text=True, check=True).stdout
-    paths = [Path(name) for name in listed.split()]
-    return tuple(path for path in paths if path.suffix in (".py", ".pyi") or (path.suffix == ".rs" and "src" in path.parts))
+    listed = subprocess.check_output(["git", "ls-files", RUST, PYTHON], cwd=ROOT, text=True)
+    paths = map(Path, listed.split())
+    return tuple(
+        path for path in paths if path.suffix in (".py", ".pyi") or (path.suffix == ".rs" and "src" in path.parts)
+    )
 
 
 @functools.cache
@@ -100,7 +103,7 @@ def code_lines(path: Path) -> int:
         return sum(1 for row in rows if row and not row.startswith("//"))
     documented: set[int] = set()
     for node in ast.walk(ast.parse(text)):
-        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node, clean=False) is not None:
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node) is not None:
             documented |= set(range(node.body[0].lineno, (node.body[0].end_lineno or 0) + 1))
     rows = enumerate((row.strip() for row in text.splitlines()), 1)
     return sum(1 for number, row in rows if row and not row.startswith("#") and number not in documented)
@@ -141,7 +144,8 @@ def parts() -> str:
     code: Counter[str] = Counter()
     for path in sources():
         name = short(path).split("/")[0]
-        part = f"`crates/{name}`" if path.parts[0] == RUST else f"`hrsafety.{name}`" if len(path.parts) > 3 else "`hrsafety`"
+        package = f"`hrsafety.{name}`" if len(path.parts) > 3 else "`hrsafety`"
+        part = f"`crates/{name}`" if path.parts[0] == RUST else package
         every[part] += len((ROOT / path).read_text(encoding="utf-8").splitlines())
         code[part] += code_lines(path)
     rows = head("part", "lines", "of them code")
