@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any, Literal, NoReturn
 
 import numpy as np
@@ -153,6 +154,15 @@ class Environments:
     def places(self, index: int) -> Any:
         """Return positions and radii of the robot, the people and the other robots of one environment."""
         return self._native.places(index)
+
+    def ask(self, index: int, robot: int, request: Mapping[str, tuple[float, float]]) -> None:
+        """Tell another robot of one environment a ``force``, ``velocity`` or ``twist``, which it keeps."""
+        told = {name: request.get(name) for name in ("force", "velocity", "twist")}
+        self._native.ask(index, robot, **told)
+
+    def headings(self, index: int) -> list[float]:
+        """Return the headings of the robots of one environment in rad."""
+        return self._native.headings(index) or []
 
     # ---- spaces ---------------------------------------------------------------------------------
 

@@ -21,9 +21,9 @@ from hrsafety.gym.single import RENDER_MODES, CrowdEnv
 from hrsafety.gym.worlds import Task, doubts_of, task_of
 from hrsafety.navigation.crowd.agents import Robot
 from hrsafety.navigation.crowd.world import World
-from hrsafety.navigation.laws.situation import Situation
 from hrsafety.navigation.metrics.between import wrapped
 from hrsafety.navigation.place import Place
+from hrsafety.navigation.robots.bodies import DifferentialDriveRobot
 from hrsafety.plausibility import telling
 
 __all__ = ["CrowdParallelEnv"]
@@ -32,67 +32,40 @@ Action = npt.NDArray[np.float32]
 
 
 class _Told:
-    """Law of a robot in the worlds of the others: the action of its learner, rest once its episode has ended."""
+    """What a robot is told in the worlds of the others: the action of its learner, rest once its episode has ended."""
 
-    def __init__(self, robot: Robot, action: str, turn: float, acceleration: float) -> None:
-        self.kind, self.fastest = action, robot.body.max_speed
-        self.force, self.turn = robot.body.mass * acceleration, turn
+    def __init__(self, robot: Robot, action: str, turn_rate: float, acceleration: float, period: float) -> None:
+        self.fastest, self.force, self.turn_rate = robot.body.max_speed, robot.body.mass * acceleration, turn_rate
+        wheels = action == "unicycle" and isinstance(robot.body, DifferentialDriveRobot)
+        self.kind, self.period = "twist" if wheels else action, period
         self.ahead = math.atan2(robot.goal[1] - robot.start[1], robot.goal[0] - robot.start[0])
         self.reset()
 
     def reset(self) -> None:
         """Start an episode."""
-        self.wanted, self.heading, self.resting = (0.0, 0.0), self.ahead, False
+        self.heading = self.ahead
+        self.rest()
 
     def tell(self, action: Array) -> None:
         """Take an action in [-1, 1], as the environment does."""
         x, y = (min(max(float(share), -1.0), 1.0) for share in action)
-        if self.kind == "unicycle":
-            self.heading += y * self.turn
-            self.wanted = math.cos(self.heading) * (x * self.fastest), math.sin(self.heading) * (x * self.fastest)
-            return
-        if self.kind == "acceleration":
-            self.wanted = x * self.force, y * self.force
-            return
-        length = math.sqrt(x * x + y * y)
-        if length > 1.0:
-            x, y = x / length, y / length
-        self.wanted = x * self.fastest, y * self.fastest
+        if self.kind == "twist":
+            self.request = {"twist": (x * self.fastest, y * self.turn_rate)}
+        elif self.kind == "unicycle":
+            self.heading += y * self.turn_rate * self.period
+            ahead = math.cos(self.heading), math.sin(self.heading)
+            self.request = {"velocity": (ahead[0] * (x * self.fastest), ahead[1] * (x * self.fastest))}
+        elif self.kind == "acceleration":
+            self.request = {"force": (x * self.force, y * self.force)}
+        else:
+            length = math.sqrt(x * x + y * y)
+            if length > 1.0:
+                x, y = x / length, y / length
+            self.request = {"velocity": (x * self.fastest, y * self.fastest)}
 
     def rest(self) -> None:
         """Come to rest and stay there."""
-        self.resting = True
-
-    def law(self) -> _Forces | _Velocities:
-        """Return the law: of velocities, or of forces for accelerations."""
-        return _Forces(self) if self.kind == "acceleration" else _Velocities(self)
-
-
-class _Velocities:
-    """A law of what is told as velocities."""
-
-    name = "driven by a learner"
-
-    def __init__(self, told: _Told) -> None:
-        self.told = told
-
-    def velocity(self, _: Situation, /) -> tuple[float, float]:
-        """Return the velocity in m/s."""
-        return (0.0, 0.0) if self.told.resting else self.told.wanted
-
-
-class _Forces:
-    """A law of what is told as forces."""
-
-    name = "driven by a learner"
-
-    def __init__(self, told: _Told) -> None:
-        self.told = told
-
-    def command(self, seen: Situation, /) -> Array | tuple[float, float]:
-        """Return the force in N."""
-        stop: Array = -seen.robot.mass * seen.velocity / seen.control_period
-        return stop if self.told.resting else self.told.wanted
+        self.request = {"velocity": (0.0, 0.0)}
 
 
 def _driven(world: World) -> list[int]:
@@ -184,18 +157,25 @@ class CrowdParallelEnv(ParallelEnv[str, Any, Action]):  # type: ignore[misc]  # 
         return _Told(
             robot,
             word("action", options.get("action", "velocity"), get_args(ActionKind)),
-            turn_rate_of(robot.body, options.get("max_turn_rate")) * (robot.control_period or world.step),
+            turn_rate_of(robot.body, options.get("max_turn_rate")),
             robot.body.max_acceleration if acceleration is None else positive("max_acceleration", acceleration),
+            robot.control_period or world.step,
         )
 
     def _seen_by(self, task: Task, index: int) -> Task:
         """Return the task with a robot in front of the others, which are told what to do."""
         robots = list(task.world.robots)
-        for name, told in self._told.items():
-            other = int(name.removeprefix("robot_"))
-            robots[other] = replace(robots[other], law=None if other == index else told.law())
         robots[0], robots[index] = robots[index], robots[0]
         return replace(task, world=replace(task.world, robots=robots))
+
+    def _tell(self, name: str) -> None:
+        """Tell the others in the world of a robot what their learners want."""
+        own = int(name.removeprefix("robot_"))
+        for other, told in self._told.items():
+            index = int(other.removeprefix("robot_"))
+            if other != name:
+                # The robot of the world stands in the place of the first one, and that one in its place.
+                self._envs[name]._all.ask(0, own if index == 0 else index, told.request)
 
     def observation_space(self, agent: str) -> spaces.Space[Any]:
         """Return what a robot may see, always the same object.
@@ -285,6 +265,8 @@ class CrowdParallelEnv(ParallelEnv[str, Any, Action]):  # type: ignore[misc]  # 
         given = self._checked(actions)
         for name, action in given.items():
             self._told[name].tell(action)
+        for name in given:
+            self._tell(name)
         found = {name: self._envs[name].step(action) for name, action in given.items()}
         for name, (_, _, terminated, truncated, _) in found.items():
             if terminated or truncated:

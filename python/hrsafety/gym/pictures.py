@@ -19,7 +19,8 @@ def picture(environments: Environments, index: int, **more: Any) -> Frame:
     robot, people, robots = environments.places(index)
     world = environments.task.world
     elapsed = float(environments.observations[index, ELAPSED]) * world.time_limit
-    figure = crowd_instant(world, time=elapsed, robot=robot, people=people, robots=robots, **more)
+    bodies = {"robot": robot, "people": people, "robots": robots, "headings": environments.headings(index)}
+    figure = crowd_instant(world, time=elapsed, **bodies, **more)
     # Imported when a picture is asked for, as all of matplotlib is.
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 

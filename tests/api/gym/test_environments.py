@@ -320,25 +320,57 @@ def test_a_learner_drives_the_robot_of_a_scenario() -> None:
     assert outcome == "arrived"
 
 
+def blue(env: gym.CrowdEnv) -> npt.NDArray[np.bool_]:
+    """Return where the picture of an environment has the color of its robot."""
+    seen = env.render().astype(np.int64)
+    near = np.abs(seen - [0, 114, 178]).sum(axis=2) < 30
+    return near[: int(0.85 * len(near))]  # without the legend
+
+
+def tilt(outline: npt.NDArray[np.bool_]) -> float:
+    """Return the angle of the longer side of a rectangle in a picture in rad."""
+    rows, columns = np.nonzero(outline)
+    return float(np.arctan(np.polyfit(columns, -rows, 1)[0]))
+
+
 @pytest.mark.parametrize("heading", [0.0, 0.9])
-def test_a_picture_shows_the_footprint_of_a_robot_that_keeps_its_heading(heading: float) -> None:
+def test_a_picture_shows_the_footprint_of_a_robot_at_its_heading(heading: float) -> None:
     footprint = nav.robots.Footprint.rectangle(1.6, 0.4)
 
-    def blue(body: Any, **more: Any) -> npt.NDArray[np.bool_]:
+    def made(body: Any, **more: Any) -> gym.CrowdEnv:
         robot = nav.Robot(body, start=(0.0, 0.0), goal=(6.0, 0.0), heading=heading)
         env = gym.CrowdEnv(nav.World(robots=[robot], time_limit=20.0), render_mode="rgb_array", **more)
         env.reset(seed=0)
-        seen = env.render().astype(np.int64)
-        near = np.abs(seen - [0, 114, 178]).sum(axis=2) < 30
-        return near[: int(0.85 * len(near))]  # without the legend
+        return env
 
     radius = float(np.hypot(0.8, 0.2))
-    outline, circle = blue(nav.HolonomicRobot(footprint=footprint)), blue(nav.HolonomicRobot(radius=radius))
+    outline = blue(made(nav.HolonomicRobot(footprint=footprint)))
+    circle = blue(made(nav.HolonomicRobot(radius=radius)))
     share = 1.6 * 0.4 / (np.pi * radius**2)
     assert outline.sum() / circle.sum() == pytest.approx(share, rel=0.1)
-    rows, columns = np.nonzero(outline)
-    tilted = np.polyfit(columns, -rows, 1)[0]
-    assert np.arctan(tilted) == pytest.approx(heading, abs=0.1)
-    # The heading of two wheels is not known here: a circle around the footprint.
-    wheels = blue(nav.DifferentialDriveRobot(footprint=footprint), action="unicycle")
-    assert wheels.sum() == pytest.approx(circle.sum(), rel=0.05)
+    assert tilt(outline) == pytest.approx(heading, abs=0.1)
+    # Two wheels turn the outline.
+    wheels = made(nav.DifferentialDriveRobot(footprint=footprint), action="unicycle")
+    assert tilt(blue(wheels)) == pytest.approx(heading, abs=0.1)
+    for _ in range(4):
+        wheels.step([0.0, -1.0])
+    (turned,) = wheels._all.headings(0)
+    assert turned < heading - 0.2
+    assert tilt(blue(wheels)) == pytest.approx(turned, abs=0.1)
+
+
+def test_two_wheels_take_up_the_speed_and_the_turn_rate_of_an_action() -> None:
+    robot = nav.Robot(nav.DifferentialDriveRobot(max_speed=0.7), start=(0.0, 0.0), goal=(6.0, 0.0), heading=2.0)
+    env = gym.CrowdEnv(nav.World(robots=[robot], step=0.1, time_limit=20.0), action="unicycle", max_turn_rate=2.0)
+    env.reset(seed=0)
+    for _ in range(5):  # it turns in place, away from the goal or toward it
+        env.step([0.0, -0.5])
+    (heading,) = env._all.headings(0)
+    assert heading == pytest.approx(2.0 - 0.5 * 2.0 * 0.5, abs=1e-9)
+    (place, _), *_ = env._all.places(0)
+    assert place == pytest.approx((0.0, 0.0), abs=1e-9)
+    env.step([-1.0, 0.0])
+    env.step([-1.0, 0.0])
+    (back, _), *_ = env._all.places(0)
+    (heading,) = env._all.headings(0)
+    assert np.dot(back, [np.cos(heading), np.sin(heading)]) < -0.05

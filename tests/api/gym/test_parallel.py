@@ -22,9 +22,9 @@ ENDS = [((-5.0, -5.0), (5.0, 5.0)), ((-5.0, 5.0), (5.0, -5.0)), ((5.0, 0.0), (-5
 KINDS: list[dict[str, Any]] = [{}, {"action": "unicycle", "lidar": 8}, {"action": "acceleration", "frame": "goal"}]
 
 
-def robot(index: int, law: Any = None, period: float = 0.25) -> nav.Robot:
+def robot(index: int, law: Any = None, period: float = 0.25, body: Any = None) -> nav.Robot:
     start, goal = ENDS[index]
-    body = nav.HolonomicRobot(radius=0.3, max_speed=0.9)
+    body = nav.HolonomicRobot(radius=0.3, max_speed=0.9) if body is None else body
     return nav.Robot(body, start=start, goal=goal, law=law, control_period=period)
 
 
@@ -84,9 +84,10 @@ def test_each_robot_sees_and_is_rewarded_as_in_an_environment_of_its_own() -> No
         assert env.agents == env.possible_agents
 
 
+@pytest.mark.parametrize("body", [None, nav.DifferentialDriveRobot(radius=0.3, max_speed=0.9)], ids=["disc", "wheels"])
 @pytest.mark.parametrize("options", KINDS, ids=str)
-def test_the_worlds_of_all_robots_are_one(options: dict[str, Any]) -> None:
-    env = gym.parallel_env(world(*map(robot, range(3))), **options)
+def test_the_worlds_of_all_robots_are_one(options: dict[str, Any], body: Any) -> None:
+    env = gym.parallel_env(world(*(robot(index, body=body) for index in range(3))), **options)
     env.reset(seed=2)
     generator = np.random.default_rng(3)
     while env.agents:

@@ -10,10 +10,14 @@ use vff_core::crowd::environments::{
     RANGE, Rewards, State,
 };
 use vff_core::crowd::metrics::ROBOT_METRICS;
+use vff_core::crowd::robots::CrowdRobot;
+use vff_core::robots::differential::Twist;
+use vff_core::run::Request;
 
 use crate::crowd::CrowdWorld;
 use crate::errors::CoreError;
 use crate::keywords::{Keywords, taken};
+use crate::run::episode::request_of;
 use crate::run::stepped::Stepped;
 use crate::watch::{Report, here, watched};
 
@@ -186,6 +190,33 @@ impl CrowdEnvironments {
         self.work(py, |all, interrupted| {
             all.step(actions, outputs, interrupted)
         })
+    }
+
+    /// Tells another robot of one of them a force in N, a velocity in m/s or a twist, until it is told something else.
+    #[pyo3(signature = (index, robot, force, velocity, twist))]
+    fn ask(
+        &self,
+        index: usize,
+        robot: usize,
+        force: Option<[f64; 2]>,
+        velocity: Option<[f64; 2]>,
+        twist: Option<[f64; 2]>,
+    ) -> PyResult<()> {
+        let request = match twist {
+            Some([speed, turn_rate]) => Request::Twist(Twist { speed, turn_rate }),
+            None => request_of(force, velocity),
+        };
+        self.all.idle()?.ask(index, robot, request);
+        Ok(())
+    }
+
+    /// Headings of the robots of one of them in rad.
+    fn headings(&self, index: usize) -> PyResult<Option<Vec<f64>>> {
+        let all = self.all.idle()?;
+        Ok(all.environment(index).map(|environment| {
+            let robots = environment.simulation().robots().iter();
+            robots.map(CrowdRobot::heading).collect()
+        }))
     }
 
     /// Where everybody is in one of them.

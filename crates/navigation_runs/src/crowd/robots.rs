@@ -417,6 +417,10 @@ impl CrowdRobot {
             _ if !self.arrival_time.is_nan() => toward(Vector2::zeros(), &situation),
             (Request::Force(force), _) => force.into(),
             (Request::Velocity(velocity), _) => toward(velocity.into(), &situation),
+            (Request::Twist(told), _) => {
+                twist = Some(told);
+                Vector2::zeros()
+            }
             (Request::Law, Some(pilot)) if pilot.law.is_some() => {
                 let own = (situation.heading, self.interval);
                 known = pilot.measure(world, people, robots, (step, time), own);

@@ -37,6 +37,8 @@ pub enum Request {
     Force([f64; 2]),
     /// A velocity in m/s that the robot should have at the next sample.
     Velocity([f64; 2]),
+    /// A twist that a robot with two wheels without a law of its own should have then; another robot stands.
+    Twist(Twist),
 }
 
 /// State of the robot as measured at the last sample.
@@ -251,8 +253,11 @@ impl<L: Listener> Parts for Navigation<L> {
         };
         self.runs.check_force(command.force, time)?;
         self.runs.count_sample();
-        let law = self.law.as_ref().filter(|_| request == Request::Law);
-        let twist = law.and_then(|law| law.twist());
+        let twist = match request {
+            Request::Law => self.law.as_ref().and_then(|law| law.twist()),
+            Request::Twist(twist) => Some(twist),
+            Request::Force(_) | Request::Velocity(_) => None,
+        };
         self.robot.hold(&self.known.order(command.force, twist));
         self.listener
             .sample(&command, self.known.robot.position.lane(0));
@@ -322,6 +327,7 @@ impl<L: Listener> Navigation<L> {
         let command = match request {
             Request::Law => law.as_mut().map(|law| law.command(&situation)),
             Request::Force(force) => Some(Command::plain(Vector2::splat(force))),
+            Request::Twist(_) => Some(Command::plain(Vector2::zeros())),
             Request::Velocity(desired) => {
                 let mass = self.scenario.robot.mass;
                 let force = force_toward(Vector2::splat(desired), &situation, mass);

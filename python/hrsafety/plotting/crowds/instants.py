@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import zip_longest
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from hrsafety.navigation.robots.bodies import HolonomicRobot
 from hrsafety.plotting import floor, notes, style
 from hrsafety.plotting.crowds import world_scenes
 
@@ -17,7 +15,6 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.figure import Figure
 
-    from hrsafety.navigation.crowd.agents import Robot
     from hrsafety.navigation.crowd.world import World
 
 __all__ = ["crowd_instant"]
@@ -36,6 +33,7 @@ def crowd_instant(
     robot: Body,
     people: Sequence[Body],
     robots: Sequence[Body],
+    headings: Sequence[float],
     paths: Sequence[npt.NDArray[np.float64]] = (),
     rays: npt.NDArray[np.float64] | None = None,
 ) -> Figure:
@@ -51,6 +49,8 @@ def crowd_instant(
         Position and radius in m of the robot that is driven.
     people, robots : sequence of ((float, float), float)
         Positions and radii of the people and of other robots, in m.
+    headings : sequence of float
+        Of all robots in rad, that of the driven one first: outlines are drawn as they look.
     paths : sequence of ndarray, shape (n, 2)
         Ways so far in m, that of the robot first, then those of the people.
     rays : ndarray of shape (m, 2), or None
@@ -79,30 +79,23 @@ def crowd_instant(
         axes.add_collection(LineCollection(list(ends), colors=style.NEUTRAL, linewidths=0.5, alpha=0.5, zorder=2.0))
     for number, way in enumerate(paths):
         axes.plot(*way.T, color=PERSON_COLOR if number else ROBOT_COLOR, linewidth=1.2, alpha=0.6, zorder=2.5)
+    made = list(zip(world.robots, headings, strict=True))
     drawn = (
-        (people, (), PERSON_COLOR, 3.2),
-        (robots, world.robots[1:], OTHER_COLOR, 4.4),
-        ([robot], world.robots[:1], ROBOT_COLOR, 4.5),
+        (people, [(None, 0.0)] * len(people), PERSON_COLOR, 3.2),
+        (robots, made[1:], OTHER_COLOR, 4.4),
+        ([robot], made[:1], ROBOT_COLOR, 4.5),
     )
     for bodies, made_as, color, zorder in drawn:
         look: style.Properties = {"facecolor": color, "edgecolor": "white", "linewidth": 0.8, "zorder": zorder}
-        for (where, radius), made in zip_longest(bodies, made_as):
-            outline = None if made is None or not _is_drawn(made) else made
-            world_scenes.draw_body(axes, place, np.asarray(where), radius, outline, **look)
+        for (where, radius), (own, heading) in zip(bodies, made_as, strict=True):
+            world_scenes.draw_body(axes, place, np.asarray(where), radius, own, heading, **look)
     return floor.finish(figure, handles, columns=3)
-
-
-def _is_drawn(robot: Robot) -> bool:
-    """Whether a robot is drawn as its footprint: a holonomic one keeps its heading, others turn unseen."""
-    return robot.body.footprint is not None and isinstance(robot.body, HolonomicRobot)
 
 
 def _handles(world: World) -> list[Artist]:
     """Return the legend."""
     look: style.Properties = {"marker": "o", "markersize": 9}
-    around = any(each.body.footprint is not None and not _is_drawn(each) for each in world.robots)
-    name = "robot, circle around its footprint" if around else "robot"
-    handles: list[Artist] = [floor.handle(name, color=ROBOT_COLOR, **look)]
+    handles: list[Artist] = [floor.handle("robot", color=ROBOT_COLOR, **look)]
     if len(world.robots) > 1:
         handles.append(floor.handle("other robot", color=OTHER_COLOR, **look))
     if world.people or world.sources:

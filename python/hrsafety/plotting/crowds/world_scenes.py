@@ -281,8 +281,16 @@ def contacts(run: Trajectory) -> list[tuple[int, int]]:
     return sorted(found)
 
 
-def draw_body(axes: Axes, place: Floor, where: Array, radius: float, robot: Robot | None = None, **look: Any) -> None:
-    """Draw a person, or a robot as its footprint at its first heading, at each place in view at which it stands."""
+def draw_body(
+    axes: Axes,
+    place: Floor,
+    where: Array,
+    radius: float,
+    robot: Robot | None = None,
+    heading: float = 0.0,
+    **look: Any,
+) -> None:
+    """Draw a person, or a robot as it looks at a heading in rad, at each place in view at which it stands."""
     from matplotlib.patches import Circle
 
     if np.isfinite(where).all():
@@ -290,4 +298,4 @@ def draw_body(axes: Axes, place: Floor, where: Array, radius: float, robot: Robo
             if robot is None:
                 axes.add_patch(Circle(tuple(copy), radius, **look))
             else:
-                axes.add_patch(shapes.robot(robot.body, copy, robot.heading, **look))
+                axes.add_patch(shapes.robot(robot.body, copy, heading, **look))

@@ -20,6 +20,7 @@ use crate::crowd::environments::row::{METRICS, Row};
 use crate::crowd::world::{CrowdWorld, MOST_SIGHTINGS};
 use crate::crowd::world_lanes;
 use crate::run::Interrupted;
+use crate::run::Request;
 use numeric::error::{Failure, Given, Result, proceed};
 use numeric::threads::{on_threads, team, try_each};
 
@@ -104,6 +105,13 @@ impl Environments {
     #[must_use]
     pub fn environment(&self, index: usize) -> Option<&Environment> {
         self.each.get(index)
+    }
+
+    /// Tells another robot of one of them what to do from its next decision on, until it is told something else.
+    pub fn ask(&mut self, index: usize, robot: usize, request: Request) {
+        if let Some(environment) = self.each.get_mut(index) {
+            environment.ask(robot, request);
+        }
     }
 
     /// Starts episodes: of all, or where the mask says so; the first ones of other seeds where there are any.

@@ -10,6 +10,8 @@ use crate::crowd::people::OfPeople;
 use crate::crowd::simulation::{DecisionRoom, Simulation};
 use crate::crowd::world_lanes::WorldLanes;
 use crate::run::Request;
+use navigation_world::robots::differential::Twist;
+use navigation_world::world::scenario::Mover;
 use numeric::error::Result;
 use numeric::lanes::Vector2;
 
@@ -194,6 +196,11 @@ impl Environment {
         &self.simulation
     }
 
+    /// Tells another robot what to do from its next decision on.
+    pub(super) fn ask(&mut self, robot: usize, request: Request) {
+        self.simulation.ask(robot, request);
+    }
+
     /// Writes what the robot sees; returns how many of the people are there.
     pub fn observe(
         &self,
@@ -288,6 +295,12 @@ impl Environment {
             Action::Acceleration => {
                 let force = action * (settings.max_acceleration * setup.mass());
                 Request::Force(force.into())
+            }
+            Action::Unicycle if matches!(setup.mover, Mover::Differential(_)) => {
+                Request::Twist(Twist {
+                    speed: action.x * fastest,
+                    turn_rate: action.y * settings.max_turn_rate,
+                })
             }
             Action::Unicycle => {
                 self.heading += action.y * settings.max_turn_rate * setup.control_period;
