@@ -92,12 +92,16 @@ def captioned(name: str, figure: Figure, /, *, key: str = "", **words: object) -
 
 def picture(name: str, caption: str, figure: Figure) -> Picture:
     """Return a figure as a picture of the page."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from PIL import Image  # comes with matplotlib
 
-    drawn, content = io.BytesIO(), io.BytesIO()
-    figure.savefig(drawn, format="png", dpi=DOTS_PER_INCH)
+    # `savefig` draws twice, once for the layout alone, and packs pixels that are unpacked here again.
+    figure.set_dpi(DOTS_PER_INCH)
+    canvas, content = FigureCanvasAgg(figure), io.BytesIO()
+    canvas.draw()
+    drawn = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
     # A palette makes a page of forty pictures small enough for a phone.
-    Image.open(drawn).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(content, format="png", optimize=True)
+    drawn.quantize(256, dither=Image.Dither.NONE).save(content, format="png", optimize=True)
     return Picture(name=name, caption=caption, png=content.getvalue())
 
 
