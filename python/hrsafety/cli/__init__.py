@@ -7,7 +7,7 @@ import importlib
 import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 
 from hrsafety.cli import exit_codes, font_cache
 from hrsafety.cli.parsers import LAW_NAMES, UsageError, parser
@@ -101,12 +101,13 @@ def _as_options(*names: str, **others: str) -> Iterator[None]:
 
 def _reproduce(options: argparse.Namespace) -> None:
     from hrsafety import reproduce
-    from hrsafety.cli import output
+    from hrsafety.cli import output, workers
 
     output.planned_folder(options.out)
     output.require_matplotlib("reproduce")
-    with _as_options("only", "out"):
-        page = reproduce.run(options.out, only=options.only, progress=_progress)
+    several = options.only is None or len(options.only) > 1
+    with _as_options("only", "out"), workers.on_all_cores() if several else nullcontext() as pool:
+        page = reproduce.run(options.out, only=options.only, progress=_progress, executor=pool)
     print(f"summary page  {page}")
 
 

@@ -310,13 +310,16 @@ def test_reproduce_hands_over_its_options(
 ) -> None:
     seen: dict[str, object] = {}
 
-    def record(out: str, only: list[str] | None, progress: object) -> Path:
-        seen.update(out=out, only=only, progress=callable(progress))
+    def record(out: str, only: list[str] | None, progress: object, executor: object) -> Path:
+        seen.update(out=out, only=only, progress=callable(progress), pool=executor is not None)
         return Path(out, "summary.html")
 
     monkeypatch.setattr(reproduce, "run", record)
+    monkeypatch.setattr(os, "cpu_count", lambda: 2)
     assert main(["reproduce", "--only", "tables-6", "--only", "figures-6", "--out", str(tmp_path)]) == 0
-    assert seen == {"out": str(tmp_path), "only": ["tables-6", "figures-6"], "progress": True}
+    assert seen == {"out": str(tmp_path), "only": ["tables-6", "figures-6"], "progress": True, "pool": True}
+    assert main(["reproduce", "--only", "tables-6", "--out", str(tmp_path)]) == 0
+    assert not seen["pool"]
     assert "summary.html" in capsys.readouterr().out
 
 

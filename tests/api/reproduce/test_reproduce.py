@@ -3,20 +3,26 @@ from __future__ import annotations
 import csv
 import json
 import math
+import multiprocessing
 import os
+import re
+import signal
+import subprocess
 import sys
 from collections import Counter
 from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from api.interrupting import LISTEN, needs_signals
 from api.read_pages import page_of
 from hrsafety import _atomic as atomic
 from hrsafety import reproduce
-from hrsafety.errors import InvalidParameterError, MissingExtraError
+from hrsafety.errors import InvalidParameterError, MissingExtraError, SimulationError
 from hrsafety.navigation import metrics
 from hrsafety.reproduce import cells, figures, page, ranking, reasons, study, tables
 from hrsafety.reproduce.cells import PrintedValue
@@ -28,6 +34,7 @@ IMPACT_NUMBERS = ["3.1", "3.2", "3.3", "4.1", "4.2", "A.1"]
 SHORT_RUN = "tables-6"
 # Deviations are recomputed by the same two operations: equal but for the last bits.
 REPEATED = 1e-12
+SECONDS_TAKEN = re.compile(rb"Made .*; simulations and pictures took .* s")
 
 
 @pytest.fixture(scope="module")
@@ -265,6 +272,20 @@ def test_progress_names_each_part(tmp_path: Path) -> None:
     assert [line.split(":")[0] for line in lines] == ["tables-7", "table-5.1", "writing the page"]
 
 
+def test_processes_write_the_same_values_and_pictures(tmp_path: Path) -> None:
+    only = ["tables-6", "table-5.1", "wheels"]
+    with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
+        reproduce.run(tmp_path / "pool", only=only, executor=pool)
+    reproduce.run(tmp_path / "here", only=only)
+    files = [file.relative_to(tmp_path / "here") for file in sorted((tmp_path / "here").rglob("*.*"))]
+    assert len(files) == 7
+    for file in files:
+        there, here = ((tmp_path / folder / file).read_bytes() for folder in ("pool", "here"))
+        if file.name == "summary.html":
+            there, here = (SECONDS_TAKEN.sub(b"", page.replace(b"pool", b"here")) for page in (there, here))
+        assert there == here, file
+
+
 # ---- errors and interruptions -----------------------------------------------------------------------
 
 
@@ -284,6 +305,33 @@ def test_file_in_place_of_the_folder_is_an_error(tmp_path: Path) -> None:
     (tmp_path / "out").write_text("a file", encoding="utf-8")
     with pytest.raises(InvalidParameterError, match="out must be a folder or not exist"):
         reproduce.run(tmp_path / "out", only=SHORT_RUN)
+
+
+def test_a_process_that_ends_is_an_error(tmp_path: Path) -> None:
+    context = multiprocessing.get_context("spawn")
+    with (
+        ProcessPoolExecutor(1, mp_context=context, initializer=os._exit, initargs=(7,)) as pool,
+        pytest.raises(SimulationError, match=r"the pool broke .*nothing was written"),
+    ):
+        reproduce.run(tmp_path / "out", only=["table-5.1"], executor=pool)
+    assert list((tmp_path / "out").iterdir()) == []
+
+
+@needs_signals
+def test_ctrl_c_ends_all_processes(tmp_path: Path) -> None:
+    program = LISTEN + "if __name__ == '__main__':\n    from hrsafety.cli import main\n    raise SystemExit(main())\n"
+    script = tmp_path / "command.py"
+    script.write_text(program, encoding="utf-8")
+    words = ("reproduce", "--only", "reactive", "--only", "stabilizing", "--out", str(tmp_path / "out"))
+    process = subprocess.Popen([sys.executable, script, *words], stderr=subprocess.PIPE, text=True)
+    assert process.stderr is not None
+    assert process.stderr.readline() != ""
+    process.send_signal(signal.SIGINT)
+    # Whoever is left holds the other end for as long as sounds are measured and followed.
+    _, said = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert "Traceback" not in said
+    assert list((tmp_path / "out").iterdir()) == []
 
 
 @pytest.mark.parametrize("error", [OSError("disk full"), KeyboardInterrupt()])

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import multiprocessing
-import signal
 import sys
 import time
 import warnings
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
 
 from hrsafety import sweep
-from hrsafety.cli import output, progress, terminal
+from hrsafety.cli import output, progress, terminal, workers
 from hrsafety.cli.sweep import report as sweep_report
 from hrsafety.cli.sweep.file import SweepFile, load
 from hrsafety.cli.sweep.pictures import make
@@ -146,17 +143,11 @@ def _tell(message: Warning | str, *_where: Any, **_more: Any) -> None:
     print(f"hrsafety: {message}", file=sys.stderr, flush=True)
 
 
-def _ignore_interrupts() -> None:
-    """Leave Ctrl-C to the process that writes."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
 @contextlib.contextmanager
 def _workers(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
     """Yield where chunks are computed, as arguments of a run."""
     if options.workers is not None:
-        context = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(options.workers, mp_context=context, initializer=_ignore_interrupts) as pool:
+        with workers.pool(options.workers) as pool:
             yield {"executor": pool}
     elif options.scheduler is not None:
         try:
