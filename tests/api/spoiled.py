@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import pytest
@@ -53,18 +54,28 @@ WORD = ("", "unknown", "OFF", 1, None, True)
 
 
 def spoiled(rules: Mapping[str, Mapping[str, Sequence[Any]]]) -> list[Any]:
-    """Return a case (owner, argument, value) for every value that breaks a rule of an argument."""
+    """Return a case (owner, argument, values that break a rule) for every argument."""
     return [
-        pytest.param(owner, argument, value, id=f"{owner}-{argument}-{index}-{str(value)[:16]}")
+        pytest.param(owner, argument, values, id=f"{owner}-{argument}")
         for owner, arguments in rules.items()
         for argument, values in arguments.items()
-        for index, value in enumerate(values)
     ]
 
 
 def spoiled_calls(calls: Mapping[str, tuple[Any, ...]]) -> list[Any]:
     """Return the cases of calls whose last part says what breaks the rules of their arguments."""
     return spoiled({name: call[-1] for name, call in calls.items()})
+
+
+@contextlib.contextmanager
+def refused(value: Any) -> Iterator[pytest.ExceptionInfo[HrsafetyError]]:
+    """Ask for an error about a value, as `pytest.raises` does; a failure tells which value it was."""
+    try:
+        with pytest.raises((InvalidParameterError, ShapeError)) as caught:
+            yield caught
+    except BaseException as failure:
+        failure.add_note(f"the value was {value!r}")
+        raise
 
 
 def names(error: HrsafetyError) -> str:
