@@ -189,6 +189,25 @@ def test_a_robot_with_two_wheels_keeps_off() -> None:
         nav.simulate(scene, nav.SafeNavigation(entry("straight").law, filter=nav.laws.Barrier()))
 
 
+@pytest.mark.parametrize("turned", [0.0, 0.3, -0.8])
+@pytest.mark.parametrize("wheels", [False, True])
+def test_a_barrier_keeps_off_a_wall_along_which_the_robot_slides(turned: float, wheels: bool) -> None:
+    # A force law sees a wall from 0.3 m on; the barrier looks as far as it needs.
+    along = 2.5 * np.array([-np.sin(turned), np.cos(turned)])
+    wall = nav.StaticMap.from_polylines([[tuple((3.0, 0.2) - along), tuple((3.0, 0.2) + along)]])
+    robot, rule = (
+        (nav.DifferentialDriveRobot(radius=0.25, max_speed=1.0), nav.laws.BarrierUnicycle())
+        if wheels
+        else (nav.HolonomicRobot(radius=0.25, max_speed=1.0, max_acceleration=3.0), nav.laws.Barrier())
+    )
+    law = nav.SafeNavigation(entry("straight").law, map=wall, filter=rule)
+    scene = nav.Scenario(robot=robot, start=(0, 0), goal=(8, 0), control_period=0.1, time_limit=15.0)
+    run = nav.simulate(scene, law)
+    nearest = min(wall.clearance(tuple(place)) for place in run.position)
+    assert nearest > robot.radius
+    assert nearest < robot.radius + 0.25
+
+
 def test_a_controller_tells_of_its_filter() -> None:
     law = nav.SafeNavigation(entry("straight").law, filter=nav.laws.CollisionCone())
     controller = nav.Controller(law, nav.HolonomicRobot(radius=0.25), goal=(6.0, 0.0), people=1, control_period=0.1)

@@ -96,6 +96,19 @@ impl Filter {
         matches!(self, Self::BarrierUnicycle(_))
     }
 
+    /// Distance in m ahead of the robot of the place from which its rule looks at walls; `None` if it does not.
+    #[must_use]
+    pub fn looks_at_walls_from(&self) -> Option<f64> {
+        match self {
+            Self::Barrier(_) => Some(0.0),
+            Self::BarrierUnicycle(rule) => Some(rule.ahead),
+            Self::CollisionCone(_)
+            | Self::VelocityClamp(_)
+            | Self::ResponsibilityRule(_)
+            | Self::ApproachMonitor(_) => None,
+        }
+    }
+
     /// Filtered velocity for a wanted one in m/s; of two wheels that is speed in m/s and turn rate in rad/s. A monitor
     /// looks at the turn rate in rad/s beside the velocity.
     #[must_use]

@@ -1,7 +1,7 @@
 //! Surroundings of the robot in the terms of the law, of the shield and of yielding.
 
 use crate::Situation;
-use crate::filters::Near;
+use crate::filters::{Filter, Near};
 use crate::foresight::Sighting;
 use crate::safe::boundary::boundary_obstacle;
 use crate::safe::settings::SafeNavigation;
@@ -15,7 +15,7 @@ use navigation_world::world::scenario::{PlacedObstacle, Scenario};
 use navigation_world::world::shape::PlacedShape;
 use numeric::lanes::Vector2;
 
-/// Distance within which boundary points are shown to laws that choose velocities, in m.
+/// Distance within which boundary points are shown to filters and to laws that choose velocities, in m.
 const REACH: f64 = 5.0;
 
 /// How an obstacle is dealt with.
@@ -56,10 +56,10 @@ pub(super) struct Surroundings {
     pub bodies: Vec<Body>,
     /// For the shield.
     pub people: Vec<Person>,
-    /// For filters: people, and the nearest points of what stands.
+    /// For the filter, if there is one: people, and the nearest points of what stands.
     pub near: Vec<Near>,
     pub nearest_points: Vec<Vector2<f64>>,
-    filtered: bool,
+    filter: Option<Filter>,
     /// For yielding.
     pub passersby: Vec<Passerby>,
     /// For foresight.
@@ -90,7 +90,7 @@ impl Surroundings {
             people: Vec::new(),
             near: Vec::new(),
             nearest_points: Vec::new(),
-            filtered: family.filter.is_some(),
+            filter: family.filter,
             passersby: Vec::new(),
             sightings: Vec::new(),
             shapes: Vec::new(),
@@ -140,6 +140,11 @@ impl Surroundings {
         yielder: Option<&Yielder>,
     ) {
         let robot = situation.robot.position;
+        let looks_from = self.filter.and_then(|filter| filter.looks_at_walls_from());
+        let looks_from = looks_from.map(|ahead| {
+            let (sin, cos) = situation.heading.sin_cos();
+            robot + Vector2::new(cos, sin) * ahead
+        });
         let latency = guard.map_or(0.0, |guard| guard.shield.latency);
         let reach = yielder.map(|yielder| yielder.settings().reach);
         self.bodies.clear();
@@ -169,14 +174,14 @@ impl Surroundings {
                 shape: body.shape,
             };
             if known.kind == ObstacleKind::Wall {
-                if self.filtered {
-                    let away = placed.shape.offset(robot - placed.center);
-                    self.nearest_points.push(robot - away);
+                if let Some(place) = looks_from {
+                    let away = placed.shape.offset(place - placed.center);
+                    self.nearest_points.push(place - away);
                 }
                 self.shapes.push(placed);
                 continue;
             }
-            if self.filtered {
+            if self.filter.is_some() {
                 self.near.push(Near {
                     position: placed.center,
                     velocity: body.state.velocity.into(),
@@ -212,7 +217,8 @@ impl Surroundings {
             }
         }
         self.show_boundary(robot);
-        if self.filtered {
+        if let Some((place, map)) = looks_from.zip(self.map.as_ref()) {
+            map.boundary_points(place, REACH, 1.0, &mut self.points);
             let known = self.points.iter().map(|point| Vector2::from(*point));
             self.nearest_points.extend(known);
         }
