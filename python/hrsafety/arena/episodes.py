@@ -104,7 +104,7 @@ class ArenaStudy(Study):
         measured = nav.Measurement(scale=noise, latency=latency, of="obstacles") if noise or latency else None
         found = []
         for number, each in zip(scene, seed, strict=True):
-            world = scenarios.social(scenarios.SOCIAL[int(number)], int(each), reacting=self.reacting)
+            world = _scene(int(number), int(each), self.reacting)
             walls = tuple(each for each in world.wall_shapes if isinstance(each, tuple))
             if walls not in laws:
                 laws[walls] = self._built(walls, noise, latency)
@@ -131,6 +131,12 @@ class ArenaStudy(Study):
         return guided.built(
             person_speed=PERSON_SPEED, latency=latency, position_error=error, margin=SCENE_ERROR, map=map
         )
+
+
+@functools.lru_cache(maxsize=64)
+def _scene(number: int, seed: int, reacting: bool) -> World:
+    """Return a scene, which all entries share."""
+    return scenarios.social(scenarios.SOCIAL[number], seed, reacting=reacting)
 
 
 @functools.lru_cache(maxsize=24)

@@ -7,14 +7,16 @@ use nalgebra::Vector2;
 
 use crate::guide::plan::Planning;
 use crate::guide::{Guide, LocalGoal, Plan, PlanView, RobotRoom, Standing};
+use navigation_world::world::map::StaticMap;
 use navigation_world::world::shape::PlacedShape;
 
 /// Most nodes that a plan made again settles in one look: an update of a robot takes no longer, and a
 /// run and a robot take the plan at the same look, however fast they are.
 const NODES_OF_A_LOOK: usize = 2000;
 
-/// Most nodes of all plans around people that are kept; beyond them the oldest go.
-const MOST_NODES_KEPT: usize = 1_000_000;
+/// Most nodes of all plans around people that are kept, 20 bytes each; beyond them those go that were asked for longest
+/// ago.
+const MOST_NODES_KEPT: usize = 4_000_000;
 
 /// A plan around people who stand.
 #[derive(Clone, Debug)]
@@ -33,9 +35,27 @@ pub struct PlansAround(Arc<Mutex<VecDeque<PlanAround>>>);
 
 impl PlansAround {
     fn find(&self, alone: &Plan, standing: &[PlacedShape]) -> Option<PlanAround> {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let same = |each: &PlanAround| each.alone.is_copy_of(alone) && each.standing == standing;
+        let found = kept.iter().position(same).and_then(|at| kept.remove(at))?;
+        kept.push_back(found.clone());
+        Some(found)
+    }
+
+    /// The plan around most of those who stand, and a map of the others.
+    fn before(&self, alone: &Plan, standing: &[PlacedShape]) -> (Plan, StaticMap) {
         let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let same = |each: &&PlanAround| each.alone.is_copy_of(alone) && each.standing == standing;
-        kept.iter().find(same).cloned()
+        let some = |each: &&PlanAround| {
+            each.alone.is_copy_of(alone) && each.standing.iter().all(|one| standing.contains(one))
+        };
+        let most = kept
+            .iter()
+            .filter(some)
+            .max_by_key(|each| each.standing.len());
+        let (plan, around) = most.map_or((alone, &[][..]), |each| (&each.plan, &each.standing));
+        let others = standing.iter().filter(|one| !around.contains(one)).copied();
+        let others: Vec<PlacedShape> = others.collect();
+        (plan.clone(), StaticMap::default().with_shapes(&others))
     }
 
     fn keep(&self, made: PlanAround) {
@@ -192,8 +212,11 @@ impl Guidance {
         let source = if let Some(kept) = self.plans.find(&self.alone, &standing) {
             Source::Kept(kept)
         } else {
-            let map = self.alone.map().with_shapes(&standing);
-            let begun = self.alone.begin_again(self.guide, &map, self.robot);
+            let (before, others) = self.plans.before(&self.alone, &standing);
+            let after = (&before, others);
+            let begun = self
+                .alone
+                .begin_again(self.guide, self.robot, &standing, after);
             Source::Made(begun.ok()?)
         };
         Some(PendingPlan {

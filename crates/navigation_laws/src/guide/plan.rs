@@ -8,9 +8,10 @@ use numeric::order::sort_pairs;
 use crate::Stop;
 use crate::guide::nodes::Nodes;
 use crate::guide::pace::Pace;
-use crate::guide::search::{CostToGo, GuideSearch, MapClearance};
+use crate::guide::search::{CostToGo, FoundBefore, GuideSearch, MapClearance};
 use crate::guide::{Guide, RobotRoom};
 use navigation_world::world::map::StaticMap;
+use navigation_world::world::shape::PlacedShape;
 use numeric::error::{Failure, Given, Result};
 
 /// Nodes between two looks at whether to stop.
@@ -107,6 +108,7 @@ impl Planning {
         map: &StaticMap,
         robot: RobotRoom,
         (goal, pace): (Vector2<f64>, Option<Pace>),
+        before: Option<FoundBefore>,
     ) -> Result<Self> {
         let least = robot.least + guide.margin;
         let room = MapClearance {
@@ -123,7 +125,7 @@ impl Planning {
             map: map.clone(),
             least,
             goal,
-            search: GuideSearch::new(room, pace.clone(), nodes, first),
+            search: GuideSearch::new(room, pace.clone(), nodes, first, before),
             pace,
         })
     }
@@ -157,7 +159,7 @@ impl Plan {
         to: (Vector2<f64>, Option<Pace>),
         stop: Stop<'_>,
     ) -> Result<Self> {
-        let mut planning = Planning::new(guide, nodes, map, robot, to)?;
+        let mut planning = Planning::new(guide, nodes, map, robot, to, None)?;
         while !planning.advance(BETWEEN_LOOKS) {
             if stop.asked() {
                 return Err(Failure::Interrupted);
@@ -166,15 +168,22 @@ impl Plan {
         Ok(planning.finish())
     }
 
-    /// Begins the plan for the same nodes and goal in another map.
+    /// Begins the plan for the same nodes and goal in its map with shapes added to it, after a plan in its map with
+    /// some of them and a map of the others.
     pub(super) fn begin_again(
         &self,
         guide: Guide,
-        map: &StaticMap,
         robot: RobotRoom,
+        added: &[PlacedShape],
+        (before, others): (&Self, StaticMap),
     ) -> Result<Planning> {
         let to = (self.goal, self.pace.clone());
-        Planning::new(guide, self.nodes, map, robot, to)
+        let before = FoundBefore {
+            found: before.found.clone(),
+            added: others,
+        };
+        let map = self.map.with_shapes(added);
+        Planning::new(guide, self.nodes, &map, robot, to, Some(before))
     }
 
     /// Whether it is the other one, or a copy of it.

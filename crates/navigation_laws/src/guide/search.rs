@@ -2,6 +2,7 @@
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+use std::sync::Arc;
 
 use nalgebra::Vector2;
 
@@ -47,6 +48,24 @@ impl MapClearance {
 pub(super) struct CostToGo {
     pub cost: Vec<f64>,
     pub next: Vec<u32>,
+    /// Clearances in m up to `far`, NaN where not known.
+    clearance: Vec<f64>,
+    far: f64,
+}
+
+/// What a search in a map of fewer shapes found, and a map of the shapes that came to them.
+#[derive(Clone, Debug)]
+pub(super) struct FoundBefore {
+    pub found: Arc<CostToGo>,
+    pub added: StaticMap,
+}
+
+impl FoundBefore {
+    /// The clearance of a node in m up to what the search looked at; `None` where it did not.
+    fn clearance(&self, node: usize, place: Vector2<f64>) -> Option<f64> {
+        let before = self.found.clearance[node];
+        (!before.is_nan()).then(|| self.added.clearance_up_to(place, before))
+    }
 }
 
 /// A search from the goal's node, which resumes where it stopped.
@@ -56,10 +75,9 @@ pub(super) struct GuideSearch {
     nodes: Nodes,
     /// How many times dearer ways are where people can come from who are not seen, if they are reckoned with.
     pace: Option<Pace>,
-    /// Clearances up to `far`, NaN where not yet known.
-    clearance: Vec<f64>,
-    far: f64,
     found: CostToGo,
+    /// A search in the map without some of its shapes, whose clearances are taken over.
+    before: Option<FoundBefore>,
     /// Costs are not negative, so their bits are in the order of the numbers; of equal ones the
     /// node with the lower index comes first.
     queue: BinaryHeap<Reverse<(u64, usize)>>,
@@ -77,18 +95,21 @@ impl GuideSearch {
         pace: Option<Pace>,
         nodes: Nodes,
         (goal, cost_of_goal): (usize, f64),
+        before: Option<FoundBefore>,
     ) -> Self {
         let beyond = room.least - room.robot_radius + 3.0 * nodes.spacing;
+        let far = (room.robot_radius + NEAR.max(beyond)).max(room.turning_radius + TURNING_ROOM);
         let mut found = CostToGo {
             cost: vec![f64::INFINITY; nodes.count()],
             next: vec![0; nodes.count()],
+            clearance: vec![f64::NAN; nodes.count()],
+            far,
         };
         found.cost[goal] = cost_of_goal;
         found.next[goal] = narrow(goal);
         Self {
             pace,
-            clearance: vec![f64::NAN; nodes.count()],
-            far: (room.robot_radius + NEAR.max(beyond)).max(room.turning_radius + TURNING_ROOM),
+            before: before.filter(|before| before.found.far == far),
             room,
             nodes,
             found,
@@ -152,9 +173,13 @@ impl GuideSearch {
     }
 
     fn clearance_of(&mut self, node: usize) -> f64 {
-        let known = &mut self.clearance[node];
+        let known = &mut self.found.clearance[node];
         if known.is_nan() {
-            *known = self.room.clearance(self.nodes.place(node), self.far);
+            let place = self.nodes.place(node);
+            let before = self.before.as_ref();
+            *known = before
+                .and_then(|before| before.clearance(node, place))
+                .unwrap_or_else(|| self.room.clearance(place, self.found.far));
         }
         *known
     }

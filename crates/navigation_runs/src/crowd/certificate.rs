@@ -93,21 +93,25 @@ impl Lattice {
         self.start + Vector::new(along(column, self.before[0]), along(row, self.before[1]))
     }
 
-    /// The nodes whose places obey a rule.
-    fn where_true(&self, rule: impl Fn(Vector) -> bool) -> Vec<u64> {
-        let mut set = vec![0; self.rows * self.words];
-        for row in 0..self.rows {
-            for column in 0..self.columns {
-                if rule(self.place(column, row)) {
-                    set[row * self.words + column / 64] |= 1 << (column % 64);
-                }
-            }
-        }
-        set
+    /// No node.
+    fn none(&self) -> Vec<u64> {
+        vec![0; self.rows * self.words]
+    }
+
+    /// Word and bit of a node.
+    fn bit(&self, column: usize, row: usize) -> (usize, u64) {
+        (row * self.words + column / 64, 1 << (column % 64))
+    }
+
+    /// Column and row of the lowest bit of a word.
+    fn node(&self, word: usize, bits: u64) -> (usize, usize) {
+        let bit = bits.trailing_zeros() as usize;
+        (word % self.words * 64 + bit, word / self.words)
     }
 
     fn holds(&self, set: &[u64], column: usize, row: usize) -> bool {
-        set[row * self.words + column / 64] >> (column % 64) & 1 == 1
+        let (word, bit) = self.bit(column, row);
+        set[word] & bit != 0
     }
 
     /// The nodes within reach of a set; bits beyond the last column are those of no free node.
@@ -137,24 +141,32 @@ impl Lattice {
         wide
     }
 
-    /// Takes the nodes away that are nearer to a place than a distance.
-    fn clear_disc(&self, set: &mut [u64], place: Vector, least: f64) {
+    /// Columns and rows of the nodes in a square around a place, and their distances from it in m.
+    fn around(&self, place: Vector, half: f64) -> impl Iterator<Item = ((usize, usize), f64)> + '_ {
         let way = place - self.start;
         let range = |along: f64, before: usize, count: usize| {
-            let first = ((along - least) / SPACING).floor() + before as f64;
-            let last = ((along + least) / SPACING).ceil() + before as f64;
+            let first = ((along - half) / SPACING).floor() + before as f64;
+            let last = ((along + half) / SPACING).ceil() + before as f64;
             (last >= 0.0).then(|| count_of(first.max(0.0))..=count_of(last).min(count - 1))
         };
         let columns = range(way.x, self.before[0], self.columns);
         let rows = range(way.y, self.before[1], self.rows);
-        let Some((columns, rows)) = columns.zip(rows) else {
-            return;
-        };
-        for row in rows {
-            for column in columns.clone() {
-                if (self.place(column, row) - place).norm() < least {
-                    set[row * self.words + column / 64] &= !(1 << (column % 64));
-                }
+        let both = columns.zip(rows).into_iter();
+        both.flat_map(move |(columns, rows)| {
+            rows.flat_map(move |row| {
+                let node = move |column| (column, row);
+                columns.clone().map(node)
+            })
+        })
+        .map(move |(column, row)| ((column, row), (self.place(column, row) - place).norm()))
+    }
+
+    /// Takes the nodes away that are nearer to a place than a distance.
+    fn clear_disc(&self, set: &mut [u64], place: Vector, least: f64) {
+        for ((column, row), distance) in self.around(place, least) {
+            if distance < least {
+                let (word, bit) = self.bit(column, row);
+                set[word] &= !bit;
             }
         }
     }
@@ -176,6 +188,39 @@ impl Lattice {
             }
         }
         None
+    }
+}
+
+/// Nodes that are far enough from the walls, of those that were asked for.
+struct OpenNodes {
+    known: Vec<u64>,
+    open: Vec<u64>,
+}
+
+impl OpenNodes {
+    fn new(lattice: &Lattice) -> Self {
+        Self {
+            known: lattice.none(),
+            open: lattice.none(),
+        }
+    }
+
+    /// Keeps of a set what is open, by a rule for places.
+    fn keep(&mut self, lattice: &Lattice, set: &mut [u64], rule: impl Fn(Vector) -> bool) {
+        let all = set.iter_mut().zip(&mut self.known).zip(&mut self.open);
+        for (word, ((set, known), open)) in all.enumerate() {
+            let mut asked = *set & !*known;
+            while asked != 0 {
+                let bit = asked & asked.wrapping_neg();
+                let (column, row) = lattice.node(word, bit);
+                if column < lattice.columns && rule(lattice.place(column, row)) {
+                    *open |= bit;
+                }
+                asked &= !bit;
+            }
+            *known |= *set;
+            *set &= *open;
+        }
     }
 }
 
@@ -254,10 +299,19 @@ pub fn certify(world: &CrowdWorld, interrupted: Interrupted<'_>) -> Result<Optio
     let positions = record.person_positions();
     let half = count_of(steps);
     let room = radius + WALL_ROOM;
-    let open =
-        lattice.where_true(|place| world.walls.iter().all(|wall| wall.clearance(place) >= room));
-    let at_goal = lattice.where_true(|place| (place - goal).norm() <= AT_GOAL);
-    let mut sets = vec![lattice.where_true(|place| place == start)];
+    let is_open = |place| world.walls.iter().all(|wall| wall.clearance(place) >= room);
+    let mut open = OpenNodes::new(&lattice);
+    let mut at_goal = lattice.none();
+    for ((column, row), distance) in lattice.around(goal, AT_GOAL) {
+        if distance <= AT_GOAL {
+            let (word, bit) = lattice.bit(column, row);
+            at_goal[word] |= bit;
+        }
+    }
+    let mut first = lattice.none();
+    let (word, bit) = lattice.bit(lattice.before[0], lattice.before[1]);
+    first[word] = bit;
+    let mut sets = vec![first];
     let last = count_of((world.time_limit / INTERVAL + 1e-9).floor());
     loop {
         let number = sets.len() - 1;
@@ -266,8 +320,7 @@ pub fn certify(world: &CrowdWorld, interrupted: Interrupted<'_>) -> Result<Optio
             .zip(&at_goal)
             .position(|(set, goal)| set & goal != 0);
         if let Some(word) = found {
-            let bit = (sets[number][word] & at_goal[word]).trailing_zeros() as usize;
-            let node = (word % lattice.words * 64 + bit, word / lattice.words);
+            let node = lattice.node(word, sets[number][word] & at_goal[word]);
             return Ok(Some(way_back(&lattice, &sets, node)));
         }
         if number >= last || sets[number].iter().all(|word| *word == 0) {
@@ -277,9 +330,7 @@ pub fn certify(world: &CrowdWorld, interrupted: Interrupted<'_>) -> Result<Optio
             return Err(Failure::Interrupted);
         }
         let mut next = lattice.reached(&sets[number]);
-        for (next, open) in next.iter_mut().zip(&open) {
-            *next &= open;
-        }
+        open.keep(&lattice, &mut next, is_open);
         for instant in (2 * number + 1..=2 * number + 3).map(|part| (part * half).min(instants - 1))
         {
             for (person, own) in radii.iter().enumerate() {

@@ -337,6 +337,41 @@ fn plans_that_runs_share_are_taken_at_the_look_at_which_each_would_have_made_the
 }
 
 #[test]
+fn a_plan_around_more_people_is_the_same_after_one_around_some_of_them() {
+    let map = walls(&[[[2.0, -4.0], [2.0, 0.0]], [[2.0, 1.5], [2.0, 4.0]]]);
+    let guide = Guide {
+        bounds: Some([[-2.0, -6.0], [6.0, 6.0]]),
+        ..Guide::default()
+    };
+    let ends = [[0.0, 0.5], [4.0, 0.5]];
+    let plan = guide.plan(&map, 0.3, ends, Stop::never()).unwrap();
+    let people = [
+        PlacedShape::disc([2.0, 0.7], 0.3),
+        PlacedShape::turned([1.0, 0.5], [0.6, 0.2], 0.4),
+        PlacedShape::disc([3.0, -0.5], 0.25),
+    ];
+    let costs = |plans: &PlansAround, standing: &[PlacedShape]| {
+        let mut guidance = Guidance::new(guide, 0.3, plan.clone()).sharing(plans.clone());
+        for look in 0..120_u32 {
+            let seen = standing.iter().copied().map(Some);
+            guidance.observe(0.25 * f64::from(look), ends[0].into(), seen);
+        }
+        assert!(guidance.leads_around());
+        let places = (0..40).map(|index| Point::new(-1.0 + 0.15 * f64::from(index), 0.4));
+        let costs = places.map(|place| guidance.plan().cost(place).map(f64::to_bits));
+        costs.collect::<Vec<_>>()
+    };
+    let kept = PlansAround::default();
+    for count in 1..=people.len() {
+        let standing = &people[..count];
+        assert_eq!(
+            costs(&kept, standing),
+            costs(&PlansAround::default(), standing)
+        );
+    }
+}
+
+#[test]
 fn a_robot_outside_of_the_box_finds_its_way_back() {
     let plan = trap_plan();
     let guidance = Guidance::new(Guide::default(), 0.2, plan.clone());

@@ -7,8 +7,8 @@ use crate::world::map::capsule::Capsule;
 /// Capsules in a leaf, at most.
 const LEAF: usize = 4;
 
-/// Levels of a tree with as many leaves as a machine can hold.
-const DEEPEST: usize = 64;
+/// Levels of a tree over as many capsules as a map can hold.
+const DEEPEST: usize = 24;
 
 /// Boxes are larger than what they hold by this share of their coordinates, so that rounding never
 /// hides a capsule.
@@ -170,11 +170,11 @@ impl Index {
         rank: impl Fn(&BoundingBox) -> Option<f64>,
         mut visit: impl FnMut(usize, &Capsule, f64) -> f64,
     ) {
-        let mut waiting = [(0_usize, 0.0_f64); DEEPEST];
-        let mut left = 0;
         let Some(first) = self.nodes.first().and_then(|root| rank(&root.bounds)) else {
             return;
         };
+        let mut waiting = [(0_usize, 0.0_f64); DEEPEST];
+        let mut left = 0;
         let mut present = Some((0, first));
         while let Some((at, ranked)) = present {
             present = None;

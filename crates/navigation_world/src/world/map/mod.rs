@@ -187,6 +187,14 @@ impl StaticMap {
         &self.parts.index.capsules
     }
 
+    /// Its segments, if it is made of walls without a radius only: its clearance is the least distance from them.
+    #[must_use]
+    pub fn bare_walls(&self) -> Option<&[Capsule]> {
+        let bare = |wall: &Capsule| wall.radius == 0.0 && wall.from != wall.to;
+        let plain = self.parts.grids.is_empty() && !self.parts.outlines;
+        (plain && self.capsules().iter().all(bare)).then(|| self.capsules())
+    }
+
     /// Lower and upper corner of the box around everything, in m; `None` for an empty map.
     #[must_use]
     pub fn bounds(&self) -> Option<[Vector2<f64>; 2]> {
