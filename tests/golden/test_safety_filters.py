@@ -193,8 +193,8 @@ def test_a_robot_with_two_wheels_keeps_off() -> None:
 @pytest.mark.parametrize("wheels", [False, True])
 def test_a_barrier_keeps_off_a_wall_along_which_the_robot_slides(turned: float, wheels: bool) -> None:
     # A force law sees a wall from 0.3 m on; the barrier looks as far as it needs.
-    along = 2.5 * np.array([-np.sin(turned), np.cos(turned)])
-    wall = nav.StaticMap.from_polylines([[tuple((3.0, 0.2) - along), tuple((3.0, 0.2) + along)]])
+    middle, along = np.array([3.0, 0.2]), 2.5 * np.array([-np.sin(turned), np.cos(turned)])
+    wall = nav.StaticMap.from_polylines([[tuple(middle - along), tuple(middle + along)]])
     robot, rule = (
         (nav.DifferentialDriveRobot(radius=0.25, max_speed=1.0), nav.laws.BarrierUnicycle())
         if wheels
