@@ -49,7 +49,8 @@ CAPABILITIES = {
         "navigation_laws/local_planning"
     ),
     "unknown buildings, people behind corners": (
-        "unknown_places hrsafety_py/unknown navigation/scan_controller navigation/unknown_trial navigation/free_space"
+        "unknown_places navigation_laws/arc_rollouts hrsafety_py/unknown navigation/scan_controller "
+        "navigation/laws/arc_rollouts navigation/free_space"
     ),
     "sensors, cameras, wheels as built, tracking": (
         "navigation_world/sensing navigation_world/robots/wheels navigation_world/robots/differential "
