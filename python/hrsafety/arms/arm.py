@@ -122,12 +122,16 @@ class Arm(Facts):
         for each in sequence("notes", "be a tuple of ResultWarning", self.notes):
             instance("notes", each, ResultWarning)
         self._set(notes=tuple(self.notes))
-        rolls = self.base.native if isinstance(self.base, RollingBase) else None
-        scaled = self.type_plate_mass if self.mass_source == "scaled" else None
-        masses = list(self.link_masses)
-        loads = [(each.link, each.mass, each.center, each.inertia) for each in self.payloads]
-        options = (loads, list(self.armature), list(self.locked), self.repair_inertia, masses, scaled, rolls)
-        native = _hrsafety.Arm(self.urdf, *options)
+        native = _hrsafety.Arm(
+            self.urdf,
+            payloads=[(each.link, each.mass, each.center, each.inertia) for each in self.payloads],
+            armature=list(self.armature),
+            locked=list(self.locked),
+            repair_inertia=self.repair_inertia,
+            link_masses=list(self.link_masses),
+            scaled_to=self.type_plate_mass if self.mass_source == "scaled" else None,
+            base=self.base.native if isinstance(self.base, RollingBase) else None,
+        )
         self._set(_native=native, _facts=dict(native.facts()))
         self._set(_doubts=self._doubted())
 

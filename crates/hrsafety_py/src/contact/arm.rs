@@ -15,6 +15,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::Fields;
 use crate::errors::CoreError;
+use crate::keywords::{Keywords, taken};
 use crate::watch::{Control, Report, here, watched};
 
 /// Results that are computed in the calling thread.
@@ -33,17 +34,11 @@ type Rolling = (bool, f64, Option<f64>, [f64; 2], f64);
 #[pymethods]
 impl Arm {
     #[new]
-    #[allow(clippy::too_many_arguments)] // extracted from Python objects
-    fn new(
-        urdf: &str,
-        payloads: Vec<Load>,
-        armature: Vec<(String, f64)>,
-        locked: Vec<String>,
-        repair_inertia: bool,
-        link_masses: Vec<(String, f64)>,
-        scaled_to: Option<f64>,
-        base: Option<Rolling>,
-    ) -> PyResult<Self> {
+    #[pyo3(signature = (urdf, **given))]
+    fn new(urdf: &str, given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let payloads: Vec<Load> = given.take("payloads")?;
+        let base: Option<Rolling> = given.take("base")?;
         let payload = |(link, mass, center, rows): Load| arm::Payload {
             link,
             body: Body {
@@ -52,21 +47,18 @@ impl Arm {
                 inertia: Matrix3::from_fn(|row, column| rows[row][column]),
             },
         };
-        let options = Options {
-            payloads: payloads.into_iter().map(payload).collect(),
-            armature,
-            locked,
-            repair_inertia,
-            link_masses,
-            scaled_to,
-            base: base.map(|(omni, mass, inertia, axle, heading)| Base {
-                omni,
-                mass,
-                inertia,
-                axle,
-                heading,
-            }),
-        };
+        let base = base.map(|(omni, mass, inertia, axle, heading)| Base {
+            omni,
+            mass,
+            inertia,
+            axle,
+            heading,
+        });
+        let options = taken!(given: Options {
+            payloads = payloads.into_iter().map(payload).collect(), base = base, armature, locked, repair_inertia,
+            link_masses, scaled_to,
+        });
+        given.done()?;
         let arm = arm::Arm::from_urdf(urdf, &options).map_err(CoreError::from)?;
         Ok(Self(arm))
     }

@@ -22,6 +22,7 @@ use pyo3::types::PyDict;
 use crate::arrays::{Fields, fields};
 use crate::errors::{CoreError, CoreResult};
 use crate::impact::many::Numbers;
+use crate::keywords::Keywords;
 use crate::watch::{Control, Report, spread, watched};
 
 /// Arguments that all rows share, by the names of Python's dictionary.
@@ -121,18 +122,20 @@ enum RowsOf {
 
 /// Results of many rows: `kind` is ``"collide"``, ``"speed"`` or ``"thickness"``.
 #[pyfunction]
-#[pyo3(signature = (kind, shared, numbers, rows, *, gravity, threads, progress))]
-#[allow(clippy::too_many_arguments)] // extracted from Python objects
+#[pyo3(signature = (kind, shared, numbers, rows, **given))]
 pub fn contact_rows<'py>(
     py: Python<'py>,
     kind: &str,
     shared: Shared,
     numbers: Vec<Numbers<'py>>,
     rows: usize,
-    gravity: Option<f64>,
-    threads: Option<usize>,
-    progress: Option<Py<PyAny>>,
+    given: Option<Keywords<'py>>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let options = given.unwrap_or_default();
+    let gravity: Option<f64> = options.take("gravity")?;
+    let (threads, progress): (Option<usize>, Option<Py<PyAny>>) =
+        (options.take("threads")?, options.take("progress")?);
+    options.done()?;
     let setup = shared.setup()?;
     let given = taken(&numbers, rows)?;
     let wanted = Wanted {
@@ -313,19 +316,20 @@ pub fn contact_column(
 
 /// Chance that a speed is not allowed: share, ends of its interval, quantiles of the allowed speed, count.
 #[pyfunction]
-#[pyo3(signature = (shared, numbers, inputs, *, speed, draws, seed, threads, progress))]
-#[allow(clippy::too_many_arguments)] // the names of Python's keywords
-pub fn contact_exceedance(
-    py: Python<'_>,
+#[pyo3(signature = (shared, numbers, inputs, **given))]
+pub fn contact_exceedance<'py>(
+    py: Python<'py>,
     shared: Shared,
     numbers: Vec<f64>,
     inputs: Vec<(String, String, Vec<f64>)>,
-    speed: f64,
-    draws: usize,
-    seed: u64,
-    threads: Option<usize>,
-    progress: Option<Py<PyAny>>,
-) -> PyResult<Bound<'_, PyDict>> {
+    given: Option<Keywords<'py>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let given = given.unwrap_or_default();
+    let speed: f64 = given.take("speed")?;
+    let (draws, seed): (usize, u64) = (given.take("draws")?, given.take("seed")?);
+    let (threads, progress): (Option<usize>, Option<Py<PyAny>>) =
+        (given.take("threads")?, given.take("progress")?);
+    given.done()?;
     let setup = shared.setup()?;
     let row = single(numbers)?;
     let mut uncertain = Vec::with_capacity(inputs.len());

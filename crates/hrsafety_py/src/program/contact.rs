@@ -13,6 +13,7 @@ use super::{signed, unsigned};
 use crate::arrays::{Fields, fields};
 use crate::contact::arm::Arm;
 use crate::errors::{CoreError, CoreResult};
+use crate::keywords::Keywords;
 use crate::watch::{Report, spread};
 
 /// Points of an arm with the limits of their contacts.
@@ -100,18 +101,16 @@ fn rule_of(
 #[pymethods]
 impl ProgramContact {
     #[new]
-    #[pyo3(signature = (arm, *, links, points, limits, tables, rule, direction, iso_mass))]
-    #[allow(clippy::too_many_arguments)] // extracted from Python objects
-    fn new(
-        arm: &Arm,
-        links: Vec<String>,
-        points: PyReadonlyArray2<'_, f64>,
-        limits: LimitColumns<'_>,
-        tables: Vec<(Vec<f64>, Vec<f64>)>,
-        rule: &str,
-        direction: &str,
-        iso_mass: f64,
-    ) -> PyResult<Self> {
+    #[pyo3(signature = (arm, **given))]
+    fn new(arm: &Arm, given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let links: Vec<String> = given.take("links")?;
+        let points: PyReadonlyArray2<'_, f64> = given.take("points")?;
+        let limits: LimitColumns<'_> = given.take("limits")?;
+        let tables: Vec<(Vec<f64>, Vec<f64>)> = given.take("tables")?;
+        let (rule, direction): (String, String) = (given.take("rule")?, given.take("direction")?);
+        let rule = rule_of(&rule, &direction, given.take("iso_mass")?)?;
+        given.done()?;
         let places = points.as_slice()?;
         if points.shape() != [links.len(), 3] {
             let given = Given::Count(links.len() as u64);
@@ -130,7 +129,6 @@ impl ProgramContact {
         let tables = tables
             .collect::<Result<Vec<_>, Failure>>()
             .map_err(CoreError::from)?;
-        let rule = rule_of(rule, direction, iso_mass)?;
         let contact = PathContact::new(arm.0.clone(), points, limits.limits()?, tables, rule);
         Ok(Self(contact.map_err(CoreError::from)?))
     }

@@ -230,21 +230,11 @@ pub struct Follower(pub Settings);
 #[pymethods]
 impl Follower {
     #[new]
-    #[pyo3(signature = (*, sonar, obstacle_vision, drive, attraction, fix_interval, fix_noise, mirrored_fixes,
-        velocity_rule, integration, step))]
-    #[allow(clippy::too_many_arguments)] // keyword-only in Python
-    fn new(
-        sonar: &Sonar,
-        obstacle_vision: Option<PyRef<'_, Vision>>,
-        drive: [f64; 6],
-        attraction: [f64; 3],
-        fix_interval: f64,
-        fix_noise: bool,
-        mirrored_fixes: bool,
-        velocity_rule: &Bound<'_, PyAny>,
-        integration: &Bound<'_, PyAny>,
-        step: f64,
-    ) -> PyResult<Self> {
+    #[pyo3(signature = (**given))]
+    fn new(given: Option<Keywords<'_>>) -> PyResult<Self> {
+        let given = given.unwrap_or_default();
+        let sonar: PyRef<'_, Sonar> = given.take("sonar")?;
+        let obstacle_vision: Option<PyRef<'_, Vision>> = given.take("obstacle_vision")?;
         let [
             mass,
             body_radius,
@@ -252,20 +242,19 @@ impl Follower {
             wheel_speed,
             heading_gain,
             least_speed,
-        ] = drive;
-        let [stiffness, damping, standoff] = attraction;
+        ] = given.take("drive")?;
+        let [stiffness, damping, standoff] = given.take("attraction")?;
+        let (fix_interval, fix_noise) = (given.take("fix_interval")?, given.take("fix_noise")?);
+        let (mirrored_fixes, step) = (given.take("mirrored_fixes")?, given.take("step")?);
         let rules = [
             ("integrated", VelocityRule::Integrated),
             ("reset", VelocityRule::Reset),
         ];
         let rule = "be \"integrated\" or \"reset\"";
+        let velocity = given.word("velocity_rule", rule, &rules)?;
         let forms = [("chord", Integration::Chord), ("arc", Integration::Arc)];
-        let integration = word(
-            "integration",
-            integration,
-            "be \"chord\" or \"arc\"",
-            &forms,
-        )?;
+        let integration = given.word("integration", "be \"chord\" or \"arc\"", &forms)?;
+        given.done()?;
         let settings = Settings {
             drive: VelocityDrive {
                 mass,
@@ -292,7 +281,7 @@ impl Follower {
                 damping,
                 standoff,
             },
-            velocity: word("velocity_rule", velocity_rule, rule, &rules)?,
+            velocity,
             step,
             ..Settings::default()
         };

@@ -266,28 +266,22 @@ parameter_class! {
 
 /// Rows of the avoidance test.
 #[pyfunction]
-#[pyo3(signature = (skirt, scene, motion, *, layouts, repeats, seed, threads, progress))]
-#[allow(clippy::too_many_arguments)] // keyword-only in Python
+#[pyo3(signature = (skirt, scene, motion, **given))]
 pub fn skirt_test<'py>(
     py: Python<'py>,
     skirt: &UltrasonicSkirt,
     scene: &SkirtScene,
     motion: &SkirtMotion,
-    layouts: usize,
-    repeats: usize,
-    seed: u64,
-    threads: Option<usize>,
-    progress: Option<Py<PyAny>>,
+    given: Option<Keywords<'py>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let plan = TestPlan {
-        layouts,
-        repeats,
-        scene: scene.0,
-        motion: motion.0,
-        seed,
-    }
-    .checked(&skirt.0)
-    .map_err(CoreError::from)?;
+    let given = given.unwrap_or_default();
+    let (threads, progress): (Option<usize>, Option<Py<PyAny>>) =
+        (given.take("threads")?, given.take("progress")?);
+    let plan = taken!(given: TestPlan {
+        scene = scene.0, motion = motion.0, layouts, repeats, seed,
+    });
+    given.done()?;
+    let plan = plan.checked(&skirt.0).map_err(CoreError::from)?;
     let report = Report::new(progress.as_ref(), plan.runs());
     let rows = spread(py, report, threads, |work| {
         test_batch(&skirt.0, &plan, work)
