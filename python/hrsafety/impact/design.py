@@ -47,7 +47,7 @@ _AGAINST_STIFFNESS = ("peak_head_acceleration_g", "peak_contact_force", "hic15",
 _AGAINST_SOFTNESS = ("max_compression",)
 # Share of every limit that advice leaves by default.
 DEFAULT_MARGIN = 0.1
-# The core's word for the compression until the foam gives back, after the impact period, too.
+# The core's word for the compression until the foam rebounds, also after the impact period.
 _OF_CONTACT = "contact_compression"
 
 # Range of foam damping that a design looks at when none is given, in N s/m.
