@@ -21,7 +21,7 @@ const LEAST_BLOCK: usize = 16;
 /// Points of several solvers are cut into multiples of this.
 const FEW_LANES: usize = 4;
 
-/// What is done with the values of a block: the position of its first point, its points, and their
+/// Consumer of the values of a block: the position of its first point, its points, and their
 /// values. Called from any thread, in any order.
 pub(crate) type Take<'a> = &'a (dyn Fn(usize, &[f64], &Evaluated) + Sync);
 

@@ -89,7 +89,7 @@ use numeric::lanes::{Real, Vector2};
 use unknown_places::explore::Explorer;
 use unknown_places::unseen::Belief;
 
-/// What was scanned since a law was asked last.
+/// Scans since the last decision of a law.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Scan<'a> {
     /// Beams and people that the scan shows, for laws that reckon with people whom nobody sees.
@@ -148,7 +148,7 @@ impl std::fmt::Debug for Lidars<'_> {
     }
 }
 
-/// What a law knows when it is asked for a force. `B`: numbers of the scene, which robots side by
+/// Measured state from which a law decides. `B`: numbers of the scene, which robots side by
 /// side share, or which each of them has for itself.
 #[derive(Clone, Copy, Debug)]
 pub struct Situation<'a, R: Real> {
@@ -249,7 +249,7 @@ pub trait Law<R: Real>: Send {
     /// Laws that plan the whole way themselves keep theirs.
     fn aim(&mut self, _goal: [f64; 2]) {}
 
-    /// Whether it asks for the way that a guide plans.
+    /// Whether the law uses the way that a guide plans.
     fn follows(&self) -> bool {
         false
     }
@@ -277,7 +277,7 @@ pub trait Law<R: Real>: Send {
         None
     }
 
-    /// What it knows of a place from scans, if it makes its own map.
+    /// Explored map of the law, if it makes its own map of scans.
     fn explored(&self) -> Option<&Explorer> {
         None
     }
@@ -308,8 +308,8 @@ pub trait LaneLaw<R: Real>: Law<R> {
     /// scenarios of all lanes have the same robot and the same rules.
     fn enter(&mut self, lane: usize, fresh: Self);
 
-    /// Whether it is told of all obstacles, by their places in the list. A law that is not is told only
-    /// of those in whose active regions the robots are.
+    /// Whether the law receives all obstacles, by their places in the list. Other laws receive only those in whose
+    /// active regions the robots are.
     fn is_told_of_all(&self) -> bool {
         false
     }
@@ -339,7 +339,7 @@ pub trait LawFamily: Send + Sync {
     fn steers_by_velocity(&self) -> bool {
         false
     }
-    /// Whether it scans its map by itself, to reckon with people whom it does not see.
+    /// Whether the law scans its map by itself, for people whom it does not see.
     fn scans(&self) -> bool {
         false
     }

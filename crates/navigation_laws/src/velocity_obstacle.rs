@@ -117,7 +117,7 @@ pub struct VelocityObstaclePlanner {
     /// Acceleration in m/s^2 that the robot has in every direction.
     max_acceleration: f64,
     cones: Vec<Cone>,
-    /// As they are seen now, those that are so near that the way to a new velocity may touch them.
+    /// Present outlines of the obstacles that the way to a new velocity may touch.
     close: Vec<Outline>,
     lines: Vec<Line>,
     /// Place of the last velocity that was chosen.

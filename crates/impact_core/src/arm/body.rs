@@ -132,7 +132,7 @@ impl Body {
         (self.mass > 0.0).then(|| (largest.max(0.0) / self.mass).sqrt())
     }
 
-    /// The same shape of another mass.
+    /// Body of the same shape and another mass.
     #[must_use]
     pub fn weighing(&self, mass: f64) -> Self {
         Self {

@@ -74,7 +74,7 @@ pub struct Segment {
     pub offset: Vector3<f64>,
     /// Type of motion of its joint.
     pub kind: JointKind,
-    /// Whether it is one of a base: its value is a way driven and places nothing, for poses are told from the base.
+    /// Whether the joint is one of a base: its value is a driven way and moves no link, as poses are relative to it.
     pub of_base: bool,
     /// The joint whose value it takes.
     pub source: usize,

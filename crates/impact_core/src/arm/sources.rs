@@ -15,7 +15,7 @@ pub const BASE_JOINTS: [&str; 3] = ["base_x", "base_y", "base_turn"];
 /// A base on wheels under the root of a URDF.
 #[derive(Clone, Copy, Debug)]
 pub struct Base {
-    /// Whether it also moves to its left.
+    /// Whether the base also moves to its left.
     pub omni: bool,
     /// Mass beside that of the root, in the origin of the root (kg).
     pub mass: f64,

@@ -92,7 +92,7 @@ pub struct Braking {
     pub deceleration: f64,
 }
 
-/// What a drive does beside a spring and a damper, and how it notices a contact.
+/// Reaction of a drive beside a spring and a damper, and its detection of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Driven {
     /// Force at which the robot notices the contact, in N: the time of the stop counts from there.

@@ -130,7 +130,7 @@ impl JointPath {
         }
     }
 
-    /// The same path with every interval cut into so many equal ones.
+    /// Path with every interval cut into so many equal ones.
     ///
     /// # Errors
     /// There is not a count for each interval, one is zero, or there are too many intervals.

@@ -76,7 +76,7 @@ pub enum Reason {
 /// A motion along a path.
 #[derive(Clone, Debug)]
 pub struct Retimed {
-    /// Whether it keeps its limits.
+    /// Whether the run keeps its limits.
     pub status: Verification,
     /// Rounds until then.
     pub rounds: usize,

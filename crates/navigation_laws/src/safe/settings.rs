@@ -111,8 +111,8 @@ impl SafeNavigation {
         Ok(self)
     }
 
-    /// What the law within is told of a scenario: a robot that is as fast as is preferred, the map for
-    /// planners of whole paths, and room for the boundary points of the map.
+    /// Scenario of the law within: the robot with its preferred speed, the map for planners of whole paths, and
+    /// room for the boundary points of the map.
     pub(super) fn inner(&self, scenario: &Scenario) -> Result<Scenario> {
         let mut inner = match self.preferred_speed {
             Some(speed) => slowed(scenario, speed)?,

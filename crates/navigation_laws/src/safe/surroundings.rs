@@ -294,8 +294,8 @@ impl KnownObstacle {
         }
     }
 
-    /// What the shield assumes of an obstacle that was measured so long ago, in s: the older, the
-    /// farther away it can be by now.
+    /// Person that the shield assumes for an obstacle that was measured `age` seconds ago: the older the measurement,
+    /// the larger its reach.
     fn person(&self, placed: PlacedShape, body: &Body, guard: &Guard, age: f64) -> Person {
         let shield = &guard.shield;
         let velocity = Vector2::from(body.state.velocity);

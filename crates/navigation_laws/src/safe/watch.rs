@@ -33,7 +33,7 @@ struct PastPose {
     heading: f64,
 }
 
-/// What a robot knows of people whom it does not see.
+/// Belief of a robot about people whom it does not see.
 pub(super) struct Watch {
     shield: Shield,
     unseen: Unseen,

@@ -176,8 +176,8 @@ impl Course {
         ways.fold(self.position, |place, way| place + way)
     }
 
-    /// What is left of it at a time of the plan: when from then on, in s, and the rates, between which they change
-    /// evenly; the last ones are zero.
+    /// Rest of the course from a time of the plan on: times from then in s, and rates, which change evenly between
+    /// them; the last ones are zero.
     pub fn rest(&self, since: f64) -> impl Iterator<Item = (f64, [f64; 2])> + '_ {
         let corners = [self.period, self.end()];
         let later = corners.into_iter().filter(move |time| *time > since);

@@ -97,7 +97,7 @@ pub struct Shield {
     pub wall_margin: f64,
     /// Whether people are left a way to stop.
     pub friendly: Option<Friendly>,
-    /// Whether it reckons with people whom nobody sees.
+    /// Assumptions about unseen people, if plans are verified against them.
     pub unseen: Option<Unseen>,
 }
 
@@ -197,7 +197,7 @@ impl Shield {
         self.grown_at(person.max_speed)
     }
 
-    /// What is added to the radius of somebody of a speed in m/s at the end of a plan, in m.
+    /// Addition in m to the radius of a person of a speed in m/s at the end of a plan.
     pub(crate) fn grown_at(&self, speed: f64) -> f64 {
         let way = |friendly: Friendly| friendly.stopping_way(speed);
         self.friendly.map_or(0.0, way)

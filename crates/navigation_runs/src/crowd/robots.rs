@@ -45,7 +45,7 @@ struct RobotSensors {
 struct Pilot {
     /// `None`: it does what it is told, or stands.
     law: Option<Box<dyn Law<f64>>>,
-    /// What the law sees, or what there is to be sensed.
+    /// Bodies that the law sees, or that sensors can measure.
     sight: Sight,
     sensing: Option<RobotSensors>,
     /// Task beside the first person.
@@ -264,13 +264,13 @@ impl CrowdRobot {
         Some(self.law()?.unseen()?.places())
     }
 
-    /// What the law knows of the place from scans, if it makes its own map.
+    /// Explored map of the law, if it makes its own map of scans.
     #[must_use]
     pub fn explored(&self) -> Option<&Explorer> {
         self.law()?.explored()
     }
 
-    /// What parts around the law verified in the last control period, if there is a shield.
+    /// Result of the shield in the last control period, if there is a shield.
     #[must_use]
     pub fn examined(&self) -> Option<Examined> {
         self.law()?.examined()
@@ -280,7 +280,7 @@ impl CrowdRobot {
         self.pilot.as_ref()?.law.as_deref()
     }
 
-    /// Whether it decides anew at a step of the world; one that has arrived does no more.
+    /// Whether the robot decides at a step of the world; it does not after its arrival.
     pub(super) fn decides_at(&self, step: usize) -> bool {
         self.is_due(step) && !self.has_arrived()
     }
@@ -290,7 +290,7 @@ impl CrowdRobot {
         step.is_multiple_of(self.every)
     }
 
-    /// What its controller sees, measured at the start of the control period; `None` without eyes.
+    /// Situation of the controller, measured at the start of the control period; `None` without sensing.
     pub(super) fn observe(
         &mut self,
         world: &CrowdWorld,

@@ -125,8 +125,8 @@ fn standing(wall: &Wall) -> Vec<KnownBody> {
 }
 
 impl Sight {
-    /// What a robot of a world can see, and what its law is told of it before; `guests`: places for people of
-    /// each source.
+    /// Sight of a robot of a world, and the scene that its law starts with; `guests`: places for people of each
+    /// source.
     pub fn new(
         world: &CrowdWorld,
         people: &[PersonState],

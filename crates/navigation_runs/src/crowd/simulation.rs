@@ -366,8 +366,8 @@ impl Simulation {
         }
     }
 
-    /// What the controller of a robot sees, measured at the start of its control period; `None` without such a robot,
-    /// or one without eyes.
+    /// Situation of the controller of a robot, measured at the start of its control period; `None` without such a
+    /// robot, or one without sensing.
     ///
     /// # Errors
     /// Its law cannot work among the people who have come.

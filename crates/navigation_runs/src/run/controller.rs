@@ -359,7 +359,7 @@ impl Controller {
         })
     }
 
-    /// What a scan shows of places that were not seen.
+    /// Computes the ends of the beams of a scan.
     fn show(&mut self, frame: &Frame, ranges: Option<&[f64]>) {
         self.ends.clear();
         if let Some((scans, ranges)) = self.scans.as_ref().zip(ranges) {

@@ -1,6 +1,6 @@
 //! The one loop that steps time: sense, decide, move, one control period after the other.
 //!
-//! What is sensed, what decides and what moves are the parts of an episode; every robot under every
+//! Sensing, decision and motion are the parts of an episode; every robot under every
 //! law is stepped here. The lane kernel, [`super::lanes`], is its fast path for ideal point masses
 //! side by side.
 
@@ -8,8 +8,8 @@ use crate::run::Interrupted;
 use crate::run::options::Clock;
 use numeric::error::{Failure, Result};
 
-/// What an episode consists of: a world, a robot with sensors, a drive and what decides, and what is
-/// counted and recorded of its run.
+/// Parts of an episode: a world, a robot with sensors, a drive and a law or a command, and the counts and records
+/// of its run.
 ///
 /// Times are those of the clock after a number of motion steps.
 pub trait Parts {
@@ -25,8 +25,8 @@ pub trait Parts {
     /// is nothing to decide by.
     ///
     /// # Errors
-    /// What is asked for, or the state, is not finite, or the caller asked to stop; nothing has
-    /// changed then.
+    /// The command or the state is not finite, or the caller stopped the run; the state is unchanged
+    /// then.
     fn decide(
         &mut self,
         time: f64,

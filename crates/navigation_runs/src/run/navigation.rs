@@ -1,7 +1,7 @@
-//! What a navigation run consists of: a robot under a law in a scenario.
+//! Parts of a navigation run: a robot under a law in a scenario.
 //!
-//! What the controller sees is measured once, at the start of a control period; the law then decides,
-//! or somebody tells the robot what to do, and it moves until the next sample.
+//! The situation is measured once, at the start of a control period; the law or a command from outside then
+//! decides, and the robot moves until the next sample.
 
 use std::sync::Arc;
 
@@ -201,7 +201,7 @@ impl<L: Listener> Episode<Navigation<L>> {
         Some(self.parts.law.as_ref()?.unseen()?.places())
     }
 
-    /// What the law knows of the place from scans, if it makes its own map.
+    /// Explored map of the law, if it makes its own map of scans.
     #[must_use]
     pub fn explored(&self) -> Option<&Explorer> {
         self.parts.law.as_ref()?.explored()

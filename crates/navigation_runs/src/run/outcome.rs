@@ -74,8 +74,8 @@ pub struct Contact {
     pub speed: f64,
     /// Whether the robot moved toward the obstacle then, faster than [`CONTACT_SPEED`].
     pub toward: bool,
-    /// Whether it did so at any instant of a contact from the first touch until the bodies first overlap by
-    /// [`DECIDED_OVERLAP`].
+    /// Whether the robot moved toward the body at any instant of a contact from the first touch until the bodies
+    /// first overlap by [`DECIDED_OVERLAP`].
     pub at_fault: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What the scans of a lidar are to be read with.
+//! Mounting, beams and ranges with which scans of a lidar are read.
 
 use crate::world::frame::Frame;
 use numeric::error::{Failure, Given, Result, finite, not_negative, positive};

@@ -6,7 +6,7 @@ use numeric::lanes::{Mask, Real, Truth};
 /// Largest distance of a stop from the line of the velocity, in m: rounding of typed numbers.
 const STOP_OFFSET: f64 = 5e-7;
 
-/// Whatever is faster in a recording has not moved but is somewhere else, in m/s: a loop that begins again.
+/// Speed in m/s above which a step of a recording is a jump and no motion, as at the end of a loop.
 pub const JUMP_SPEED: f64 = 100.0;
 
 /// Position, velocity and acceleration of a body at one instant.

@@ -84,7 +84,7 @@ impl BuiltSensors {
         self.known.is_some()
     }
 
-    /// What a law can scan by itself: nothing where sensors tell of obstacles in their own way.
+    /// Scan for the law: that of the lidars if sensors measure the obstacles, else all that a law scans by itself.
     pub fn scan(&self) -> Scan<'_> {
         if self.tells() {
             Scan {

@@ -9,8 +9,8 @@ use numeric::error::{Failure, Result};
 /// Periods between two looks at whether to stop.
 pub(super) const LOOK: usize = 1 << 14;
 
-/// What a wheel did, one value for each wish; states are those of the moment of the wish, currents
-/// and voltages those of the period after it.
+/// History of a wheel, one value for each command; states are those at the command, currents and voltages those
+/// of the period after it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WheelHistory {
     /// Angle in rad.

@@ -270,7 +270,7 @@ impl Lidar {
 }
 
 impl Lidar {
-    /// What its scans are to be read with.
+    /// Mounting, beams and ranges with which the scans of this lidar are read.
     #[must_use]
     pub fn scanner(&self) -> Scanner {
         Scanner {
