@@ -94,7 +94,8 @@ impl PointMotion {
 }
 
 /// Squared part of a motion that acts on the point: `|P w|^2` with the projection `P` on the space of the rows of
-/// `A`, which is `v^T (A A^T)^+ v` without the square of small numbers. The rows are made perpendicular, the longest one first.
+/// `A`, which is `v^T (A A^T)^+ v` without the square of small numbers. The rows are made perpendicular, the longest
+/// one first.
 fn held<const N: usize>(levers: &[Vector3<f64>; N], weights: &[f64; N]) -> f64 {
     let mut rows: [[f64; N]; 3] = std::array::from_fn(|axis| levers.map(|lever| lever[axis]));
     let dot = |one: &[f64; N], other: &[f64; N]| -> f64 {
