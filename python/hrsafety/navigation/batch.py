@@ -135,7 +135,7 @@ def check_scenarios(scenarios: Sequence[Scenario]) -> Sequence[Scenario]:
         if not isinstance(scenario, Scenario):
             instance(f"scenarios[{index}]", scenario, Scenario)
         if not isinstance(scenario.robot, HolonomicRobot):
-            rule = "be a HolonomicRobot, since batches move point masses; `simulate_many` runs the other kind"
+            rule = "be a HolonomicRobot, since batches move point masses; `simulate_many` and worlds take two wheels"
             raise InvalidParameterError(f"scenarios[{index}].robot", rule, scenario.robot)
     if len(scenes) == 0:
         raise InvalidParameterError("scenarios", "hold at least one scenario", Shown("an empty list"))
