@@ -17,7 +17,7 @@ WIDTH = 24
 
 
 class ProgressBar:
-    """What every long call of the package takes as ``progress``: draws one line and redraws it in place.
+    """Progress of a long call, for its argument ``progress``: draws one line and redraws it in place.
 
     Parameters
     ----------

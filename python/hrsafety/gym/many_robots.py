@@ -32,7 +32,7 @@ Action = npt.NDArray[np.float32]
 
 
 class _Told:
-    """What a robot is told in the worlds of the others: the action of its learner, rest once its episode has ended."""
+    """Command of a robot in the worlds of the others: the action of its learner, rest once its episode has ended."""
 
     def __init__(self, robot: Robot, action: str, turn_rate: float, acceleration: float, period: float) -> None:
         self.fastest, self.force, self.turn_rate = robot.body.max_speed, robot.body.mass * acceleration, turn_rate

@@ -131,7 +131,7 @@ class SafetyRecord(Played):
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """Those of the run, and ``"filter_infeasible"`` where the rule of a filter was not obeyed."""
+        """Warnings of the run, and ``"filter_infeasible"`` where the rule of a filter was not obeyed."""
         times = [each.time for each in self.decisions if each.status == "infeasible"]
         if not times:
             return self.trajectory.warnings

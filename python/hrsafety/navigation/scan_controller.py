@@ -207,7 +207,7 @@ class ScanController:
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """What the guarantee does not cover here."""
+        """Conditions of this controller that the guarantee does not cover."""
         found = []
         if not self._rollouts.verify:
             found.append(

@@ -137,7 +137,7 @@ class DrawnProgram(ContactTask):
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class DrawnStudy(Table):
-    """What was found of a robot without a program.
+    """Results of a robot without a program.
 
     Attributes
     ----------

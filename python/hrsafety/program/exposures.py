@@ -1,4 +1,4 @@
-"""What may touch whom along a program: points of the robot, segments of the path, and the limits of each pair."""
+"""Possible contacts along a program: points of the robot, segments of the path, and the limits of each pair."""
 
 from __future__ import annotations
 

@@ -79,7 +79,7 @@ class Program(ProgramTask):
 
     @property
     def allowed(self) -> AllowedAlong:
-        """What limits of contacts allow at each waypoint."""
+        """Speeds that the limits of contacts allow at each waypoint."""
         runs = self._runs()
         return runs.allowed(runs.waypoints())
 

@@ -16,7 +16,7 @@ __all__ = ["AllowedAlong", "Runs", "along"]
 
 
 class AllowedAlong(NamedTuple):
-    """What limits of contacts allow at each waypoint to each point of a program.
+    """Speeds that the limits of contacts allow at each waypoint to each point of a program.
 
     Attributes
     ----------

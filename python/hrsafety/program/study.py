@@ -38,7 +38,7 @@ class CycleTime(NamedTuple):
 
 
 class SegmentCost(NamedTuple):
-    """What limits of contacts cost in a segment.
+    """Cost of the limits of contacts in a segment.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class SegmentCost(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class ProgramStudy(Table):
-    """What was found of a program.
+    """Results of a program.
 
     Attributes
     ----------

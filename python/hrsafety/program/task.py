@@ -1,4 +1,4 @@
-"""What is asked of a robot: its motion, what of it may touch whom, and by which rules."""
+"""Tasks of robots: motion, points that may touch people, regions within reach, and rules."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class ZoneRules:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class ContactTask:
-    """What is asked of a robot: how it moves, its points, and who is within reach of them, see `Program`."""
+    """Task of a robot: its motion, its points, and the people within their reach, see `Program`."""
 
     motion: ArmMotion | DrawnMotions
     points: tuple[ContactPoint, ...]
@@ -183,7 +183,7 @@ class ContactTask:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class ProgramTask(ContactTask):
-    """What is asked of a robot program: a task along a path, see `Program`."""
+    """Task of a robot program along a path, see `Program`."""
 
     motion: ArmMotion
     zone_rules: ZoneRules | None = None

@@ -18,7 +18,7 @@ from hrsafety.sweep.studies import Study, checked_study
 __all__ = ["ADVICE", "SweepEstimate", "estimate", "size_words", "time_words"]
 
 ADVICE = "less with a smaller chunk_rows"
-"""What makes chunks shorter."""
+"""Remedy for chunks that take too long."""
 # Measured rows are taken in ever larger blocks until that took so long, in s.
 _ENOUGH = 0.5
 # And until so many were measured, unless that takes too long, in s.

@@ -61,7 +61,7 @@ class FilterDecision:
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """What is doubtful: a rule that nothing obeys, with the code ``"filter_infeasible"``."""
+        """Doubts of the decision: a rule that no velocity obeys, with the code ``"filter_infeasible"``."""
         if str(self.status) not in ("infeasible", "touching", "stopped"):
             return ()
         by = f", by at least {self.slack:.3g}" if self.status == "infeasible" else ""

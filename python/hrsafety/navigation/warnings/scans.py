@@ -1,4 +1,4 @@
-"""What a law that makes its own map of scans does not reckon with."""
+"""Warnings of laws that make their own map of scans: movers, and plans that are not verified."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a robot knows of a place from its scans."""
+"""Pictures of the map that a robot makes of its scans."""
 
 from __future__ import annotations
 
