@@ -8,9 +8,6 @@ use numeric::lanes::Vector2;
 /// Clearance below which somebody slides along a wall, as a share of his radius.
 const SLIDING: f64 = 0.8;
 
-/// Half the way over which the direction of a wall is taken, in m.
-const BESIDE: f64 = 0.05;
-
 /// Somebody who is foreseen.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Foreknown {
@@ -99,16 +96,7 @@ fn sliding(
     if after >= near || after >= walls.clearance_up_to(place, near) {
         return velocity;
     }
-    let most = near + 2.0 * BESIDE;
-    let slope = |along: Vector2<f64>| {
-        let [less, more] = [place - along, place + along].map(|at| walls.clearance_up_to(at, most));
-        more - less
-    };
-    let away = Vector2::new(slope(Vector2::x() * BESIDE), slope(Vector2::y() * BESIDE));
-    let length = away.norm();
-    if length == 0.0 {
-        return velocity;
-    }
-    let away = away / length;
-    velocity - away * velocity.dot(&away).min(0.0)
+    walls.away(place, near).map_or(velocity, |away| {
+        velocity - away * velocity.dot(&away).min(0.0)
+    })
 }

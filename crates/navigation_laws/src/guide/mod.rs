@@ -22,6 +22,7 @@ use crate::guide::nodes::Nodes;
 pub use detour::Detour;
 pub use guidance::{Guidance, PlansAround};
 use navigation_world::world::map::StaticMap;
+use navigation_world::world::scenario::Scenario;
 pub use nodes::MOST_NODES;
 use numeric::error::{Failure, Given, Result, finite_pair, not_negative, positive};
 pub use pace::Pace;
@@ -31,6 +32,12 @@ pub use takeover::{Takeover, TakeoverOptions, TakeoverRule};
 
 /// How far around map, start and goal the default box reaches beyond the radius of the robot, in m.
 const ROOM: f64 = 1.0;
+
+/// How much dearer a way is where a robot that is no disc only just fits.
+const NARROW: f64 = 4.0;
+
+/// Room in m beside the circle around such a robot from which on it turns freely.
+const TURNING_ROOM: f64 = 0.03;
 
 /// Options of the guide.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,6 +81,38 @@ impl From<f64> for RobotRoom {
             least: radius,
             turning: radius,
         }
+    }
+}
+
+impl From<&Scenario> for RobotRoom {
+    fn from(scenario: &Scenario) -> Self {
+        Self {
+            least: scenario.least_room(),
+            turning: scenario.robot.radius,
+        }
+    }
+}
+
+impl RobotRoom {
+    /// Clearance in m from which on the robot has all the room that it needs.
+    #[must_use]
+    pub fn free(&self) -> f64 {
+        self.turning + TURNING_ROOM
+    }
+
+    /// Whether there are places where it fits and cannot turn: it is no disc.
+    #[must_use]
+    pub fn turns(&self) -> bool {
+        self.turning > self.least
+    }
+
+    /// How much dearer a way is at a clearance in m: `4 max(0, (r_c + 0.03 - c)/(r_c + 0.03 - rho))`, nothing for a disc.
+    #[must_use]
+    pub fn narrowness(&self, clearance: f64) -> f64 {
+        if !self.turns() {
+            return 0.0;
+        }
+        NARROW * ((self.free() - clearance) / (self.free() - self.least)).max(0.0)
     }
 }
 

@@ -113,8 +113,7 @@ impl Planning {
         let least = robot.least + guide.margin;
         let room = MapClearance {
             map: map.clone(),
-            robot_radius: robot.least,
-            turning_radius: robot.turning,
+            robot,
             least,
             within_known: guide.bounds.is_none(),
         };

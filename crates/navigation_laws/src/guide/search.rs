@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
+use crate::guide::RobotRoom;
 use crate::guide::nodes::Nodes;
 use crate::guide::pace::Pace;
 use navigation_world::world::map::StaticMap;
@@ -14,18 +15,12 @@ use navigation_world::world::map::StaticMap;
 const NEAR: f64 = 0.3;
 /// How much dearer it is at the map.
 const DEARER: f64 = 2.0;
-/// How much dearer it is where a robot that is no disc only just fits.
-const NARROW: f64 = 4.0;
-/// Room in m beside the circle around such a robot from which on it turns freely.
-const TURNING_ROOM: f64 = 0.03;
+
 /// Clearance of a robot and its margin from a map.
 #[derive(Clone, Debug)]
 pub(super) struct MapClearance {
     pub map: StaticMap,
-    pub robot_radius: f64,
-    /// Radius in m of the circle around a robot that is no disc: nearer to the map it cannot turn, which makes a way
-    /// dearer; that of the robot for a disc.
-    pub turning_radius: f64,
+    pub robot: RobotRoom,
     /// Least clearance `rho + m_p` of nodes and links, in m.
     pub least: f64,
     /// Whether ways stay where something is known.
@@ -97,8 +92,8 @@ impl GuideSearch {
         (goal, cost_of_goal): (usize, f64),
         before: Option<FoundBefore>,
     ) -> Self {
-        let beyond = room.least - room.robot_radius + 3.0 * nodes.spacing;
-        let far = (room.robot_radius + NEAR.max(beyond)).max(room.turning_radius + TURNING_ROOM);
+        let beyond = room.least - room.robot.least + 3.0 * nodes.spacing;
+        let far = (room.robot.least + NEAR.max(beyond)).max(room.robot.free());
         let mut found = CostToGo {
             cost: vec![f64::INFINITY; nodes.count()],
             next: vec![0; nodes.count()],
@@ -184,16 +179,11 @@ impl GuideSearch {
         *known
     }
 
-    /// `1 + 2 max(0, 1 - (c - rho)/0.3)^2`, of a robot that is no disc `+ 4 max(0, (r_c + 0.03 - c)/(r_c + 0.03 - rho))`.
+    /// `1 + 2 max(0, 1 - (c - rho)/0.3)^2`, and what a narrow place adds.
     fn weight(&self, clearance: f64) -> f64 {
-        let (radius, turning) = (self.room.robot_radius, self.room.turning_radius);
-        let near = (1.0 - (clearance - radius) / NEAR).max(0.0);
-        let weight = 1.0 + DEARER * near * near;
-        if turning <= radius {
-            return weight;
-        }
-        let free = turning + TURNING_ROOM;
-        weight + NARROW * ((free - clearance) / (free - radius)).max(0.0)
+        let robot = &self.room.robot;
+        let near = (1.0 - (clearance - robot.least) / NEAR).max(0.0);
+        1.0 + DEARER * near * near + robot.narrowness(clearance)
     }
 
     /// Whether a link between free nodes keeps the least clearance. No point of it is nearer to

@@ -163,10 +163,7 @@ impl SafeNavigation {
         if pace.is_some() {
             guide.look_ahead = guide.look_ahead.min(BEHIND_CORNERS);
         }
-        let robot = RobotRoom {
-            least: scenario.least_room(),
-            turning: scenario.robot.radius,
-        };
+        let robot = RobotRoom::from(scenario);
         let ends = [scenario.start, scenario.goal];
         let plan = self
             .plans

@@ -9,6 +9,9 @@ use numeric::lanes::Vector2;
 /// Rounding of distances in m.
 pub(super) const ROUNDING: f64 = 1e-9;
 
+/// Half the way over which the direction of a wall is taken, in m.
+const BESIDE: f64 = 0.05;
+
 /// Everything that does not move.
 #[derive(Clone, Copy, Debug)]
 pub struct StaticObstacles<'a> {
@@ -39,6 +42,17 @@ impl StaticObstacles<'_> {
         let least = distances.fold(most, f64::min);
         self.map
             .map_or(least, |map| map.clearance_up_to(point, least))
+    }
+
+    /// Unit vector away from the nearest wall within a distance of a point in m, by central differences; `None` where there
+    /// is none.
+    pub(crate) fn away(&self, point: Vector2<f64>, most: f64) -> Option<Vector2<f64>> {
+        let slope = |along: Vector2<f64>| {
+            let clearance = |at: Vector2<f64>| self.clearance_up_to(at, most + 2.0 * BESIDE);
+            clearance(point + along) - clearance(point - along)
+        };
+        let away = Vector2::new(slope(Vector2::x() * BESIDE), slope(Vector2::y() * BESIDE));
+        away.try_normalize(0.0)
     }
 
     /// Distance of an outline at a pose from the nearest wall in m, zero where they meet; all that is at least `most` away
