@@ -315,3 +315,25 @@ def test_foresight_drives_a_rectangle_through_a_gap_that_its_circle_does_not_fit
     assert run.map_clearance > 0.0
     bare = nav.simulate(place, AHEAD.replaced(map=gap, guide=nav.Guide(), shield=None, law=nav.Khatib()))
     assert not math.isfinite(bare.map_contact_time)
+
+
+@pytest.mark.parametrize("depth", [0.1, 1.0])
+@pytest.mark.parametrize("kind", [nav.DifferentialDriveRobot, nav.HolonomicRobot])
+def test_foresight_lines_up_with_the_only_gap(kind: type[nav.DifferentialDriveRobot], depth: float) -> None:
+    """From places and headings drawn in a room whose only way out is a gap of 0.56 m in a wall."""
+    half = 0.28
+    sides = [[(2, y), (2, edge), (2 + depth, edge), (2 + depth, y)] for y, edge in ((3, half), (-3, -half))]
+    room = [(-2, -3), (5 + depth, -3), (5 + depth, 3), (-2, 3), (-2, -3)]
+    walls = nav.StaticMap.from_polylines([*sides, room])
+    body = kind(footprint=nav.robots.Footprint.rectangle(0.5, 0.43))
+    scenes = []
+    for seed in range(12):
+        draws = np.random.default_rng([9, seed])
+        start, heading = draws.uniform([-1.4, -2.4], [1.4, 2.4]), draws.uniform(-math.pi, math.pi)
+        goal = (4.0 + depth, draws.uniform(-1.5, 1.5))
+        turned = heading if kind is nav.DifferentialDriveRobot else 0.0
+        place = nav.Scenario(robot=body, start=tuple(start), goal=goal, heading=turned, walls=walls, time_limit=60.0)
+        scenes.append(place)
+    table = nav.simulate_many(scenes, [AHEAD.replaced(map=walls, guide=nav.Guide())], stop_on_contact=True)
+    assert (table.outcome == "arrived").sum() >= 11
+    assert not (table.outcome == "collided").any()

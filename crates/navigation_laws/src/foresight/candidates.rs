@@ -1,17 +1,30 @@
 //! First velocities and their prices.
 
 use crate::foresight::program::FARTHEST_MOVE;
-use crate::foresight::{Foreseer, Scene};
-use crate::shield::braking;
+use crate::foresight::{Foreseer, ROOM, Scene};
+use crate::guide::RobotRoom;
+use crate::shield::{OutlineGuard, StaticObstacles, braking};
+use navigation_world::world::frame::Frame;
 use navigation_world::world::geometry::RobotState;
 use numeric::lanes::Vector2;
+use std::f64::consts::TAU;
 
 /// Directions and speeds of the candidates.
 const DIRECTIONS: u32 = 36;
 const SPEEDS: u32 = 3;
 
-/// Distance of the surface from walls below which nobody goes nearer, in m.
-const ROOM: f64 = 0.015;
+/// Speed in m/s of a robot that turns on the spot toward a direction.
+const ON_THE_SPOT: f64 = 1e-3;
+
+/// Turns in rad in which such a robot lines up with a gap, and how many of them to each side.
+const FINE_TURN: f64 = 0.04;
+const FINE: i32 = 2;
+
+/// Places on the straight way on from the first one.
+const AHEAD: u32 = 4;
+
+/// Price of a straight way on that is blocked, as a multiple of the time of a stage: the robot has to turn or to back off.
+const BLOCKED: f64 = 2.0;
 
 /// Prices that differ by less are alike, in s.
 const ALIKE: f64 = 1e-9;
@@ -57,23 +70,20 @@ pub struct AcceptedTarget<C> {
 pub struct Driven {
     /// Places after the four quarters of a stage, in m.
     pub places: [Vector2<f64>; 4],
-    /// Where a robot with two wheels looks at the end.
-    pub facing: Option<Facing>,
+    /// Headings there in rad.
+    pub headings: [f64; 4],
+    /// Price of a turn in s for each rad, of a robot with two wheels.
+    pub turn_price: Option<f64>,
 }
 
-/// Heading of a robot that has to turn before it drives another way.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Facing {
-    /// Direction, of length 1.
-    pub ahead: Vector2<f64>,
-    /// Price of a turn in s for each rad.
-    pub price: f64,
-}
-
-impl Facing {
-    /// Price of the turn to a direction, in s.
-    fn turning(&self, to: Vector2<f64>) -> f64 {
-        self.price * self.ahead.perp(&to).atan2(self.ahead.dot(&to)).abs()
+impl Driven {
+    /// Price of the turn to a direction at the end, in s.
+    fn turning(&self, to: impl FnOnce() -> Vector2<f64>) -> f64 {
+        self.turn_price.map_or(0.0, |price| {
+            let (sin, cos) = self.headings[3].sin_cos();
+            let (ahead, to) = (Vector2::new(cos, sin), to());
+            price * ahead.perp(&to).atan2(ahead.dot(&to)).abs()
+        })
     }
 }
 
@@ -94,6 +104,86 @@ pub fn taken_up(
         }
         robot.position + robot.velocity * ramp + change * (0.5 * ramp) + velocity * (time - ramp)
     })
+}
+
+/// Walls beside a robot.
+struct Beside<'a> {
+    robot: RobotRoom,
+    walls: StaticObstacles<'a>,
+    /// Distance of its middle from them now, in m.
+    clearance: f64,
+    /// Outline of a robot that is no disc, with its distance from them now in m.
+    outline: Option<(&'a OutlineGuard, f64)>,
+}
+
+impl<'a> Beside<'a> {
+    /// `None` where no wall is near on a way in m.
+    fn new(scene: &Scene<'a>, robot: RobotRoom, way: f64) -> Option<Self> {
+        let near = Self::near(&robot);
+        let clearance = scene
+            .walls
+            .clearance_up_to(scene.robot.position, near + way);
+        let outline = scene.outline.map(|(guard, heading)| {
+            let pose = Frame::at(scene.robot.position.into(), heading);
+            (guard, guard.wall_clearance(&pose, &scene.walls))
+        });
+        (clearance < near + way).then_some(Self {
+            robot,
+            walls: scene.walls,
+            clearance,
+            outline,
+        })
+    }
+
+    /// Clearance in m from which on walls do not matter.
+    fn near(robot: &RobotRoom) -> f64 {
+        if robot.turns() {
+            robot.free()
+        } else {
+            robot.least + ROOM
+        }
+    }
+
+    /// Share of a straight way in m on from the end of another on which a robot that is no disc and has two wheels meets a
+    /// wall.
+    fn blocked(&self, driven: &Driven, way: f64) -> f64 {
+        if self.outline.is_none() || driven.turn_price.is_none() {
+            return 0.0;
+        }
+        let (from, heading) = (driven.places[3], driven.headings[3]);
+        let (sin, cos) = heading.sin_cos();
+        let free = (1..=AHEAD).take_while(|part| {
+            let ahead = way * f64::from(*part) / f64::from(AHEAD);
+            self.kept(from + Vector2::new(cos, sin) * ahead, heading)
+        });
+        1.0 - free.count() as f64 / f64::from(AHEAD)
+    }
+
+    /// Whether a robot at a place with a heading in rad keeps its distance, or the present one where that is less.
+    fn kept(&self, place: Vector2<f64>, heading: f64) -> bool {
+        let near = Self::near(&self.robot);
+        let clearance = self.walls.clearance_up_to(place, near);
+        clearance >= near
+            || match &self.outline {
+                Some((guard, now)) => {
+                    let pose = Frame::at(place.into(), heading);
+                    guard.wall_clearance(&pose, &self.walls) >= *now
+                }
+                None => clearance >= self.clearance,
+            }
+    }
+
+    /// Whether it does so on a whole way.
+    fn keeps(&self, driven: &Driven) -> bool {
+        let mut poses = driven.places.iter().zip(driven.headings);
+        poses.all(|(place, heading)| self.kept(*place, heading))
+    }
+
+    /// Whether a robot that is no disc cannot turn at a place.
+    fn narrow(&self, place: Vector2<f64>) -> bool {
+        let free = self.robot.free();
+        self.robot.turns() && self.walls.clearance_up_to(place, free) < free
+    }
 }
 
 /// Target with its price.
@@ -136,14 +226,27 @@ impl Foreseer {
         };
         let first = [last, Target::forwards(Vector2::zeros()), slower];
         candidates.extend(first.map(|target| Candidate { target, price: 0.0 }));
+        let fastest = self.limits.max_speed.max(before.norm());
+        let beside = Beside::new(scene, self.room, fastest * self.settings.step);
         let ahead = scene.ahead.y.atan2(scene.ahead.x);
+        let circle = (0..DIRECTIONS)
+            .map(|direction| ahead + f64::from(direction) * TAU / f64::from(DIRECTIONS));
+        // Beside walls a robot that is no disc lines up with a gap before it drives on.
+        let lines_up = wheels && beside.is_some() && self.room.turns();
+        let fine = scene.outline.filter(|_| lines_up).map(|(_, heading)| {
+            let around = -FINE..=FINE;
+            around.map(move |turn| heading + f64::from(turn) * FINE_TURN)
+        });
+        let directions: Vec<f64> = circle.chain(fine.into_iter().flatten()).collect();
         let sides: &[bool] = if wheels { &[false, true] } else { &[false] };
         for backwards in sides {
-            for speed in 1..=SPEEDS {
-                let length = self.limits.max_speed * f64::from(speed) / f64::from(SPEEDS);
-                for direction in 0..DIRECTIONS {
-                    let turn = f64::from(direction) * std::f64::consts::TAU / f64::from(DIRECTIONS);
-                    let (sin, cos) = (ahead + turn).sin_cos();
+            for speed in u32::from(!lines_up)..=SPEEDS {
+                let length = match speed {
+                    0 => ON_THE_SPOT,
+                    _ => self.limits.max_speed * f64::from(speed) / f64::from(SPEEDS),
+                };
+                for direction in &directions {
+                    let (sin, cos) = direction.sin_cos();
                     let velocity = Vector2::new(cos, sin) * length;
                     let target = Target {
                         velocity,
@@ -153,23 +256,20 @@ impl Foreseer {
                 }
             }
         }
-        let least = self.room + ROOM;
-        let fastest = self.limits.max_speed.max(before.norm());
-        let near = least + fastest * self.settings.step;
-        let room = scene.walls.clearance_up_to(scene.robot.position, near);
-        let walls = room < near;
         let met = self.met(scene, fastest);
         for candidate in &mut candidates {
             let driven = driven(&candidate.target);
-            let kept = |place: &Vector2<f64>| {
-                let clearance = scene.walls.clearance_up_to(*place, least);
-                clearance >= least || clearance >= room
-            };
-            candidate.price = if walls && !driven.places.iter().all(kept) {
-                f64::INFINITY
-            } else {
-                self.price_of(scene, &candidate.target, &driven, &met)
-            };
+            let (mut blocked, mut narrow) = (0.0, false);
+            if let Some(beside) = &beside {
+                if !beside.keeps(&driven) {
+                    candidate.price = f64::INFINITY;
+                    continue;
+                }
+                blocked = beside.blocked(&driven, self.preferred * self.settings.step);
+                narrow = beside.narrow(driven.places[3]);
+            }
+            candidate.price = self.price_of(scene, &candidate.target, (&driven, narrow), &met)
+                + BLOCKED * self.settings.step * blocked;
         }
         self.candidates = candidates;
     }
@@ -187,7 +287,13 @@ impl Foreseer {
         (0..self.prediction.people.len()).filter(near).collect()
     }
 
-    fn price_of(&self, scene: &Scene<'_>, target: &Target, driven: &Driven, met: &[usize]) -> f64 {
+    fn price_of(
+        &self,
+        scene: &Scene<'_>,
+        target: &Target,
+        (driven, narrow): (&Driven, bool),
+        met: &[usize],
+    ) -> f64 {
         let settings = &self.settings;
         let part = 0.25 * settings.step;
         let mut price = 0.0;
@@ -212,9 +318,12 @@ impl Foreseer {
         let change = (target.velocity - self.last.velocity).norm() / self.limits.max_speed;
         let haste = (target.velocity.norm() / self.preferred - 1.0).max(0.0);
         let end = driven.places[3] - scene.robot.position;
-        let turning = driven.facing.map_or(0.0, |facing| {
-            let onward = self.program.onward(end).unwrap_or_default();
-            facing.turning(onward)
+        let turning = driven.turning(|| {
+            if narrow {
+                // The nodes are too coarse to line up with a gap; the (local) goal is seen through it.
+                return scene.ahead - end;
+            }
+            self.program.onward(end).unwrap_or_default()
         });
         price
             + self.program.cost(end)

@@ -32,8 +32,12 @@ impl Impatience {
         }
     }
 
-    /// Notes where the robot is at a decision, in m.
-    pub fn observe(&mut self, place: Vector2<f64>, period: f64) {
+    /// Notes where the robot is at a decision, in m. One that lines up with gaps leaves where it is when its patience ends,
+    /// not where it has been: it may have to back off.
+    pub fn observe(&mut self, place: Vector2<f64>, period: f64, lines_up: bool) {
+        if lines_up && self.stayed <= 0.0 && self.stayed + period > 0.0 {
+            self.place = place;
+        }
         let near = (place - self.place).norm() < LEFT;
         self.stayed = if near {
             self.stayed + period

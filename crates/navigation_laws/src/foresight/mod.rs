@@ -14,8 +14,8 @@ mod program;
 #[cfg(test)]
 mod tests;
 
-use crate::guide::Plan;
-use crate::shield::{ShieldLimits, StaticObstacles};
+use crate::guide::{Plan, RobotRoom};
+use crate::shield::{OutlineGuard, ShieldLimits, StaticObstacles};
 use estimate::Estimates;
 use impatience::Impatience;
 use navigation_world::world::geometry::RobotState;
@@ -24,7 +24,7 @@ use numeric::lanes::Vector2;
 use prediction::Prediction;
 use program::Program;
 
-pub use candidates::{AcceptedTarget, Driven, Facing, Target, taken_up};
+pub use candidates::{AcceptedTarget, Driven, Target, taken_up};
 pub use estimate::Sighting;
 
 /// Most stages of the program.
@@ -35,6 +35,9 @@ const MOST_ACROSS: f64 = 400.0;
 
 /// Discs smaller than this are boundary points and nobody, in m.
 const SMALLEST: f64 = 0.05;
+
+/// Distance of the surface from walls below which nobody goes nearer, in m.
+const ROOM: f64 = 0.015;
 
 /// How the robot looks ahead.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,6 +143,8 @@ pub struct Scene<'a> {
     pub position_error: f64,
     /// Static obstacles.
     pub walls: StaticObstacles<'a>,
+    /// Shield of a robot that is no disc, and its heading in rad.
+    pub outline: Option<(&'a OutlineGuard, f64)>,
     /// Costs of the ways to the goal, if there is a plan.
     pub plan: Option<&'a Plan>,
 }
@@ -165,8 +170,7 @@ pub struct Foreseer {
     pub(crate) limits: ShieldLimits,
     /// Speed that it prefers, in m/s.
     preferred: f64,
-    /// Distance of its center from walls below which it has no room, in m.
-    room: f64,
+    room: RobotRoom,
     estimates: Estimates,
     prediction: Prediction,
     program: Program,
@@ -180,8 +184,8 @@ pub struct Foreseer {
 }
 
 impl Foreseer {
-    /// Foresight with the limits of a robot, a speed in m/s that it prefers, and the distance of its center from walls
-    /// in m below which it has no room. People are kept off the radius of the limits.
+    /// Foresight with the limits of a robot, a speed in m/s that it prefers, and the room that it needs beside walls.
+    /// People are kept off the radius of the limits.
     ///
     /// # Errors
     /// Names the number that is not allowed.
@@ -189,10 +193,11 @@ impl Foreseer {
         settings: Foresight,
         limits: ShieldLimits,
         preferred: f64,
-        room: f64,
+        room: impl Into<RobotRoom>,
     ) -> Result<Self> {
         let settings = settings.checked()?;
         positive("preferred_speed", preferred)?;
+        let room: RobotRoom = room.into();
         let reach = candidates::cells_of_first_velocity(limits.max_speed, preferred);
         let across = 2.0 * (2.0 * (settings.stages - 1) as f64 + reach) + 1.0;
         if across > MOST_ACROSS {
@@ -247,7 +252,8 @@ impl Foreseer {
         );
         let place = scene.robot.position;
         self.ends = [place, place];
-        self.impatience.observe(place, period);
+        let lines_up = self.room.turns() && !scene.walls.is_empty();
+        self.impatience.observe(place, period, lines_up);
         let mut cheapest = true;
         let mut choice = |foreseer: &mut Self, target: Target| {
             let Some(command) = take(&target) else {

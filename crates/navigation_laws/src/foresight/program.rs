@@ -1,8 +1,9 @@
 //! A program in space and time: what the way from a node costs at a stage.
 
-use crate::foresight::ground::costs_to_go;
+use crate::foresight::ground::Ground;
 use crate::foresight::prediction::{Foreknown, Prediction};
 use crate::foresight::{Foresight, Scene};
+use crate::guide::RobotRoom;
 use numeric::lanes::Vector2;
 
 /// Length of the longest move in nodes, rounded up.
@@ -25,8 +26,7 @@ pub(super) struct Program {
     stages: usize,
     /// Nodes from the middle to the rim.
     half: usize,
-    /// Way to the goal from every node in m.
-    ground: Vec<f64>,
+    ground: Ground,
     /// Costs of the stages, each for the whole grid; those of stage 0 are not needed.
     costs: Vec<Vec<f64>>,
     /// Least cost of three nodes in a row, and of five.
@@ -44,7 +44,7 @@ impl Program {
             preferred,
             stages: settings.stages,
             half,
-            ground: vec![0.0; count],
+            ground: Ground::new(count),
             costs: vec![vec![0.0; count]; settings.stages],
             rows: [vec![0.0; count], vec![0.0; count]],
         }
@@ -65,11 +65,11 @@ impl Program {
         settings: &Foresight,
         scene: &Scene<'_>,
         prediction: &Prediction,
-        room: f64,
+        robot: RobotRoom,
         processor: pulp::Arch,
     ) {
         let across = self.across();
-        costs_to_go(scene, room, across, self.spacing, &mut self.ground);
+        self.ground.look(scene, robot, across, self.spacing);
         processor.dispatch(
             #[inline(always)]
             || self.sweep(settings, scene.robot.position, prediction),
@@ -90,7 +90,7 @@ impl Program {
         }
     }
 
-    /// Price of being near people at a stage.
+    /// Price of being near people and in narrow places at a stage.
     #[inline(always)]
     fn risk(
         &self,
@@ -102,7 +102,11 @@ impl Program {
     ) {
         let (across, rim) = (self.across(), self.rim(stage));
         for row in self.half - rim..=self.half + rim {
-            costs[row * across..][self.half - rim..=self.half + rim].fill(0.0);
+            let begin = row * across + self.half - rim;
+            let narrow = &self.ground.narrowness[begin..][..=2 * rim];
+            for (cost, more) in costs[begin..].iter_mut().zip(narrow) {
+                *cost = settings.step * more;
+            }
         }
         for (index, person) in prediction.people.iter().enumerate() {
             let places = prediction.places(index);
@@ -177,7 +181,7 @@ impl Program {
     /// Costs of the last stage from the price of being near people.
     #[inline(always)]
     fn end(&self, costs: &mut [f64]) {
-        for (cost, way) in costs.iter_mut().zip(&self.ground) {
+        for (cost, way) in costs.iter_mut().zip(&self.ground.way) {
             let far = way / self.preferred;
             let risk = if *way > THERE { *cost } else { 0.0 };
             *cost = far + risk;
@@ -217,7 +221,7 @@ impl Program {
                 &fives[begin + across..][..count],
                 &threes[begin + two..][..count],
             ];
-            let ground = &self.ground[begin..][..count];
+            let ground = &self.ground.way[begin..][..count];
             let costs = &mut costs[begin..][..count];
             for (index, (cost, way)) in costs.iter_mut().zip(ground).enumerate() {
                 let mut after = lines[0][index];
@@ -278,7 +282,7 @@ impl Program {
     /// Node of a stage to which the cheapest move leads, `None` at the goal and where no move leads on.
     fn next(&self, stage: usize, [column, row]: [usize; 2]) -> Option<[usize; 2]> {
         let across = self.across();
-        if self.ground[row * across + column] <= THERE {
+        if self.ground.way[row * across + column] <= THERE {
             return None;
         }
         let (mut least, mut best) = (f64::INFINITY, None);

@@ -18,7 +18,8 @@ fn pair(value: &Value) -> Vector2<f64> {
 fn driven(robot: &RobotState<f64>, target: &Target, limits: &ShieldLimits, step: f64) -> Driven {
     Driven {
         places: taken_up(robot, target.velocity, limits.max_acceleration, step),
-        facing: None,
+        headings: [0.0; 4],
+        turn_price: None,
     }
 }
 
@@ -80,6 +81,7 @@ fn decisions_are_those_of_the_prototype() {
                 people: &seen,
                 position_error: shield.position_error,
                 walls: StaticObstacles::NONE,
+                outline: None,
                 plan: None,
             };
             let view = View {
@@ -133,6 +135,7 @@ fn scene<'a>(people: &'a [Sighting], walls: StaticObstacles<'a>, position_error:
         people,
         position_error,
         walls,
+        outline: None,
         plan: None,
     }
 }

@@ -13,7 +13,12 @@ use numeric::lanes::Vector2;
 
 impl SafeLaw {
     /// Knowledge of foresight.
-    fn scene(&self, robot: &RobotState<f64>, to_goal: Vector2<f64>) -> Scene<'_> {
+    fn scene<'a>(
+        &'a self,
+        robot: &RobotState<f64>,
+        outline: Option<(&'a OutlineGuard, f64)>,
+        to_goal: Vector2<f64>,
+    ) -> Scene<'a> {
         let leads = |guidance: &&Guidance| self.detour.is_none() || guidance.leads_around();
         let plan = self.guidance.as_ref().filter(leads).map(Guidance::plan);
         // The plan leads to the goal of the scene, not to one that moves.
@@ -26,6 +31,7 @@ impl SafeLaw {
             people: &self.around.sightings,
             position_error: self.guard.map_or(0.0, |guard| guard.shield.position_error),
             walls: self.around.walls(),
+            outline,
             plan: plan.filter(|_| moving.is_none()),
         }
     }
@@ -50,7 +56,8 @@ impl SafeLaw {
         let step = foreseer.settings().step;
         let driven = |target: &Target| Driven {
             places: taken_up(robot, target.velocity, self.limits.max_acceleration, step),
-            facing: None,
+            headings: [outline.map_or(0.0, |(_, heading)| heading); 4],
+            turn_price: None,
         };
         let take = |target: &Target| {
             let target = self.limits.slowed(target.velocity);
@@ -65,7 +72,12 @@ impl SafeLaw {
         };
         let mut take = take;
         let found = foreseer
-            .decide(&self.scene(robot, to_goal), false, driven, &mut take)
+            .decide(
+                &self.scene(robot, outline, to_goal),
+                false,
+                driven,
+                &mut take,
+            )
             .or_else(|| creeping(guard.map(|guard| &guard.shield), to_goal, take));
         let (velocity, status) = chosen(found, wanted, braking(robot.velocity, &self.limits));
         Decision { velocity, status }
@@ -91,8 +103,9 @@ impl SafeLaw {
             verified_twist((guard, outline), view, twist).then_some(twist)
         };
         let driven = |target: &Target| guard.driven(state, target, step);
+        let posed = outline.map(|outline| (outline, state.heading));
         let found = foreseer
-            .decide(&self.scene(&robot, to_goal), true, driven, take)
+            .decide(&self.scene(&robot, posed, to_goal), true, driven, take)
             .or_else(|| creeping(Some(&guard.shield), to_goal, take));
         chosen(found, wanted, guard.limits.braking(state.twist))
     }

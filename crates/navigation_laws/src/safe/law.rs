@@ -2,7 +2,7 @@
 
 use crate::filters::{Filter, FilterStatus, Filtered, Sighted};
 use crate::foresight::Foreseer;
-use crate::guide::{Detour, Guidance, LocalGoal, Takeover};
+use crate::guide::{Detour, Guidance, LocalGoal, RobotRoom, Takeover};
 use crate::safe::settings::SafeNavigation;
 use crate::safe::surroundings::Surroundings;
 use crate::safe::watch::Watch;
@@ -118,9 +118,10 @@ impl SafeLaw {
         });
         let twist_guard = twist_guard.transpose()?;
         // Without a shield nothing verifies the outline beside walls.
-        let room = outline
-            .as_ref()
-            .map_or(robot.radius, |_| scenario.least_room());
+        let room = match &outline {
+            Some(_) => RobotRoom::from(scenario),
+            None => robot.radius.into(),
+        };
         let [_, way] = horizon(&limits, twist_guard.as_ref(), 0.0);
         let watch = Watch::new(family, scenario, way)?;
         let pace = watch.as_ref().and_then(|watch| watch.pace(&limits));

@@ -178,12 +178,22 @@ impl OutlineGuard {
         true
     }
 
+    /// Distance in m that the outline keeps from walls.
+    fn kept(&self) -> f64 {
+        self.shield.wall_margin + self.shield.position_tracking
+    }
+
+    /// Distance of the outline at a pose from everything that stands, up to what it keeps, in m.
+    pub(crate) fn wall_clearance(&self, pose: &Frame, walls: &StaticObstacles<'_>) -> f64 {
+        walls.clearance_of(&self.outline, pose, self.kept())
+    }
+
     /// Whether the outline keeps the margin from everything that stands, or its present distance where that is less.
     fn off_walls(&self, plan: &BodyPlan, walls: &StaticObstacles<'_>) -> bool {
         if walls.is_empty() {
             return true;
         }
-        let kept = self.shield.wall_margin + self.shield.position_tracking;
+        let kept = self.kept();
         let deviation = plan.deviation(self.outline.outer_radius());
         let present = walls.clearance_of(&self.outline, plan.start(), kept + deviation);
         if present <= 0.0 {

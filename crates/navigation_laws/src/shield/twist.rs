@@ -4,7 +4,7 @@ mod plan;
 
 pub use plan::{TwistLimits, TwistState};
 
-use crate::foresight::{Driven, Facing, Target};
+use crate::foresight::{Driven, Target};
 use crate::shield::hidden::Hidden;
 use crate::shield::person::Person;
 use crate::shield::walls::StaticObstacles;
@@ -121,7 +121,8 @@ impl TwistGuard {
         let steps = (part / self.limits.period).round().clamp(1.0, MOST_STEPS);
         guard.limits.period = part / steps;
         let mut state = *robot;
-        let places = std::array::from_fn(|_| {
+        let (mut places, mut headings) = ([Vector2::zeros(); 4], [0.0; 4]);
+        for (place, heading) in places.iter_mut().zip(&mut headings) {
             let mut left = steps;
             while left > 0.0 {
                 let twist = guard.toward(&state, target.velocity, target.backwards);
@@ -133,15 +134,12 @@ impl TwistGuard {
                 state.twist = twist;
                 left -= 1.0;
             }
-            state.position
-        });
-        let facing = Facing {
-            ahead: unit(state.heading),
-            price: HEADING_WEIGHT / self.limits.drive.max_turn_rate,
-        };
+            (*place, *heading) = (state.position, state.heading);
+        }
         Driven {
             places,
-            facing: Some(facing),
+            headings,
+            turn_price: Some(HEADING_WEIGHT / self.limits.drive.max_turn_rate),
         }
     }
 
