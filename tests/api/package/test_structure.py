@@ -133,6 +133,13 @@ def test_core_forbids_unsafe_code(crate: str) -> None:
     assert re.search(r"^#!\[forbid\(unsafe_code\)\]", text, re.MULTILINE)
 
 
+def test_no_example_stands_where_none_is_run() -> None:
+    manifests = [path for path in (REPOSITORY / "crates").glob("*/Cargo.toml") if "doctest = false" in path.read_text()]
+    assert len(manifests) > 5
+    sources = [source for path in manifests for source in (path.parent / "src").rglob("*.rs")]
+    assert [path for path in sources if re.search(r"^\s*//[/!] ```", path.read_text("utf-8"), re.MULTILINE)] == []
+
+
 WORD_ARM = re.compile(r'"[^"]*"(?:\s*\|\s*"[^"]*")*(?:\s+if [^=]*)?\s*=>')
 OTHER_ARM = re.compile(r"\n(?P<indent> *)(?:_|[a-z_]+) =>\s*(?P<answer>.{0,200})", re.DOTALL)
 
