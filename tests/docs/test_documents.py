@@ -16,6 +16,7 @@ from pathlib import Path
 import pytest
 
 import hrsafety
+from make_images import makers
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 DOCUMENTS = [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").rglob("*.md"))]
@@ -106,10 +107,10 @@ def nothing_is_left_in_the_tree() -> Iterator[None]:
     assert files_of_the_tree() - before == set()
 
 
-# The gallery runs where its pictures are looked at, in test_images.py; the search for gains where what it prints is, in
-# test_gains_guide.py.
-ELSEWHERE = ("gallery.md", "gains.md")
-READ = [path for path in DOCUMENTS if blocks(path) and path.name not in ELSEWHERE]
+# The gallery and other pages that save pictures run where these are looked at, in test_images.py; the search for gains
+# where what it prints is, in test_gains_guide.py. Both run all blocks in order, with warnings as errors.
+ELSEWHERE = {f"docs/{page}" for page in ("guides/gains.md", *makers().values())}
+READ = [path for path in DOCUMENTS if blocks(path) and title(path) not in ELSEWHERE]
 
 
 @pytest.mark.parametrize("document", READ, ids=title)

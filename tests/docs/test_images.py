@@ -9,11 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from make_images import BLOCK, DRAWN, GALLERY, SAVED, SHOWN, make, makers
+from make_images import BLOCK, DRAWN, GALLERY, SAVED, SHOWN, code_of, make, makers
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 IMAGES = DOCS / "images"
 COLUMNS = 88
+RECORDING = "zara01.csv"
 
 
 def size_of(picture: Path) -> tuple[int, int]:
@@ -59,8 +60,11 @@ def test_code_of_the_gallery_fits_into_its_column() -> None:
 
 
 @pytest.mark.parametrize("page", sorted(set(makers().values())))
-def test_page_makes_its_pictures(page: str, tmp_path: Path, shared: Path) -> None:
-    made = make(page, [shared / "data" / "pedestrians" / "zara01.csv"], tmp_path)
+def test_page_makes_its_pictures(page: str, tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    recordings = []
+    if RECORDING in code_of(DOCS / page):
+        recordings.append(request.getfixturevalue("shared") / "data" / "pedestrians" / RECORDING)
+    made = make(page, recordings, tmp_path)
     assert made
     for name in made:
         # Fonts differ between machines by some pixels, pictures of other content by more.
