@@ -368,9 +368,11 @@ def say_written(paths: Sequence[Path], report: Report, options: argparse.Namespa
 
 
 def picture(figure: Figure) -> bytes:
-    """Return a picture as PNG."""
+    """Return a picture as PNG, drawn once: `savefig` draws it twice, at first for its layout."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
     buffer = io.BytesIO()
-    figure.savefig(buffer, format="png")
+    FigureCanvasAgg(figure).print_png(buffer)
     return buffer.getvalue()
 
 
