@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from api.cli_answers import written
 from hrsafety.cli import exit_codes, main, parsers, progress, terminal
 from hrsafety.cli.completion import SHELLS
 
@@ -98,10 +99,13 @@ def test_a_narrow_terminal_loses_no_cell(monkeypatch: pytest.MonkeyPatch) -> Non
 
 def test_a_command_says_the_same_on_a_terminal_and_in_a_pipe(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     screen = on_screen(monkeypatch)
-    assert main(["foam", str(FOAMS), "--out", str(tmp_path / "a")]) == 0
+    text = FOAMS.read_text(encoding="utf-8")
+    assert "points = 139" in text
+    path = written(tmp_path / "coarse.toml", text.replace("points = 139", "points = 9"))
+    assert main(["foam", path, "--out", str(tmp_path / "a")]) == 0
     piped = io.StringIO()
     monkeypatch.setattr(sys, "stdout", piped)
-    assert main(["foam", str(FOAMS), "--out", str(tmp_path / "a")]) == 0
+    assert main(["foam", path, "--out", str(tmp_path / "a")]) == 0
     assert words(screen.getvalue()) == words(piped.getvalue())
     assert "\x1b" in screen.getvalue()
     assert "\x1b" not in piped.getvalue()
