@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from matplotlib.collections import LineCollection, PatchCollection
 
 from hrsafety import navigation as nav
 from hrsafety import plotting
-from hrsafety.errors import HrsafetyError
+from hrsafety.errors import HrsafetyError, InvalidParameterError
 
 WALLS = nav.StaticMap.from_polylines([[(-1.0, -0.7), (5.0, -0.7)]])
 THICK = nav.StaticMap.from_polylines([[(2.0, 0.8), (3.0, 0.8)]], radius=0.1)
@@ -74,3 +75,27 @@ def test_a_plan_is_drawn_with_costs_paths_and_local_goals() -> None:
         plotting.runs.guide_plan(trap, plan, starts=[(3.0, 0.0)])
     with pytest.raises(HrsafetyError, match="plan must be a Plan"):
         plotting.runs.guide_plan(trap, trap)  # type: ignore[arg-type]  # what is tested
+
+
+def test_what_a_robot_has_seen_is_drawn_and_animated(tmp_path: Path) -> None:
+    walls = nav.StaticMap.from_polylines([[(1.5, -1.0), (1.5, 1.0)]], radius=0.03)
+    scene = nav.Scenario(robot=nav.DifferentialDriveRobot(), start=(0, 0), goal=(2.4, 0), walls=walls)
+    built = nav.robots.AsBuilt(sensors=[nav.Lidar(map=walls)])
+    run = nav.Run(scene, nav.ArcRollouts(), built)
+    with pytest.raises(InvalidParameterError, match="seen something"):
+        plotting.runs.known_cells(run)
+    run.step()
+    (shown,) = plotting.runs.known_cells(run).axes[0].images
+    occupied = (shown.get_array() == [47, 59, 74]).all(axis=2)
+    cells = run.known_cells()
+    assert cells is not None
+    assert (occupied == (cells.kinds == 2)).all()
+    file = plotting.runs.animate_known_cells(run, tmp_path / "map.gif", frames_per_second=2)
+    assert file.stat().st_size > 1000
+    assert run.outcome == "arrived"
+    with pytest.raises(InvalidParameterError, match="under way"):
+        plotting.runs.animate_known_cells(run, tmp_path / "more.gif")
+    other = nav.Run(scene, nav.VirtualForceField(), built)
+    other.step()
+    with pytest.raises(InvalidParameterError, match="own map"):
+        plotting.runs.known_cells(other)

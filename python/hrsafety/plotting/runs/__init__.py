@@ -6,7 +6,7 @@ from hrsafety.plotting.runs.energies import energy
 from hrsafety.plotting.runs.fields import force_field, potential_valley
 from hrsafety.plotting.runs.histories import distances, lyapunov
 from hrsafety.plotting.runs.judgements import judged_way, worst_moments
-from hrsafety.plotting.runs.known_places import known_cells
+from hrsafety.plotting.runs.known_places import animate_known_cells, known_cells
 from hrsafety.plotting.runs.layouts import layout
 from hrsafety.plotting.runs.plans import guide_plan
 from hrsafety.plotting.runs.scenes import paths
@@ -14,6 +14,7 @@ from hrsafety.plotting.runs.sequences import time_sequence
 
 __all__ = [
     "animate",
+    "animate_known_cells",
     "animate_safety",
     "distances",
     "energy",
