@@ -97,7 +97,8 @@ def picture(name: str, caption: str, figure: Figure) -> Picture:
 
     # `savefig` draws twice, once for the layout alone, and packs pixels that are unpacked here again.
     figure.set_dpi(DOTS_PER_INCH)
-    canvas, content = FigureCanvasAgg(figure), io.BytesIO()
+    canvas: Any = FigureCanvasAgg(figure)  # matplotlib types it in part
+    content = io.BytesIO()
     canvas.draw()
     drawn = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
     # A palette makes a page of forty pictures small enough for a phone.
