@@ -14,6 +14,8 @@ from api.read_pages import page_of
 from hrsafety import reproduce
 from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.reactive import follower_study as reactive_follower_study
+from hrsafety.reproduce.reactive import skirt_figures as reactive_skirt_figures
+from hrsafety.reproduce.reactive import sound_study as reactive_sound_study
 
 SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[3].parent / "shared"))
 PAPERS = ("avi2019", "avi2017", "gussu2017")
@@ -21,10 +23,14 @@ PAPERS = ("avi2019", "avi2017", "gussu2017")
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    # The page, not the rates of the follower, which have tests of their own in thousands of layouts.
+    # The page, not its numbers: rates of the follower have tests of their own in thousands of layouts, and places of
+    # sounds with all their bursts.
     few = functools.partial(reactive_follower_study.run_study, layouts=100, base_layouts=400)
+    heard = functools.partial(reactive_sound_study.measure, runs=20)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(reactive_follower_study, "run_study", few)
+        patch.setattr(reactive_sound_study, "measure", heard)
+        patch.setattr(reactive_skirt_figures, "STUDY_LAYOUTS", 3)
         return reproduce.run(tmp_path_factory.mktemp("reactive"), only="reactive")
 
 

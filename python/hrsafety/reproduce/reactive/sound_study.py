@@ -90,24 +90,24 @@ def places() -> tuple[SoundPlace, ...]:
 
 
 @cache
-def measure() -> SoundStudy:
-    """Measure from every place, by jitter and by full waveforms."""
+def measure(*, runs: int = RUNS) -> SoundStudy:
+    """Measure from every place, by jitter and so many times by full waveforms."""
     distance = np.array([place.distance for place in places()])
     bearing = np.radians([place.angle for place in places()])
     return SoundStudy(
         jitter=reactive.sound.jittered_fixes(ROW, range=distance, bearing=bearing, runs=JITTER_RUNS),
-        whole_samples=_heard(distance, bearing, NOISE, between_samples=False),
-        waveforms={level: _heard(distance, bearing, level) for level in LEVELS},
+        whole_samples=_heard(distance, bearing, NOISE, runs, between_samples=False),
+        waveforms={level: _heard(distance, bearing, level, runs) for level in LEVELS},
     )
 
 
-def _heard(distance: Array, bearing: Array, noise: float, *, between_samples: bool = True) -> reactive.Fixes:
+def _heard(distance: Array, bearing: Array, noise: float, runs: int, *, between_samples: bool = True) -> reactive.Fixes:
     return reactive.localize_bursts(
         BURST,
         ROW,
         range=distance,
         bearing=bearing,
-        runs=RUNS,
+        runs=runs,
         noise=noise,
         lead=WINDOW["lead"],
         samples=math.floor(WINDOW["samples"]),
