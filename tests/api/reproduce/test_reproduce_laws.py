@@ -11,12 +11,10 @@ import pytest
 from api.read_pages import page_of
 from hrsafety import navigation as nav
 from hrsafety import reproduce
-from hrsafety.reproduce import tables
+from hrsafety.reproduce import parts, tables
 from hrsafety.reproduce.cells import PrintedValue
 from hrsafety.reproduce.laws import claims as laws_claims
 from hrsafety.reproduce.laws import compared as laws_compared
-from hrsafety.reproduce.laws import demonstrations as laws_demonstrations
-from hrsafety.reproduce.laws import figures as laws_figures
 from hrsafety.reproduce.laws import study as laws_study
 from hrsafety.reproduce.laws.compared import COMPARED, FORCES, LIKE_SOURCE, PLANNERS
 
@@ -247,8 +245,15 @@ def test_verdicts_on_contacts_follow_from_the_runs(claims: list[PrintedValue], s
         assert walked[COMPARED[name].label].within is (study.printed[name].outcome == "arrived")
 
 
-def test_pictures_have_names_and_captions(study: laws_study.LawsStudy) -> None:
-    pictures = [*laws_demonstrations.make(study), *laws_figures.make(study)]
+@pytest.fixture(scope="module")
+def made(study: laws_study.LawsStudy) -> parts.Made:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(laws_study, "compare", lambda _: study)
+        return parts.PARTS["laws"].make(print)
+
+
+def test_pictures_have_names_and_captions(made: parts.Made) -> None:
+    pictures = made.pictures
     names = [picture.name for picture in pictures]
     assert len(set(names)) == len(names) == 8
     for number in ("2.5", "2.6", "5.11", "5.12", "6.19", "6.20"):
@@ -257,9 +262,10 @@ def test_pictures_have_names_and_captions(study: laws_study.LawsStudy) -> None:
 
 
 def test_page_shows_every_law_and_claim_and_counts_them(
-    study: laws_study.LawsStudy, claims: list[PrintedValue], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    made: parts.Made, claims: list[PrintedValue], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(laws_study, "compare", lambda _: study)
+    drawn = replace(parts.PARTS["laws"], make=lambda _: made)
+    monkeypatch.setattr(parts, "PARTS", {**parts.PARTS, "laws": drawn})
     text = reproduce.run(tmp_path, only="laws").read_text(encoding="utf-8")
     page = page_of(text)
     shown = " ".join(page.texts)
