@@ -33,8 +33,11 @@ REPOSITORY = TESTS.parent
 SLOW = {
     "api/cli": {
         "test_cli.py",
+        "test_cli_contact.py",
+        "test_cli_contact_verdicts.py",
         "test_cli_foam.py",
         "test_cli_optimize.py",
+        "test_cli_program.py",
         "test_cli_spoiled_files.py",
         "test_cli_sweep.py",
         "test_cli_terminal.py",
