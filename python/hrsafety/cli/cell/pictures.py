@@ -192,9 +192,10 @@ def svg_of(name: str, caption: str, figure: Figure) -> str:
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     buffer = io.StringIO()
+    canvas: Any = FigureCanvasSVG(figure)  # matplotlib types it in part
     with rc_context({"svg.hashsalt": name, "svg.fonttype": "none"}):
         # `savefig` draws twice, at first for the layout alone.
-        FigureCanvasSVG(figure).print_svg(buffer, metadata={"Date": None, "Creator": None})
+        canvas.print_svg(buffer, metadata={"Date": None, "Creator": None})
     text = buffer.getvalue()
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>\s*", "", text, flags=re.DOTALL)
