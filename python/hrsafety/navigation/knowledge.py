@@ -29,6 +29,7 @@ __all__ = ["EchoRegions", "Sensing", "echo_regions", "sensing_of"]
 REGION_BEYOND_RANGE = "region_beyond_range"
 BLIND_NEARBY = "blind_nearby"
 UNSEEN_AT_START = "unseen_at_start"
+OBSTACLES_UNSEEN = "obstacles_unseen"
 
 OF_REGIONS = (BELOW_SAFE, REGION_BEYOND_RANGE)
 """Codes of sensors whose readings have regions that do not fit; a law that makes its own map has none."""
@@ -153,6 +154,15 @@ def warnings_of(scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:
     Or whose regions are sized for slower people than there are, and of cameras that report too late who is there.
     """
     yield from _unseen_at_start(scenario, built.obstacle_vision)
+    telling = [sensor for sensor in built.sensors if sensor.TELLS]
+    walls_alone = telling and all(isinstance(sensor, Lidar) and not sensor.sees_obstacles for sensor in telling)
+    if scenario.obstacles and walls_alone and built.obstacle_vision is None:
+        yield ResultWarning(
+            OBSTACLES_UNSEEN,
+            "sensors",
+            f"no sensor sees the {len(scenario.obstacles)} obstacles of the scene: lidars with sees_obstacles=False "
+            "tell of walls alone, in place of all that is known otherwise, and the robot may drive into them",
+        )
     speeds = [own_speed(obstacle, scenario.time_limit) for obstacle in scenario.obstacles]
     for index, sensor in enumerate(built.sensors):
         if not sensor.TELLS:

@@ -21,6 +21,12 @@ from hrsafety.plausibility import ResultWarning
 __all__ = ["KnownCells", "LidarScan", "ScanCommand", "ScanController"]
 
 
+SCAN_TIMEOUT = 0.3
+"""A robot brakes after so many seconds without a scan."""
+POSITION_TRACKING = 0.01
+"""How far a robot may be from where its plan has it, in m."""
+
+
 class LidarScan(NamedTuple):
     """Ranges of a lidar at an instant.
 
@@ -178,9 +184,9 @@ class ScanController:
         lidars: Sequence[Lidar],
         control_period: float = 0.05,
         arrival_tolerance: float = 0.2,
-        scan_timeout: float = 0.3,
+        scan_timeout: float = SCAN_TIMEOUT,
         oldest_scan: float = 0.5,
-        position_tracking: float = 0.01,
+        position_tracking: float = POSITION_TRACKING,
         heading_tracking: float = 0.03,
     ) -> None:
         self._rollouts = instance("rollouts", rollouts, ArcRollouts)

@@ -192,3 +192,29 @@ def test_a_late_lidar_shows_other_laws_what_stood_where_the_robot_was() -> None:
         nav.Lidar(latency=6.0)
     with pytest.raises(InvalidParameterError, match="length_error"):
         nav.sensing.Odometry(length_error=-0.1)
+
+
+def codes(run: nav.Trajectory) -> set[str]:
+    return {warning.code for warning in run.warnings}
+
+
+@pytest.mark.parametrize("law", [nav.ArcRollouts(), nav.VirtualForceField()], ids=["rollouts", "field"])
+def test_obstacles_that_no_lidar_sees_are_doubted(law: nav.Law) -> None:
+    thing = scene(walls=None, obstacles=[nav.Disc(center=(2.0, 0.0), radius=0.3)], goal=(4.0, 0.0))
+    blind, seeing = nav.Lidar(sees_obstacles=False), nav.Lidar()
+    assert "obstacles_unseen" in codes(nav.simulate(thing, law, built=built(blind)))
+    assert "obstacles_unseen" not in codes(nav.simulate(thing, law, built=built(blind, seeing)))
+    person = nav.Person(start=(2.0, 0.0))
+    robot = nav.Robot(start=(0.0, 0.0), goal=(4.0, 0.0), body=ROBOT, law=law, sensors=[blind])
+    assert "obstacles_unseen" in {each.code for each in nav.World(people=[person], robots=[robot]).warnings}
+
+
+def test_a_robot_that_never_drives_is_told_why() -> None:
+    late = nav.simulate(scene(), nav.ArcRollouts(), built=built(replace(LIDAR, latency=0.4)))
+    assert (late.path_length, late.outcome) == (0.0, "stopped")
+    (doubt,) = (warning for warning in late.warnings if warning.code == "scans_too_late")
+    assert doubt.safe_side
+    noisy = scene(measurement=nav.Measurement(scale=0.025, of="both"))
+    assert "pose_off_plan" in codes(nav.simulate(noisy, nav.ArcRollouts(), built=built()))
+    drifting = nav.simulate(scene(), nav.ArcRollouts(), built=built(LIDAR, nav.sensing.Odometry()))
+    assert {"pose_off_plan", "scans_too_late"}.isdisjoint(codes(drifting))

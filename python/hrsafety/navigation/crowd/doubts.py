@@ -20,7 +20,7 @@ from hrsafety.navigation.robots.bodies import NUMBERS
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.warnings.filters import of_filter
-from hrsafety.navigation.warnings.scans import unwatched
+from hrsafety.navigation.warnings.scans import standing, unwatched
 from hrsafety.navigation.warnings.scenarios import circled, own_speed
 from hrsafety.navigation.warnings.shields import (
     ASSUMES_LESS,
@@ -236,7 +236,8 @@ def of_sensors(
             measurement=robot.measurement,
         )
         regions = not getattr(robot.law, "MAPS_SCANS", False)
-        told = (each for each in warnings_of(scene, built) if regions or each.code not in OF_REGIONS)
+        seen = (each for each in warnings_of(scene, built) if regions or each.code not in OF_REGIONS)
+        told = (*seen, *standing(robot.law, robot.measurement, built))
         found.append(
             (f"robots[{index}]", tuple(replace(each, subject=f"robots[{index}].{each.subject}") for each in told))
         )

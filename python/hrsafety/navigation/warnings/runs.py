@@ -17,7 +17,7 @@ from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.warnings.filters import of_filter
-from hrsafety.navigation.warnings.scans import unwatched
+from hrsafety.navigation.warnings.scans import standing, unwatched
 from hrsafety.navigation.warnings.scenarios import BELOW_SAFE, GOAL_IN_REGION, IN_CRITICAL_REGION
 from hrsafety.navigation.warnings.shields import ASSUMES_LESS, maps_of, of_hidden_ways, of_order, of_shield, shield_of
 from hrsafety.navigation.warnings.walls import unknown_walls
@@ -84,6 +84,7 @@ def _seen(scenario: Scenario, built: AsBuilt, law: Law) -> Iterator[ResultWarnin
     for each in warnings_of(scenario, built):
         if not (law.MAPS_SCANS and each.code in OF_REGIONS):
             yield each
+    yield from standing(law, scenario.measurement, built)
 
 
 def _late(scenario: Scenario, built: AsBuilt, by_regions: bool) -> Iterator[ResultWarning]:
