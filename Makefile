@@ -17,8 +17,15 @@ export PYO3_BUILD_EXTENSION_MODULE = 1
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
 
-build: $(BIN)/python
+# Nothing is packed and installed again while no source is newer; folders tell of files that are gone.
+SOURCES := $(shell find crates python Cargo.toml Cargo.lock pyproject.toml README.md \
+    -not -name '*.so' -not -name '*.pyc' -not -name __pycache__)
+
+$(VENV)/installed: $(SOURCES) | $(BIN)/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check ".[report,cli,test,dev,docs]"
+	touch $@
+
+build: $(VENV)/installed
 
 # Builds the native module into the source tree, for work on the package itself; incremental.
 develop: build
