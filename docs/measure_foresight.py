@@ -2,13 +2,16 @@
 
 ``python docs/measure_foresight.py`` prints, ``--write`` replaces what stands between the marks of
 docs/guides/foresight.md; ``--only shares`` are the suites, ``--only scenes`` the standard scenes of social navigation,
-``--only outlines`` crowds around robots with a footprint, ``--only adversary`` the search for a fault, ``--only first``
-the first rows of the page, which are some of its table of suites. The recordings are those of
-``HRSAFETY_RECORDINGS``, a folder with zara01.csv and zara03.csv.
+``--only outlines`` crowds around robots with a footprint, ``--only gaps`` such robots before a gap, ``--only
+crossings`` rectangles that move, ``--only challenge`` the worlds of DynaBARN, ``--only adversary`` the search for a
+fault, ``--only first`` the first rows of the page, which are some of its table of suites. The recordings are those of
+``HRSAFETY_RECORDINGS``, a folder with zara01.csv and zara03.csv, the worlds those of ``HRSAFETY_BARN``, a folder that
+``challenge_worlds.py`` fills.
 """
 
 from __future__ import annotations
 
+import math
 import os
 import sys
 import time
@@ -19,6 +22,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 
+from api.navigation.test_moving_rectangles import crossings
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.benchmarks import benchmark, entry
@@ -35,6 +39,13 @@ CROWDS, FIRST = 200, 40_000
 OUTLINED, FIRST_OUTLINED = 100, 50_000
 """Crowds of robots with a footprint, and the seed of the first one."""
 FOOTPRINT = nav.robots.Footprint.rectangle(0.508, 0.430)
+WIDTHS, DEPTHS, NARROW = (0.50, 0.56, 0.60, 0.80), (0.1, 1.0), nav.robots.Footprint.rectangle(0.50, 0.43)
+"""Widths and depths of a gap in m, and the robot that drives through it."""
+GAP_RUNS, GAP_SEED = 100, 5
+CROSSINGS, FIRST_CROSSING = 150, 8
+"""Scenes of rectangles that cross the way, and their seed."""
+UNSHIELDED = ("field(attractive_gain=13)+yielding", "field(attractive_gain=13)+foresight")
+"""Entries without a shield: that of the worlds of DynaBARN, and foresight in the place of yielding."""
 SEEDS, MARGIN = range(4, 8), 0.01
 """Seeds of each standard scene, and the margin of shields there, whose robots move in steps of 0.05 s, in m."""
 LEFT_OUT = ("blind_corner", "following_human", "leading_human", "accompanying_peer")
@@ -82,6 +93,75 @@ def outlines() -> str:
     seeds = range(FIRST_OUTLINED, FIRST_OUTLINED + OUTLINED)
     for name, kind in (("two wheels", nav.DifferentialDriveRobot), ("holonomic", nav.HolonomicRobot)):
         rows += crowded(name, kind(footprint=FOOTPRINT), seeds)
+    return "\n".join(rows) + "\n"
+
+
+def gaps() -> str:
+    """Return the table of a robot with a footprint in a room whose only way out is a gap in a wall."""
+    rows = head("depth, m", "law", *(f"gap of {width:.2f} m" for width in WIDTHS))
+    for depth in DEPTHS:
+        for law in ("field+guide+shield", "field+guide+shield+yielding", "field+guide+shield+foresight"):
+            say("gaps", depth, law)
+            arrived = []
+            for width in WIDTHS:
+                map, scenes = before_a_gap(width, depth)
+                table = nav.simulate_many(scenes, [entry(law).built(person_speed=1.6, map=map)])
+                arrived.append(percent(int((table.outcome == "arrived").sum()), len(scenes), digits=0))
+            rows.append(line(depth, law.replace("+guide", ""), *arrived))
+    return "\n".join(rows) + "\n"
+
+
+def before_a_gap(width: float, depth: float) -> tuple[nav.StaticMap, list[nav.Scenario]]:
+    """Return a room with a gap of a width in a wall of a depth in m, and robots at drawn places before it."""
+    sides = [[(2, y), (2, edge), (2 + depth, edge), (2 + depth, y)] for y, edge in ((3, width / 2), (-3, -width / 2))]
+    map = nav.StaticMap.from_polylines([*sides, [(-2, -3), (5 + depth, -3), (5 + depth, 3), (-2, 3), (-2, -3)]])
+    scenes = []
+    for run in range(GAP_RUNS):
+        draws = np.random.default_rng([GAP_SEED, run])
+        start = draws.uniform([-1.4, -2.4], [1.4, 2.4])
+        place = nav.Scenario(
+            robot=nav.DifferentialDriveRobot(footprint=NARROW),
+            start=tuple(start.tolist()),
+            goal=(4.0 + depth, draws.uniform(-1.5, 1.5)),
+            heading=draws.uniform(-math.pi, math.pi),
+            time_limit=60.0,
+            walls=map,
+        )
+        scenes.append(place)
+    return map, scenes
+
+
+def crossed() -> str:
+    """Return the table of rectangles that cross the way."""
+    rows = head("robot", "law", "episodes", "success %", "at fault %", "arrival, s")
+    drawn = crossings(CROSSINGS, FIRST_CROSSING)
+    robots = {
+        f"{shape}, {drive}": kind(footprint=footprint)
+        for shape, footprint in (("disc", None), ("rectangle", FOOTPRINT))
+        for drive, kind in (("holonomic", nav.HolonomicRobot), ("two wheels", nav.DifferentialDriveRobot))
+    }
+    for name, robot in robots.items():
+        scenes = [replace(each, robot=robot) for each in drawn]
+        for law in LAWS:
+            say("crossings", name, law)
+            table = nav.simulate_many(scenes, [entry(law).built(person_speed=1.6)], stop_on_contact=True)
+            counts = (int((table.outcome == "arrived").sum()), int((table.contacts_at_fault > 0).sum()))
+            cells = (percent(each, len(scenes)) for each in counts)
+            rows.append(line(name, law, len(scenes), *cells, f"{np.nanmean(table.arrival_time):.1f}"))
+    return "\n".join(rows) + "\n"
+
+
+def challenge() -> str:
+    """Return the table of the worlds of DynaBARN."""
+    rows = head("worlds", "law", "episodes", "success %", "at fault %", "arrival, s")
+    kinds = (("DynaBARN", "dynabarn", LAWS), ("DynaBARN, robot of 3 m/s^2", "dynabarn3", (*LAWS, *UNSHIELDED)))
+    for name, suite, laws in kinds:
+        say(name)
+        result = benchmark(suite, laws, data=os.environ["HRSAFETY_BARN"])
+        for law, found in result.rows.items():
+            good = sum(row.outcome == "arrived" and not row.contacts for row in found)
+            counts = (percent(each, len(found)) for each in (good, sum(row.at_fault > 0 for row in found)))
+            rows.append(line(name, law, len(found), *counts, f"{result.mean_arrival(law):.1f}"))
     return "\n".join(rows) + "\n"
 
 
@@ -160,6 +240,9 @@ if __name__ == "__main__":
             "shares": (SHARES_MARKS, shares),
             "first": (FIRST_MARKS, first),
             "outlines": ("outlines of measure_foresight.py", outlines),
+            "gaps": ("gaps of measure_foresight.py", gaps),
+            "crossings": ("crossings of measure_foresight.py", crossed),
+            "challenge": ("challenge of measure_foresight.py", challenge),
             "scenes": ("scenes of measure_foresight.py", standard_scenes),
             "adversary": ("adversary of measure_foresight.py", adversary),
         },

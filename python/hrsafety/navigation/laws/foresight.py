@@ -24,8 +24,9 @@ class Foresight(Parameters):
     discomfort. The last velocity, rest, braking and 36 directions at three speeds are driven for the first step, and
     the cheapest one that the shield verifies is taken. The law within has no say; without a verified velocity the
     robot executes the rest of the plan that was verified last. A robot with two wheels drives toward them on arcs,
-    also backwards. Bodies that are no discs are priced by the circles around them, and verified by their outlines;
-    without a shield a robot with a footprint keeps the circle off walls, too.
+    also backwards. Bodies that are no discs are priced by the circles around them, and verified by their outlines.
+    Beside walls a robot with a footprint keeps its outline off in the first step, narrow places are as dear as for the
+    guide, and two wheels line up with gaps; without a shield it keeps the circle off walls.
 
     Parameters
     ----------
