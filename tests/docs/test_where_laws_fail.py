@@ -1,17 +1,40 @@
-"""The page about failures says what the validation page measured."""
+"""The page about failures says what the validation page measured, beside tables of its own script."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
 
+from hrsafety.cli.parsers import ARENA_LAWS
+from page_tables import written
+
 DOCS = Path(__file__).resolve().parents[2] / "docs"
+PAGE = DOCS / "guides" / "where_laws_fail.md"
 SHARE = re.compile(r"\d+\.\d \(\d+\.\d to \d+\.\d\)")
+PARTS = [f"{part} of measure_failures.py" for part in ("persons", "first rows")]
 
 
 def test_every_share_of_the_page_is_measured() -> None:
-    page = (DOCS / "guides" / "where_laws_fail.md").read_text(encoding="utf-8")
+    page = PAGE.read_text(encoding="utf-8")
+    for part in PARTS:
+        page = page.replace(written(page, part), "")
     measured = set(SHARE.findall((DOCS / "validation.md").read_text(encoding="utf-8")))
     shown = SHARE.findall(" ".join(page.split()))
     assert len(shown) > 30
     assert set(shown) <= measured
+
+
+def test_every_entry_of_the_arena_stands_in_the_table() -> None:
+    rows = written(PAGE.read_text(encoding="utf-8"), PARTS[0]).splitlines()[2:]
+    assert [row.split(" | ")[0] for row in rows] == [f"| `{word}`" for word in ARENA_LAWS]
+
+
+def test_no_shield_is_at_fault_against_a_searched_person() -> None:
+    rows = written(PAGE.read_text(encoding="utf-8"), PARTS[0]).splitlines()[2:]
+    shielded = [row.split(" | ") for row in rows if "shield" in row]
+    assert len(shielded) == 2
+    for row in shielded:
+        assert row[1] == "20000"
+        assert row[2].startswith("0.00 (")
+        assert row[3].startswith("0.00 (")
+        assert row[4] == "0"
