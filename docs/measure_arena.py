@@ -14,7 +14,7 @@ from hrsafety.cli.arena import HEAD, cells_of
 from hrsafety.cli.parsers import ARENA_LAWS
 from page_tables import DOCS, head, line, print_or_write
 
-SEEDS = 10
+SEEDS = 20
 CONDITIONS = (("reacting", "exact"), ("not_reacting", "exact"), ("not_reacting", "noise_delay"))
 
 CHOSEN = (
