@@ -5,13 +5,14 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import measure_failures
 from hrsafety.cli.parsers import ARENA_LAWS
 from page_tables import written
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE = DOCS / "guides" / "where_laws_fail.md"
 SHARE = re.compile(r"\d+\.\d \(\d+\.\d to \d+\.\d\)")
-PARTS = [f"{part} of measure_failures.py" for part in ("persons", "first rows")]
+PARTS = [f"{part} of measure_failures.py" for part in ("persons", "scenes", "first rows")]
 
 
 def test_every_share_of_the_page_is_measured() -> None:
@@ -24,9 +25,11 @@ def test_every_share_of_the_page_is_measured() -> None:
     assert set(shown) <= measured
 
 
-def test_every_entry_of_the_arena_stands_in_the_table() -> None:
-    rows = written(PAGE.read_text(encoding="utf-8"), PARTS[0]).splitlines()[2:]
-    assert [row.split(" | ")[0] for row in rows] == [f"| `{word}`" for word in ARENA_LAWS]
+def test_every_entry_of_the_arena_stands_in_its_tables() -> None:
+    page = PAGE.read_text(encoding="utf-8")
+    for part, rows in zip(PARTS[:2], (1, measure_failures.WORST), strict=True):
+        first = [line.split(" | ")[0] for line in written(page, part).splitlines()[2:]]
+        assert first == [f"| `{word}`" for word in ARENA_LAWS for _ in range(rows)]
 
 
 def test_no_shield_is_at_fault_against_a_searched_person() -> None:
