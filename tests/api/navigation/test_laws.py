@@ -49,7 +49,8 @@ def same(law: nav.Law) -> Any:
 
 def test_all_laws_of_the_package_are_here() -> None:
     kinds = {name for name, kind in public(nav).items() if isinstance(kind, type) and issubclass(kind, nav.Law)}
-    assert kinds - {"Law", "PythonLaw", "SafeNavigation"} == set(LAWS)
+    # Rollouts need a robot with lidars.
+    assert kinds - {"Law", "PythonLaw", "SafeNavigation", "ArcRollouts"} == set(LAWS)
 
 
 # ---- values ---------------------------------------------------------------------------------

@@ -190,9 +190,11 @@ def _now(run: Run, robot: int | None) -> _Known:
 
 def _handles(maps: list[StaticMap]) -> list[Artist]:
     """Return the legend."""
+    from matplotlib.patches import Patch
+
     return [
-        floor.handle("not seen", marker="s", color=COLORS[0], markersize=10, linestyle="none"),
-        floor.handle("occupied", marker="s", color=COLORS[2], markersize=10, linestyle="none"),
+        Patch(facecolor=COLORS[0], edgecolor=style.NEUTRAL, label="not seen"),
+        Patch(facecolor=COLORS[2], edgecolor=style.NEUTRAL, label="occupied"),
         floor.handle("way so far", color=style.RUN_COLORS[0], linestyle="-", linewidth=1.8),
         floor.handle("planned way", color=WAY_COLOR, linestyle="--", linewidth=1.6),
         floor.handle("goal", marker="*", color=style.GOAL_COLOR, markersize=12, linestyle="none"),
