@@ -104,7 +104,9 @@ def refuse_masked(name: str, value: object) -> None:
     """Refuse masked values: without their mask they would be numbers that were ruled out."""
     # Importing them takes longer than checking all arguments of a program; whoever has one has imported them.
     masked_arrays = sys.modules.get("numpy.ma")
-    if masked_arrays is None or not isinstance(value, masked_arrays.MaskedArray):
+    # Another thread may be importing them: until it has, nobody has one.
+    kind = getattr(masked_arrays, "MaskedArray", None)
+    if kind is None or masked_arrays is None or not isinstance(value, kind):
         return
     masked = int(np.count_nonzero(masked_arrays.getmaskarray(value)))
     if masked:

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable, Sequence
 from decimal import Decimal
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -378,3 +379,10 @@ def test_a_link_that_leads_nowhere_is_called_so(tmp_path: Path) -> None:
         (tmp_path / name).symlink_to(target)
         with pytest.raises(InvalidParameterError, match="a link that leads to no file"):
             scenarios.load(tmp_path / name)
+
+
+def test_masked_arrays_that_another_thread_is_importing_disturb_no_call(monkeypatch: pytest.MonkeyPatch) -> None:
+    # So it stands in `sys.modules` while its first lines are executed.
+    monkeypatch.setitem(sys.modules, "numpy.ma", ModuleType("numpy.ma"))
+    assert nav.Disc(center=(1.0, 2.0), radius=0.3).radius == 0.3
+    assert nav.Lidar(mounting=(0.1, 0.0, 0.0)).mounting == (0.1, 0.0, 0.0)
