@@ -374,3 +374,19 @@ def test_two_wheels_take_up_the_speed_and_the_turn_rate_of_an_action() -> None:
     (back, _), *_ = env._all.places(0)
     (heading,) = env._all.headings(0)
     assert np.dot(back, [np.cos(heading), np.sin(heading)]) < -0.05
+
+
+def test_a_robot_with_a_law_is_driven_as_one_without() -> None:
+    def driven(law: nav.Law | None, action: Any) -> list[float]:
+        body = nav.DifferentialDriveRobot(max_speed=0.7)
+        robot = nav.Robot(body, start=(0.0, 0.0), goal=(6.0, 0.0), heading=0.3, law=law)
+        env = gym.CrowdEnv(nav.World(robots=[robot], step=0.1, time_limit=20.0), action=action)
+        env.reset(seed=0)
+        for _ in range(5):
+            env.step([0.5, 0.3])
+        return [*env._all.places(0)[0][0], *env._all.headings(0)]
+
+    for action in ("velocity", "unicycle"):
+        free, bound = (driven(law, action) for law in (None, nav.VirtualForceField()))
+        assert free == bound
+        assert free[0] > 0.1

@@ -419,7 +419,7 @@ impl CrowdRobot {
             (Request::Velocity(velocity), _) => toward(velocity.into(), &situation),
             (Request::Twist(told), _) => {
                 twist = Some(told);
-                Vector2::zeros()
+                toward(Vector2::zeros(), &situation)
             }
             (Request::Law, Some(pilot)) if pilot.law.is_some() => {
                 let own = (situation.heading, self.interval);

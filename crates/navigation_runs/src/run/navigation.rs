@@ -324,15 +324,13 @@ impl<L: Listener> Navigation<L> {
     ) -> Option<Command<f64>> {
         let mut law = self.law.take();
         let situation = self.seen(time, Stop(interrupted));
+        let toward =
+            |desired| Command::plain(force_toward(desired, &situation, self.scenario.robot.mass));
         let command = match request {
             Request::Law => law.as_mut().map(|law| law.command(&situation)),
             Request::Force(force) => Some(Command::plain(Vector2::splat(force))),
-            Request::Twist(_) => Some(Command::plain(Vector2::zeros())),
-            Request::Velocity(desired) => {
-                let mass = self.scenario.robot.mass;
-                let force = force_toward(Vector2::splat(desired), &situation, mass);
-                Some(Command::plain(force))
-            }
+            Request::Velocity(desired) => Some(toward(Vector2::splat(desired))),
+            Request::Twist(_) => Some(toward(Vector2::zeros())),
         };
         self.law = law;
         command

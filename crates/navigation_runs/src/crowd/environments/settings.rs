@@ -80,15 +80,17 @@ impl EnvironmentSettings {
     /// # Errors
     /// Names the argument that does not.
     pub fn checked(self) -> Result<Self> {
-        let world = self.world.checked()?;
-        if world.robots.is_empty() {
+        let mut world = self.world.checked()?;
+        let Some(driven) = world.robots.first_mut() else {
             let given = Given::Found("none".into());
             return Err(Failure::invalid(
                 "world.robots",
                 "hold a robot to drive",
                 given,
             ));
-        }
+        };
+        // Its wheels take up actions, and do not follow the point mass of a law.
+        driven.law = None;
         positive("max_acceleration", self.max_acceleration)?;
         positive("max_turn_rate", self.max_turn_rate)?;
         at_most("people", self.people, MOST_SEEN)?;
