@@ -60,6 +60,21 @@ def drawn(figure: Figure, axes: Axes, rows: Iterable[int], shown: Callable[[int]
         yield np.array(canvas.buffer_rgba(), dtype=np.uint8)[:, :, :3]
 
 
+def drawn_anew(figure: Figure, axes: Axes, rows: Iterable[int], draw: Callable[[int], object]) -> Iterator[Frame]:
+    """Yield pictures as `drawn` does; ``draw`` draws what moves at a row, which is removed for the next picture."""
+    artists: list[Artist] = []
+
+    def shown(row: int) -> list[Artist]:
+        for artist in artists:
+            artist.remove()
+        before = set(axes.get_children())
+        draw(row)
+        artists[:] = sorted(set(axes.get_children()) - before, key=lambda artist: float(artist.get_zorder()))
+        return artists
+
+    return drawn(figure, axes, rows, shown)
+
+
 def checked_target(path: str | os.PathLike[str]) -> Path:
     """Return the path of an animation that can be written."""
     target = Path(path)

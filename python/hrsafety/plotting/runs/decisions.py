@@ -154,17 +154,7 @@ def _frames(record: SafetyRecord, rows: list[int], title: str | None) -> Iterato
     axes = figure.subplots()
     style.frame_scene(axes, limits)
     _add_scene(axes, record)
-    drawn: list[Artist] = []
-
-    def shown(row: int) -> list[Artist]:
-        for artist in drawn:
-            artist.remove()
-        before = set(axes.get_children())
-        _add_decision(axes, record, record.decisions[row])
-        drawn[:] = sorted(set(axes.get_children()) - before, key=lambda artist: float(artist.get_zorder()))
-        return drawn
-
-    return movies.drawn(figure, axes, rows, shown)
+    return movies.drawn_anew(figure, axes, rows, lambda row: _add_decision(axes, record, record.decisions[row]))
 
 
 def _checked(record: SafetyRecord) -> SafetyRecord:

@@ -156,17 +156,7 @@ def animate_known_cells(
     axes = figure.subplots()
     axes.set_facecolor(COLORS[0])
     style.frame_scene(axes, limits)
-    drawn: list[Artist] = []
-
-    def known(row: int) -> list[Artist]:
-        for artist in drawn:
-            artist.remove()
-        before = set(axes.get_children())
-        _add_known(axes, seen[row], own)
-        drawn[:] = sorted(set(axes.get_children()) - before, key=lambda artist: float(artist.get_zorder()))
-        return drawn
-
-    frames = movies.drawn(figure, axes, range(len(seen)), known)
+    frames = movies.drawn_anew(figure, axes, range(len(seen)), lambda row: _add_known(axes, seen[row], own))
     movies.write(target, movies.counted(frames, len(seen), callback("progress", progress)), frames_per_second)
     return target
 
