@@ -103,12 +103,11 @@ def number(name: str, value: object) -> float:
 def refuse_masked(name: str, value: object) -> None:
     """Refuse masked values: without their mask they would be numbers that were ruled out."""
     # Importing them takes longer than checking all arguments of a program; whoever has one has imported them.
-    masked_arrays = sys.modules.get("numpy.ma")
     # Another thread may be importing them: until it has, nobody has one.
-    kind = getattr(masked_arrays, "MaskedArray", None)
-    if kind is None or masked_arrays is None or not isinstance(value, kind):
+    kind = getattr(sys.modules.get("numpy.ma"), "MaskedArray", None)
+    if kind is None or not isinstance(value, kind):
         return
-    masked = int(np.count_nonzero(masked_arrays.getmaskarray(value)))
+    masked = int(np.count_nonzero(np.ma.getmaskarray(value)))
     if masked:
         shown = Shown(f"{masked} masked of {value.size}")
         raise InvalidParameterError(name, "have no masked values", shown, "leave them out with .compressed()")
