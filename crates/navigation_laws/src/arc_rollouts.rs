@@ -103,7 +103,9 @@ impl LawFamily for ArcRollouts {
             let rule = "hold a Lidar for ArcRollouts, which know a place from scans alone";
             return Err(
                 Failure::invalid("sensors", rule, Given::Found("no lidar".into()))
-                    .mended_by("run it on AsBuilt(sensors=[Lidar(map=...)])"),
+                    .mended_by(
+                        "run it on AsBuilt(sensors=[Lidar(map=...)]), or on a robot of your own by ScanController",
+                    ),
             );
         }
         let options = ExplorerOptions {
@@ -124,7 +126,7 @@ impl LawFamily for ArcRollouts {
             }
         };
         let to_goal = Vector2::from(scenario.goal) - Vector2::from(scenario.start);
-        let course = scenario.differential.is_none().then(|| Course {
+        let course = scenario.differential.is_none().then(|| DrivenDirection {
             heading: to_goal.y.atan2(to_goal.x),
             turn_rate: 0.0,
         });
@@ -140,9 +142,9 @@ impl LawFamily for ArcRollouts {
     }
 }
 
-/// Course of a disc that moves in any direction.
+/// Direction in which a disc drives that moves in any direction, and how it turns.
 #[derive(Clone, Copy, Debug)]
-struct Course {
+struct DrivenDirection {
     /// In rad.
     heading: f64,
     /// In rad/s.
@@ -154,7 +156,7 @@ struct Exploring {
     controller: Controller,
     mass: f64,
     /// Where a robot without wheels drives, whatever it looks at.
-    course: Option<Course>,
+    course: Option<DrivenDirection>,
     twist: Option<Twist>,
     trace: Option<Trace>,
 }

@@ -30,6 +30,7 @@ REGION_BEYOND_RANGE = "region_beyond_range"
 BLIND_NEARBY = "blind_nearby"
 UNSEEN_AT_START = "unseen_at_start"
 OBSTACLES_UNSEEN = "obstacles_unseen"
+POSE_DRIFTS = "pose_drifts"
 
 OF_REGIONS = (BELOW_SAFE, REGION_BEYOND_RANGE)
 """Codes of sensors whose readings have regions that do not fit; a law that makes its own map has none."""
@@ -109,10 +110,10 @@ def told_by(measurement: Measurement | None, built: AsBuilt) -> Sensing:
         **{sensor.NAME: sensor.TELLS for sensor in built.sensors},
     }
     robot = "measurement" if measured in ("both", "robot") else "exact"
-    if any(isinstance(sensor, Odometry) for sensor in built.sensors):
-        robot = Odometry.NAME
+    robot = "camera" if built.robot_vision is not None else robot
+    # Of several that tell of the robot the last one counts, and cameras are before what rides on it.
     return Sensing(
-        robot="camera" if built.robot_vision is not None else robot,
+        robot=Odometry.NAME if any(isinstance(sensor, Odometry) for sensor in built.sensors) else robot,
         obstacles=tuple(word for word, tells in told.items() if tells) or ("exact",),
     )
 
@@ -163,6 +164,16 @@ def warnings_of(scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:
             f"no sensor sees the {len(scenario.obstacles)} obstacles of the scene: lidars with sees_obstacles=False "
             "tell of walls alone, in place of all that is known otherwise, and the robot may drive into them",
         )
+    for index, sensor in enumerate(built.sensors):
+        if isinstance(sensor, Odometry) and sensor.drifts:
+            yield ResultWarning(
+                POSE_DRIFTS,
+                f"sensors[{index}]",
+                f"the pose of the robot goes wrong by {100.0 * sensor.length_error:.3g} % of its way and "
+                f"{sensor.heading_error:.3g} rad in each m, and nothing corrects it: maps and obstacles that the law "
+                "knows, and what it saw before, are elsewhere by then than it takes them to be; no margin covers that "
+                "for long, and nothing is proved for this run",
+            )
     speeds = [own_speed(obstacle, scenario.time_limit) for obstacle in scenario.obstacles]
     for index, sensor in enumerate(built.sensors):
         if not sensor.TELLS:

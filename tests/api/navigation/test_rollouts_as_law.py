@@ -218,3 +218,34 @@ def test_a_robot_that_never_drives_is_told_why() -> None:
     assert "pose_off_plan" in codes(nav.simulate(noisy, nav.ArcRollouts(), built=built()))
     drifting = nav.simulate(scene(), nav.ArcRollouts(), built=built(LIDAR, nav.sensing.Odometry()))
     assert {"pose_off_plan", "scans_too_late"}.isdisjoint(codes(drifting))
+
+
+def test_scans_that_would_wait_in_too_many_numbers_are_refused() -> None:
+    many = nav.Lidar(map=ROOM, beams=100_000, latency=5.0)
+    with pytest.raises(InvalidParameterError, match="latency must be so short"):
+        nav.simulate(scene(control_period=0.02), nav.ArcRollouts(), built=built(many))
+
+
+def test_what_its_plans_do_not_cover_is_doubted() -> None:
+    noisy = replace(LIDAR, range_noise=0.05)
+    assert "scans_too_noisy" in codes(nav.simulate(scene(), nav.ArcRollouts(), built=built(noisy)))
+    assert "scans_too_noisy" not in codes(nav.simulate(scene(), nav.ArcRollouts(margin=0.06), built=built(noisy)))
+    wheel = nav.robots.WheelDrive(
+        inertia=0.06, viscous_friction=0.4, static_friction=0.05, proportional_gain=100.0, derivative_gain=20.0
+    )
+    lagging = nav.robots.AsBuilt(wheels=[wheel, wheel], sensors=[LIDAR])
+    assert "wheels_lag" in codes(nav.simulate(scene(), nav.ArcRollouts(), built=lagging))
+
+
+def test_a_pose_that_drifts_is_doubted_under_any_law() -> None:
+    law = nav.SafeNavigation(nav.VirtualForceField(), map=ROOM, guide=nav.Guide(), shield=nav.Shield())
+    wrong = nav.sensing.Odometry(length_error=0.0, heading_error=0.01)
+    disc = nav.HolonomicRobot(radius=0.2)
+    for each, robot, sensors in ((law, disc, [wrong]), (nav.ArcRollouts(), ROBOT, [LIDAR, wrong])):
+        run = nav.simulate(scene(robot=robot, time_limit=2.0), each, built=built(*sensors))
+        (doubt,) = (warning for warning in run.warnings if warning.code == "pose_drifts")
+        assert not doubt.safe_side
+    exact = nav.sensing.Odometry(length_error=0.0)
+    assert "pose_drifts" not in codes(nav.simulate(scene(robot=disc, time_limit=2.0), law, built=built(exact)))
+    both = nav.robots.AsBuilt(robot_vision=nav.sensing.Vision(), sensors=[wrong])
+    assert nav.knowledge.sensing_of(scene(), both).robot == "odometry"

@@ -1,6 +1,7 @@
 //! Odometry that drifts: a robot that reckons where it is from the way of its wheels.
 
 use crate::arguments::{Arguments, Named};
+use crate::robots::differential::Pose;
 use crate::sensing::sensor::{Located, RobotSensor, Sensor, Truth};
 use crate::world::frame::Frame;
 use crate::world::geometry::RobotState;
@@ -51,39 +52,32 @@ impl RobotSensor for Odometry {
     }
 }
 
-/// A place with an angle that does not jump at a whole turn.
-#[derive(Clone, Copy, Debug)]
-struct Pose {
-    place: Vector2<f64>,
-    angle: f64,
-}
-
 /// An odometry at work.
 struct Reckoning {
     scale: f64,
     turn: f64,
-    /// Where the robot was last, and where it took itself to be.
+    /// Last pose of the robot, and the one that it took itself to have; headings do not jump at a whole turn.
     poses: Option<[Pose; 2]>,
 }
 
 impl Reckoning {
-    /// Goes on to where the robot is now; returns where it is and where it takes itself to be.
-    fn go_on(&mut self, truth: &Truth<'_>) -> [Pose; 2] {
+    /// Follows the robot to its present pose; returns that and the one that it takes itself to have.
+    fn follow(&mut self, truth: &Truth<'_>) -> [Pose; 2] {
         let frame = truth.frame();
         let now = Pose {
-            place: frame.position,
-            angle: frame.angle(),
+            position: frame.position.into(),
+            heading: frame.angle(),
         };
         let [before, known] = self.poses.unwrap_or([now; 2]);
-        let turned = (now.angle - before.angle + PI).rem_euclid(TAU) - PI;
-        let way = now.place - before.place;
+        let turned = (now.heading - before.heading + PI).rem_euclid(TAU) - PI;
+        let way = frame.position - Vector2::from(before.position);
         // In the frame of the mean heading the way along an arc is its chord.
-        let seen = Frame::at([0.0; 2], before.angle + 0.5 * turned).inward(way) * self.scale;
+        let seen = Frame::at([0.0; 2], before.heading + 0.5 * turned).inward(way) * self.scale;
         let wrong = turned + self.turn * way.norm();
-        let mean = Frame::at([0.0; 2], known.angle + 0.5 * wrong);
+        let mean = Frame::at([0.0; 2], known.heading + 0.5 * wrong);
         let known = Pose {
-            place: known.place + mean.outward(seen),
-            angle: known.angle + wrong,
+            position: (Vector2::from(known.position) + mean.outward(seen)).into(),
+            heading: known.heading + wrong,
         };
         self.poses = Some([now, known]);
         [now, known]
@@ -92,19 +86,19 @@ impl Reckoning {
 
 impl Sensor for Reckoning {
     fn watch(&mut self, truth: &Truth<'_>) {
-        self.go_on(truth);
+        self.follow(truth);
     }
 
     fn locate(&mut self, truth: &Truth<'_>) -> Option<Located> {
-        let [now, known] = self.go_on(truth);
-        let [own, taken] = [now, known].map(|pose| Frame::at([0.0; 2], pose.angle));
+        let [now, known] = self.follow(truth);
+        let [own, taken] = [now, known].map(|pose| Frame::at([0.0; 2], pose.heading));
         let velocity: Vector2<f64> = taken.outward(own.inward(truth.robot.velocity)) * self.scale;
         Some(Located {
             robot: RobotState {
-                position: known.place,
+                position: known.position.into(),
                 velocity,
             },
-            heading: Some(known.angle),
+            heading: Some(known.heading),
         })
     }
 }

@@ -12,7 +12,6 @@ import numpy as np
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair
 from hrsafety.navigation.crowd.agents import FASTEST_DRAWN, Person, Robot, Source, middle_of
-from hrsafety.navigation.knowledge import OF_REGIONS, warnings_of
 from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles.moving import MovingDisc
@@ -20,7 +19,7 @@ from hrsafety.navigation.robots.bodies import NUMBERS
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.warnings.filters import of_filter
-from hrsafety.navigation.warnings.scans import standing, unwatched
+from hrsafety.navigation.warnings.scans import of_robot, unwatched
 from hrsafety.navigation.warnings.scenarios import circled, own_speed
 from hrsafety.navigation.warnings.shields import (
     ASSUMES_LESS,
@@ -235,9 +234,7 @@ def of_sensors(
             arrival_tolerance=robot.arrival_tolerance,
             measurement=robot.measurement,
         )
-        regions = not getattr(robot.law, "MAPS_SCANS", False)
-        seen = (each for each in warnings_of(scene, built) if regions or each.code not in OF_REGIONS)
-        told = (*seen, *standing(robot.law, robot.measurement, built))
+        told = of_robot(scene, robot.law, built)
         found.append(
             (f"robots[{index}]", tuple(replace(each, subject=f"robots[{index}].{each.subject}") for each in told))
         )

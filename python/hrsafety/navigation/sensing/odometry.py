@@ -15,7 +15,8 @@ class Odometry(RobotSensor):
     """Odometry of a robot, whose errors grow with its way: its law knows the robot's pose by it alone.
 
     Lengths are wrong by a share, and the heading goes wrong evenly along the way. Signs are drawn by the seed of the
-    scenario, one for each run. Slip of wheels with controllers is a thing of its own, `Slip`.
+    scenario, one for each run. Slip of wheels with controllers is a thing of its own, `Slip`. What a law knows by other
+    means, a map or obstacles, stays where it is while the pose drifts: a result says so by ``"pose_drifts"``.
 
     Parameters
     ----------
@@ -44,6 +45,11 @@ class Odometry(RobotSensor):
 
     length_error: float = 0.01
     heading_error: Annotated[float, "rad/m"] = 0.0
+
+    @property
+    def drifts(self) -> bool:
+        """Whether it is wrong at all."""
+        return self.length_error > 0.0 or self.heading_error > 0.0
 
     def __post_init__(self) -> None:
         """Check the values."""

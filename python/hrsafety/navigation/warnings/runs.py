@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 
 from hrsafety._arguments import Array
-from hrsafety.navigation.knowledge import OF_REGIONS, late_cameras, warnings_of
+from hrsafety.navigation.knowledge import late_cameras
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation
 from hrsafety.navigation.maps.unknown import over_unknown
@@ -17,7 +17,7 @@ from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.warnings.filters import of_filter
-from hrsafety.navigation.warnings.scans import standing, unwatched
+from hrsafety.navigation.warnings.scans import of_robot, unwatched
 from hrsafety.navigation.warnings.scenarios import BELOW_SAFE, GOAL_IN_REGION, IN_CRITICAL_REGION
 from hrsafety.navigation.warnings.shields import ASSUMES_LESS, maps_of, of_hidden_ways, of_order, of_shield, shield_of
 from hrsafety.navigation.warnings.walls import unknown_walls
@@ -60,7 +60,7 @@ def of_run(
     if scenario.walls is not None:
         own = () if built is None else tuple(each.map for each in built.sensors if isinstance(each, Lidar))
         of_map = itertools.chain(of_map, scenario.walls.warnings, unknown_walls(scenario.walls, law, own))
-    of_sensors = () if built is None else (*_seen(scenario, built, law), *_late(scenario, built, by_regions))
+    of_sensors = () if built is None else (*of_robot(scenario, law, built), *_late(scenario, built, by_regions))
     shield, walls = shield_of(law)
     measured = built is not None or scenario.measurement is not None
     things = scenario.obstacles
@@ -77,14 +77,6 @@ def of_run(
         *of_shield(scenario, shield, built, motion_step, walls=walls),
         *of_hidden_ways(scenario, shield, maps_of(law)),
     )
-
-
-def _seen(scenario: Scenario, built: AsBuilt, law: Law) -> Iterator[ResultWarning]:
-    """Yield what sensors see less than they must; a law that makes its own map has no regions."""
-    for each in warnings_of(scenario, built):
-        if not (law.MAPS_SCANS and each.code in OF_REGIONS):
-            yield each
-    yield from standing(law, scenario.measurement, built)
 
 
 def _late(scenario: Scenario, built: AsBuilt, by_regions: bool) -> Iterator[ResultWarning]:

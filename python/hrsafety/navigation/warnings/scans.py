@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hrsafety.navigation.knowledge import told_by
+from hrsafety.navigation.knowledge import OF_REGIONS, told_by, warnings_of
+from hrsafety.navigation.laws.arc_rollouts import ArcRollouts
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scan_controller import POSITION_TRACKING, SCAN_TIMEOUT
+from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
-from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["MOVERS_UNWATCHED", "standing", "unwatched"]
+__all__ = ["MOVERS_UNWATCHED", "of_robot", "unwatched"]
 
+ROUNDING = 1e-9
 MOVERS_UNWATCHED = "movers_unwatched"
 """Code of people and things that move around a law that takes all it sees for standing."""
 
@@ -32,7 +34,7 @@ def unwatched(law: object, movers: int) -> Iterator[ResultWarning]:
     ResultWarning
         With the codes ``"movers_unwatched"`` and ``"not_verified"``; nothing for other laws.
     """
-    if not getattr(law, "MAPS_SCANS", False):
+    if not isinstance(law, ArcRollouts):
         return
     if movers:
         message = (
@@ -40,38 +42,57 @@ def unwatched(law: object, movers: int) -> Iterator[ResultWarning]:
             "from driving into their way; nothing is proved for this run"
         )
         yield ResultWarning(MOVERS_UNWATCHED, "law", message)
-    if not getattr(law, "verify", True):
+    if not law.verify:
         message = "plans are not verified: nothing keeps the robot from contact"
         yield ResultWarning("not_verified", "law.verify", message)
 
 
-def standing(law: object, measurement: Measurement | None, built: AsBuilt) -> Iterator[ResultWarning]:
-    """Yield why a robot under a law that makes its own map of scans may stand still.
+def of_robot(scenario: Scenario, law: object, built: AsBuilt) -> Iterator[ResultWarning]:
+    """Yield the doubts about the sensors and wheels of a robot that matter for its law.
 
     Parameters
     ----------
+    scenario : Scenario
+        Where it runs.
     law : Law or None
-        What drives the robot.
-    measurement : Measurement or None
-        Of the scenario or robot.
+        What drives it. One that makes its own map of scans has no regions, and plans of its own.
     built : AsBuilt
-        Its sensors.
+        How it is built.
 
     Yields
     ------
     ResultWarning
-        With the codes ``"scans_too_late"`` and ``"pose_off_plan"``, both on the safe side; nothing for other laws.
+        Those of `hrsafety.navigation.knowledge.warnings_of`; for a law with a map of its own ``"scans_too_late"`` and
+        ``"pose_off_plan"``, both on the safe side, ``"scans_too_noisy"`` and ``"wheels_lag"``, too.
     """
-    if not getattr(law, "MAPS_SCANS", False):
-        return
+    own_map = isinstance(law, ArcRollouts)
+    yield from (each for each in warnings_of(scenario, built) if not (own_map and each.code in OF_REGIONS))
+    if isinstance(law, ArcRollouts):
+        yield from _of_rollouts(law, scenario, built)
+
+
+def _of_rollouts(law: ArcRollouts, scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:
+    if built.wheels is not None:
+        message = (
+            "plans are those of a robot that takes up each twist evenly; wheels with motors lag and slip, and that "
+            "they are off a plan is noticed afterwards: nothing is proved for this run"
+        )
+        yield ResultWarning("wheels_lag", "wheels", message)
     for index, sensor in enumerate(built.sensors):
+        if isinstance(sensor, Lidar) and sensor.range_noise > law.margin + ROUNDING:
+            message = (
+                f"ranges of sensors[{index}] have a standard deviation of {sensor.range_noise:.4g} m, more than the "
+                f"margin of {law.margin:.4g} m from occupied cells, which is to cover errors of the map: nothing is "
+                "proved for this run; give a larger margin"
+            )
+            yield ResultWarning("scans_too_noisy", f"sensors[{index}].range_noise", message)
         if isinstance(sensor, Lidar) and sensor.latency > SCAN_TIMEOUT:
             message = (
                 f"scans of sensors[{index}] are {sensor.latency:.4g} s old when they arrive, and the robot brakes "
                 f"after {SCAN_TIMEOUT:g} s without a scan: it never drives"
             )
             yield ResultWarning("scans_too_late", f"sensors[{index}].latency", message, safe_side=True)
-    source = told_by(measurement, built).robot
+    source = told_by(scenario.measurement, built).robot
     if source in ("measurement", "camera"):
         message = (
             f"the pose comes from a {source} with errors: the robot brakes whenever it seems to be more than "

@@ -18,6 +18,8 @@ use numeric::error::{Failure, Given, Result};
 /// Streams of the noise of lidars, counted up from here, above those of sonars.
 const LIDAR_STREAM: u64 = (1 << 61) + (1 << 60);
 
+/// Most ranges of scans that have not arrived.
+const MOST_WAITING: f64 = 1e7;
 /// Rounding of instants in s.
 const ROUNDING: f64 = 1e-9;
 
@@ -52,6 +54,17 @@ impl Scans {
     pub fn new(scenario: &Scenario, options: &Lidar, index: u64) -> Result<Self> {
         let options = options.clone().checked()?;
         let regions = options.regions(scenario)?;
+        let waiting = (options.latency / scenario.control_period()).ceil() * options.beams as f64;
+        if waiting > MOST_WAITING {
+            let rule = format!(
+                "be so short that at most {MOST_WAITING} ranges wait, with its beams and the control period"
+            );
+            return Err(Failure::invalid(
+                "latency",
+                rule,
+                Given::Number(options.latency),
+            ));
+        }
         let placed = PlacedObstacle {
             obstacle: Obstacle::point(options.max_speed),
             regions,
