@@ -2,12 +2,18 @@
 
 ``python docs/measure_arena.py`` prints, ``--write`` replaces what stands between the marks of docs/guides/arena.md.
 Finished tasks are kept in the folder of ``HRSAFETY_ARENA``, if there is one, and the next call resumes there.
+``--speed`` prints instead how long nine entries take in 25 scenes with 100 seeds and three sensings on two cores.
 """
 
 from __future__ import annotations
 
 import functools
+import multiprocessing
 import os
+import sys
+import tempfile
+import time
+from concurrent.futures import ProcessPoolExecutor
 
 from hrsafety import arena
 from hrsafety.cli.arena import HEAD, cells_of
@@ -65,7 +71,24 @@ def fails() -> str:
     return "\n" + "\n".join(rows) + "\n\n"
 
 
+def speed(seeds: int = 100) -> str:
+    """Return how many episodes were run in two processes, and how long they took."""
+    context = multiprocessing.get_context("spawn")
+    with tempfile.TemporaryDirectory() as folder, ProcessPoolExecutor(2, mp_context=context) as pool:
+        begun = time.perf_counter()
+        sensing = ("exact", "noise", "noise_delay")
+        found = arena.run(
+            ARENA_LAWS[:9], seeds=seeds, people=["not_reacting"], sensing=sensing, out=folder, executor=pool
+        )
+        taken = time.perf_counter() - begun
+    episodes = sum(len(each["end"]) for each in found.episodes.values())
+    return f"{episodes:,} episodes in {taken:.0f} s, {episodes / taken:.0f} per second"
+
+
 if __name__ == "__main__":
+    if "--speed" in sys.argv:
+        print(speed())
+        sys.exit()
     print_or_write(
         DOCS / "guides" / "arena.md",
         {

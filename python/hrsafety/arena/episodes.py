@@ -40,6 +40,8 @@ TASK_ERROR = 0.75
 """Mean distance in m from the moving goal up to which a task is done."""
 METRICS = tuple(dict.fromkeys(metric for metrics in CARDS.values() for metric in metrics))
 """Metrics of the cards."""
+OF_PEOPLE = frozenset({"person_delay", "person_detour"})
+"""Those that compare people with the same people in the scene without its robot."""
 COLUMNS = (
     Column(name="end", kind="word", words=ENDS),
     Column(name="arrival_time", unit="s"),
@@ -84,7 +86,10 @@ class ArenaStudy(Study):
         count = len(rows["scene"])
         found: dict[str, Any] = {column.name: np.full(count, np.nan) for column in COLUMNS[1:]}
         ends = ["lost"] * count
-        told = [nav.crowd.episodes_of(run)[0] for run in runs.values()]
+        told = [
+            nav.crowd.episodes_of(run, self._without(int(rows["scene"][index]), int(rows["seed"][index])))[0]
+            for index, run in runs.items()
+        ]
         table = nav.metrics.evaluate_many(told, threads=threads) if told else None
         for row, (index, run) in enumerate(runs.items()):
             assert table is not None  # there is a run
@@ -112,6 +117,11 @@ class ArenaStudy(Study):
             found.append(replace(world, robots=[robot]))
         return found
 
+    def _without(self, scene: int, seed: int) -> WorldRun | None:
+        """Return a scene without its robot, if its card asks what the robot costs people."""
+        asked = not OF_PEOPLE.isdisjoint(CARDS[scenarios.SOCIAL[scene]])
+        return _without_robot(scene, seed, self.reacting) if asked else None
+
     def why_lost(self, scene: int, seed: int) -> str:
         """Return what happens in an episode that is lost, which is run again."""
         try:
@@ -137,6 +147,13 @@ class ArenaStudy(Study):
 def _scene(number: int, seed: int, reacting: bool) -> World:
     """Return a scene, which all entries share."""
     return scenarios.social(scenarios.SOCIAL[number], seed, reacting=reacting)
+
+
+@functools.lru_cache(maxsize=64)
+def _without_robot(number: int, seed: int, reacting: bool) -> WorldRun:
+    """Return a scene without its robot, which all entries share."""
+    (found,) = simulated([replace(_scene(number, seed, reacting), robots=[])])
+    return found
 
 
 @functools.lru_cache(maxsize=24)

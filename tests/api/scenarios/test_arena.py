@@ -12,6 +12,7 @@ import pytest
 
 from hrsafety import arena, scenarios
 from hrsafety import navigation as nav
+from hrsafety.arena.episodes import METRICS
 from hrsafety.arena.leaderboard import _against_best, _fronts
 from hrsafety.cli import main
 from hrsafety.errors import InvalidParameterError
@@ -46,6 +47,17 @@ def test_an_episode_is_the_run_of_its_world(board: arena.Leaderboard) -> None:
         if end == "success":
             assert found["arrival_time"][1, seed] == run.robot_arrival_time[0]
         assert (end == "by_robot") == (run.contacts_toward > 0)
+
+
+def test_every_question_of_the_cards_is_answered_in_some_scene() -> None:
+    found = arena.run(["straight"], seeds=1, people=["reacting", "not_reacting"])
+    for metric in METRICS:
+        known = np.stack([np.isfinite(cell[metric]) for cell in found.episodes.values()])
+        assert known.any(), metric
+    reacting, others = found.episodes.values()
+    # Who does not notice the robot is not kept up by it.
+    assert np.nanmax(np.abs(others["person_delay"])) == 0.0
+    assert np.nanmax(np.abs(reacting["person_delay"])) > 0.0
 
 
 def test_shares_add_up_and_straight_is_the_worst(board: arena.Leaderboard) -> None:
