@@ -81,7 +81,7 @@ def speed(seeds: int = 100) -> str:
             ARENA_LAWS[:9], seeds=seeds, people=["not_reacting"], sensing=sensing, out=folder, executor=pool
         )
         taken = time.perf_counter() - begun
-    episodes = sum(len(each["end"]) for each in found.episodes.values())
+    episodes = sum(each["end"].size for each in found.episodes.values())
     return f"{episodes:,} episodes in {taken:.0f} s, {episodes / taken:.0f} per second"
 
 
