@@ -14,6 +14,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
         Decisions as Decisions,
         Event as Event,
         UnjudgedTime as UnjudgedTime,
+        PlayedCells as PlayedCells,
         PlayedRobot as PlayedRobot,
         Replay as Replay,
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import math
 import zlib
 from typing import Any, NamedTuple
 
@@ -94,7 +95,7 @@ def block(name: str, values: npt.NDArray[Any], *, kind: str = "i16") -> Block:
     kind : {"i16", "u16", "u8"}
         What they are kept as.
     """
-    table = values.reshape(len(values), -1)
+    table = values.reshape(len(values), math.prod(values.shape[1:]))
     store = np.dtype("u1") if kind == "u8" else np.dtype("<u2")
     series = np.ascontiguousarray(table.T).astype(np.int64)
     steps = np.diff(series, axis=1, prepend=0) if series.size else series

@@ -20,6 +20,7 @@ import numpy.typing as npt
 
 from hrsafety import __version__
 from hrsafety._atomic import write_file
+from hrsafety._replay.cells import cells_of
 from hrsafety._replay.ground import ground_of
 from hrsafety._replay.packing import Block, Scale, block, counted
 from hrsafety._replay.record import VERDICTS, Decisions, Event, PlayedLidar, PlayedRobot, Replay
@@ -180,12 +181,14 @@ class _Content:
         self.replay, self.rows = replay, rows
         self.time = np.asarray(replay.time, dtype=np.float64)[rows]
         self.blocks: list[Block] = []
+        self.known: list[tuple[str, str]] = []
         people = np.empty((len(replay.time), 0, 2)) if replay.people is None else np.asarray(replay.people)
         self.people = people[rows]
         robots = [np.asarray(each.position, dtype=np.float64)[rows] for each in replay.robots]
         self.robots = np.stack(robots, axis=1) if robots else np.empty((len(rows), 0, 2))
         decided = [each.decisions for each in replay.robots if each.decisions is not None]
         lines = [line for each in decided for line in (*each.plan, *each.path)]
+        lines += [line for each in replay.robots if each.cells is not None for line in each.cells.way]
         # People are farther apart than the way of a robot is long, whose places are kept as finely as they can.
         self.scale, self.own_scale = Scale.of(self.people), Scale.of(self.robots, *lines)
 
@@ -249,7 +252,7 @@ class _Content:
         if robot.decisions is not None and len(robot.decisions.time):
             self._decisions(index, robot.decisions)
         beams = [] if robot.scan is None else self._scans(index, robot.scan)
-        return {
+        return self._cells(index, robot) | {
             "name": robot.name,
             "radius": float(robot.radius),
             "footprint": [list(map(float, corner)) for corner in robot.footprint],
@@ -276,13 +279,34 @@ class _Content:
         self.blocks.append(block(f"margin{index}", counted(margin, CLEARANCES)))
         for name, lines in (("plan", made.plan), ("path", made.path), ("way", made.way), ("expected", made.expected)):
             if len(lines):
-                drawn = np.asarray if name == "expected" else _thinned  # places, not a line
-                shown = [drawn(np.asarray(lines[row])) if row >= 0 else np.empty((0, 2)) for row in at]
-                self.blocks.append(block(f"{name}Length{index}", np.array([len(each) for each in shown]), kind="u8"))
-                self.blocks.append(block(f"{name}{index}", self.own_scale.whole(np.concatenate(shown))))
+                self._lines(name, index, lines, at)
         if made.reach is not None and made.reach.shape[1]:
             reach = np.where((at >= 0)[:, None], made.reach[np.maximum(at, 0)], np.nan)
             self.blocks.append(block(f"reach{index}", counted(reach, 1e-2)))
+
+    def _lines(self, name: str, index: int, lines: Sequence[Array], at: Rows) -> None:
+        """Pack the line of a robot at each frame, none at -1."""
+        drawn = np.asarray if name == "expected" else _thinned  # places, not a line
+        shown = [drawn(np.asarray(lines[row])) if row >= 0 else np.empty((0, 2)) for row in at]
+        self.blocks.append(block(f"{name}Length{index}", np.array([len(each) for each in shown]), kind="u8"))
+        self.blocks.append(block(f"{name}{index}", self.own_scale.whole(np.concatenate(shown))))
+
+    def _cells(self, index: int, robot: PlayedRobot) -> dict[str, Any]:
+        """Pack the cells that a robot keeps with the way that it plans in them, and return their grid."""
+        kept = robot.cells
+        found = None if kept is None else cells_of(f"cells{index}", kept, self.time)
+        if kept is None or found is None:
+            return {}
+        grid, packed = found
+        self.blocks.append(packed)
+        if len(kept.way):
+            self._lines("path", index, kept.way, np.searchsorted(kept.time, self.time + 1e-9, side="right") - 1)
+        what = "cells in which an unseen person may be" if kept.belief else "cells that are known from scans"
+        side = grid["grid"][2]
+        ratio = round(side / kept.side)
+        told = f", the worst of {ratio} by {ratio} cells of the robot" if ratio > 1 else ""
+        self.known.append((f"{what}, {robot.name}", f"{side:g} m{told}"))
+        return {"cells": grid}
 
     def _view(self, ground: dict[str, Any]) -> list[float]:
         """Return the box that is in view at first: robots, goals, most people near them, and what stands there."""
@@ -415,7 +439,8 @@ def _facts(content: _Content) -> str:
         ("made by", f"hrsafety {__version__}"),
     ]
     cells = "".join(
-        f"<dt>{html.escape(name)}</dt><dd>{html.escape(words)}</dd>" for name, words in (*replay.facts, *own)
+        f"<dt>{html.escape(name)}</dt><dd>{html.escape(words)}</dd>"
+        for name, words in (*replay.facts, *content.known, *own)
     )
     return f"<dl>{cells}</dl>"
 

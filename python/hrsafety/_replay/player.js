@@ -7,10 +7,12 @@
   const VERDICT = ["#8c959f", "#1a7f37", "#d9a800", "#0757a8", "#b42318"];
   const SHAPES = ["M3 9h14v2H3z", "M10 2a8 8 0 100 16 8 8 0 000-16z", "M10 2l9 16H1z", "M10 1l9 9-9 9-9-9z", "M6 1h8l5 5v8l-5 5H6l-5-5V6z"];
   const WALL = "#3a3f46", GOAL = "#00795C", EXPECTED = "#6a3d9a", CONTACT = "#c00000", SCAN = "#1aa7ff", INK = "#1b1f24";
+  const CELLS = [[0, 0, 0, 0], [255, 255, 255, 255], [95, 116, 143, 255], [230, 140, 60, 110]];
+  const tint = ([red, green, blue, alpha]) => `rgba(${red},${green},${blue},${alpha / 255})`;
   const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
   const head = JSON.parse($("head").textContent);
   const data = {}, body = document.body;
-  let time = 0, frame = 0, playing = false, last = 0, pace = 1, chosen = 0, follow = false, labels = false, dirty = true;
+  let time = 0, frame = 0, playing = false, last = 0, pace = 1, chosen = 0, follow = false, labels = false, shown = true, dirty = true;
   const view = { x: 0, y: 0, scale: 1, fitted: true };
 
   // ---- numbers ------------------------------------------------------------------------------
@@ -119,31 +121,22 @@
   }
 
   let layer = null;
-  function unknownGround() {
-    const all = head.ground.grids;
-    if (!all.length) return;
+  // Hatches the floor where something is painted on a sheet as large as it.
+  function hatched(painted) {
     layer = layer || document.createElement("canvas");
     layer.width = floor.width;
     layer.height = floor.height;
     const own = layer.getContext("2d"), kept = pen;
-    // Hatched everywhere that nobody has seen: outside of the grids, and cells within them.
     own.setTransform(dense, 0, 0, dense, 0, 0);
     own.imageSmoothingEnabled = false;
-    const paint = (grid, work) => {
+    painted(own, (grid, work) => {
       own.save();
       own.translate(sx(grid[3]), sy(grid[4]));
       own.rotate(-grid[5]);
       own.scale(view.scale * grid[2], view.scale * grid[2]);
       work(grid[1], grid[0]);
       own.restore();
-    };
-    if (all.some((grid) => grid[6])) {
-      own.fillRect(0, 0, wide, high);
-      own.globalCompositeOperation = "destination-out";
-      for (const grid of all) paint(grid, (columns, rows) => own.fillRect(0, -rows, columns, rows));
-      own.globalCompositeOperation = "source-over";
-    }
-    all.forEach((grid, k) => paint(grid, (columns, rows) => own.drawImage(grids[k].unseen, 0, -rows, columns, rows)));
+    });
     own.globalCompositeOperation = "source-in";
     own.fillStyle = hatch;
     own.fillRect(0, 0, wide, high);
@@ -152,6 +145,69 @@
     kept.setTransform(1, 0, 0, 1, 0, 0);
     kept.drawImage(layer, 0, 0);
     kept.restore();
+  }
+
+  function unknownGround() {
+    const all = head.ground.grids;
+    if (!all.length) return;
+    // Everywhere that nobody has seen: outside of the grids, and cells within them.
+    hatched((own, paint) => {
+      if (all.some((grid) => grid[6])) {
+        own.fillRect(0, 0, wide, high);
+        own.globalCompositeOperation = "destination-out";
+        for (const grid of all) paint(grid, (columns, rows) => own.fillRect(0, -rows, columns, rows));
+        own.globalCompositeOperation = "source-over";
+      }
+      all.forEach((grid, k) => paint(grid, (columns, rows) => own.drawImage(grids[k].unseen, 0, -rows, columns, rows)));
+    });
+  }
+
+  // The cells of a robot at the frame, as a sheet: changes since the frame that it shows, from the first one to go back.
+  const sheets = [];
+  function cellsNow(k) {
+    const { grid: [rows, columns] } = head.robots[k].cells, { values, rows: many } = data["cells" + k];
+    if (!sheets[k]) {
+      const sheet = document.createElement("canvas");
+      sheet.width = columns;
+      sheet.height = rows;
+      const ink = sheet.getContext("2d"), picture = ink.createImageData(columns, rows);
+      sheets[k] = { sheet, ink, picture, pixels: new Uint32Array(picture.data.buffer), colors: new Uint32Array(new Uint8Array(CELLS.flat()).buffer), frame: -1 };
+    }
+    const own = sheets[k];
+    if (own.frame === frame) return own.sheet;
+    if (own.frame < 0 || frame < own.frame) { own.pixels.fill(0); own.next = own.reached = 0; }
+    own.frame = frame;
+    for (let i = 5 * own.next; own.next < many && own.reached + values[i] <= frame; i += 5, own.next++) {
+      const from = (rows - 1 - values[i + 1]) * columns + values[i + 2];
+      own.reached += values[i];
+      own.pixels.fill(own.colors[values[i + 4]], from, from + values[i + 3]);
+    }
+    own.ink.putImageData(own.picture, 0, 0);
+    return own.sheet;
+  }
+
+  // What the law of the chosen robot knows of the floor; nothing at frames at which that was not recorded.
+  function knownCells() {
+    const { cells } = head.robots[chosen] || {};
+    if (!shown || !cells || frame < cells.begin) return;
+    const sheet = cellsNow(chosen);
+    pen.imageSmoothingEnabled = false;
+    inGrid(cells.grid, (columns, rows) => pen.drawImage(sheet, 0, -rows, columns, rows));
+    if (cells.belief) {
+      // Anybody can be outside, and come in.
+      const [rows, columns, side, x, y] = cells.grid;
+      pen.beginPath();
+      pen.rect(0, 0, wide, high);
+      pen.rect(sx(x), sy(y), columns * side * view.scale, -rows * side * view.scale);
+      pen.fillStyle = tint(CELLS[3]);
+      pen.fill("evenodd");
+    } else {
+      hatched((own, paint) => {
+        own.fillRect(0, 0, wide, high);
+        own.globalCompositeOperation = "destination-out";
+        paint(cells.grid, (columns, rows) => own.drawImage(sheet, 0, -rows, columns, rows));
+      });
+    }
   }
 
   function lines() {
@@ -436,10 +492,11 @@
     pen.setTransform(dense, 0, 0, dense, 0, 0);
     pen.fillStyle = "#fff";
     pen.fillRect(0, 0, wide, high);
+    knownCells();
     const step = lines();
     unknownGround();
     goals();
-    head.robots.forEach((robot, k) => { if (robot.decided) decided(k); });
+    head.robots.forEach((robot, k) => { if (robot.decided || robot.cells) decided(k); });
     solids();
     scans();
     people();
@@ -547,6 +604,7 @@
       if (data["clearance" + chosen]) rows.push(["Clearance", unjudged(time) ? "not judged" : words(gap, "m"), gap < 0]);
       if (robot.decided) rows.push(["Shield's margin", words(metric("margin", frame), "m")]);
       if (!here) rows.push(["Robot", "position not known", true]);
+      if (robot.cells && frame < robot.cells.begin) rows.push([robot.cells.belief ? "Belief" : "Map", "not recorded"]);
       body.dataset.robot = here ? here.map((each) => (Math.round(each * 1000) / 1000 + 0).toFixed(3)).join(",") : "";
       const code = robot.decided ? at("verdict" + chosen, frame, 0) : 0;
       said = head.verdicts[code];
@@ -632,6 +690,7 @@
   function toggle(node, on) { node.setAttribute("aria-pressed", on ? "true" : "false"); refresh(); }
   const setFollow = () => { follow = !follow; toggle($("follow"), follow); };
   const setLabels = () => { labels = !labels; toggle($("labels"), labels); };
+  const setKnown = () => { shown = !shown; toggle($("known"), shown); };
   function setPace(by) {
     const select = $("pace");
     select.selectedIndex = Math.min(Math.max(select.selectedIndex + by, 0), select.options.length - 1);
@@ -708,7 +767,7 @@
   const actions = {
     first: () => { play(false); seek(times[0]); }, last: () => { play(false); seek(end()); },
     back: () => step(-1), on: () => step(1), before: () => jump(false), after: () => jump(true),
-    play: () => play(!playing), in: () => zoom(1.4), out: () => zoom(1 / 1.4), fit, follow: setFollow, labels: setLabels, help,
+    play: () => play(!playing), in: () => zoom(1.4), out: () => zoom(1 / 1.4), fit, follow: setFollow, labels: setLabels, known: setKnown, help,
   };
   for (const [id, act] of Object.entries(actions)) $(id).addEventListener("click", act);
   $("seek").addEventListener("input", (event) => { play(false); seek(times[+event.target.value]); });
@@ -716,7 +775,7 @@
   $("robot").addEventListener("change", (event) => { chosen = +event.target.value; band = null; refresh(); });
   const keys = {
     " ": actions.play, Home: actions.first, End: actions.last, n: actions.after, p: actions.before, "+": actions.in, "=": actions.in,
-    "-": actions.out, "0": fit, f: setFollow, l: setLabels, "?": help, "[": () => setPace(-1), "]": () => setPace(1),
+    "-": actions.out, "0": fit, f: setFollow, l: setLabels, m: setKnown, "?": help, "[": () => setPace(-1), "]": () => setPace(1),
     ArrowLeft: () => step(-1), ArrowRight: () => step(1), ArrowDown: () => step(-1), ArrowUp: () => step(1),
   };
   addEventListener("keydown", (event) => {
@@ -739,6 +798,8 @@
     if (found) { play(false); seek(+found[1]); }
   }
 
+  const keep = (belief) => head.robots.some(({ cells }) => cells && cells.belief === belief);
+
   function legend() {
     const items = [], entry = (text, paint) => items.push([text, paint]);
     const dot = (color) => (ink) => { ink.beginPath(); ink.arc(13, 9, 6.5, 0, 7); ink.fillStyle = color; ink.fill(); };
@@ -746,9 +807,12 @@
     head.robots.slice(0, ROBOTS.length).forEach((robot, k) => entry(robot.name, dot(ROBOTS[k])));
     head.kinds.forEach((kind, k) => entry(kind, dot(KINDS[k % KINDS.length])));
     const some = (name) => head.robots.some((robot, k) => data[name + k]);
+    const square = (...colors) => (ink) => colors.forEach((color) => { ink.fillStyle = color; ink.fillRect(2, 1, 22, 16); });
     const ground = head.ground;
     if (ground.walls.length || ground.polygons.length || ground.discs.length || ground.grids.length) entry("what stands", line(WALL, [], 5));
-    if (ground.grids.length) entry("not seen by anybody", (ink) => { ink.fillStyle = hatch; ink.fillRect(2, 1, 22, 16); });
+    if (ground.grids.length) entry("not seen by anybody", square(hatch));
+    if (keep(false)) { entry("not seen by the robot", square(hatch)); entry("seen as occupied", square(tint(CELLS[2]))); }
+    if (keep(true)) entry("where an unseen person may be", square("#fff", tint(CELLS[3])));
     if (head.robots.some((robot) => robot.goal)) entry("goal", (ink) => { ink.translate(13, 9); ink.fillStyle = GOAL; ink.beginPath(); for (let k = 0; k < 10; k++) { const far = k % 2 ? 3.5 : 8, a = -Math.PI / 2 + (k * Math.PI) / 5; ink.lineTo(far * Math.cos(a), far * Math.sin(a)); } ink.fill(); });
     if (some("scan")) entry("scan", (ink) => { ink.fillStyle = SCAN; for (const [x, y] of [[4, 12], [9, 9], [14, 7], [19, 6]]) ink.fillRect(x, y, 3, 3); });
     if (some("plan")) entry("verified area", (ink) => { ink.globalAlpha = 0.35; line(VERDICT[1], [], 12)(ink); ink.globalAlpha = 1; line(VERDICT[1], [], 1.5)(ink); });
@@ -797,6 +861,8 @@
     $("verdict").hidden = !head.robots.length;
     strip.hidden = !head.robots.length && !head.events.length && !head.notJudged.length;
     $("follow").disabled = !head.robots.length;
+    for (const id of ["known", "knownKey"]) $(id).hidden = !keep(false) && !keep(true);
+    if (!keep(false)) $("known").textContent = "Belief";
     $("robot").replaceChildren(...head.robots.map((robot, k) => new Option(robot.name, k)));
     $("player").hidden = false;
     resize();

@@ -12,9 +12,12 @@ from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["VERDICTS", "Decisions", "Event", "PlayedLidar", "PlayedRobot", "Replay", "UnjudgedTime"]
+__all__ = ["VERDICTS", "Decisions", "Event", "PlayedCells", "PlayedLidar", "PlayedRobot", "Replay", "UnjudgedTime"]
 
 Array = npt.NDArray[np.float64]
+
+UNKNOWN, FREE, OCCUPIED, PERSON_POSSIBLE = range(4)
+"""Kinds of cells."""
 
 VERDICTS = ("not recorded", "kept", "changed", "taken over", "braking")
 """Words for what the parts around a law did, in the order in which the later one counts for a frame."""
@@ -110,6 +113,36 @@ class PlayedLidar(NamedTuple):
     ranges: Callable[[int], Array]
 
 
+class PlayedCells(NamedTuple):
+    """Square cells that a robot keeps of its surroundings, at c instants.
+
+    Parameters
+    ----------
+    time : ndarray, shape (c,)
+        Instants in s, rising; cells are those of the last one.
+    side : float
+        Side of a cell in m.
+    low : ndarray, shape (c, 2)
+        Lowest corners of the cells in m, whole cells apart.
+    size : ndarray of int, shape (c, 2)
+        Rows along y, and columns; beyond them nothing is known.
+    kinds : callable
+        Returns the cells of an instant by its index: 0 unknown, 1 free, 2 occupied; 3 where a person may be.
+    belief : bool
+        Whether they are the belief of people whom the robot does not see, in place of a map of its scans.
+    way : sequence of ndarray, shape (p, 2)
+        Way that the law plans in them, in m.
+    """
+
+    time: Array
+    side: float
+    low: Array
+    size: npt.NDArray[np.int64]
+    kinds: Callable[[int], npt.NDArray[np.uint8]]
+    belief: bool = False
+    way: Sequence[Array] = ()
+
+
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class PlayedRobot:
     """A robot over n instants.
@@ -138,6 +171,8 @@ class PlayedRobot:
         What the parts around its law decided.
     scan : PlayedLidar or None
         Its lidar.
+    cells : PlayedCells or None
+        Cells of what it knows.
     """
 
     name: str
@@ -151,6 +186,7 @@ class PlayedRobot:
     tolerance: float = 0.0
     decisions: Decisions | None = None
     scan: PlayedLidar | None = None
+    cells: PlayedCells | None = None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
