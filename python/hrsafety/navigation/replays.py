@@ -6,6 +6,7 @@ The classes of results import these functions, which know them by their fields o
 from __future__ import annotations
 
 import math
+import zlib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
@@ -14,7 +15,8 @@ from typing import Any
 import numpy as np
 
 from hrsafety._arguments import Array
-from hrsafety._replay.record import Decisions, Event, PlayedLidar, PlayedRobot, Replay
+from hrsafety._replay.record import PERSON_POSSIBLE, Decisions, Event, PlayedCells, PlayedLidar, PlayedRobot, Replay
+from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.obstacles.moving_rectangle import Box, Mobile
@@ -24,10 +26,12 @@ from hrsafety.navigation.robots.bodies import HolonomicRobot
 from hrsafety.navigation.robots.footprint import Footprint
 from hrsafety.navigation.sensing.lidar import Lidar
 
-__all__ = ["replay_of_record", "replay_of_run", "scanner_of", "walls_of"]
+__all__ = ["replay_of_record", "replay_of_run", "replay_of_steps", "scanner_of", "walls_of"]
 
 Run = Any
 """A `Trajectory`."""
+Steps = Any
+"""A `Run`."""
 Record = Any
 """A `SafetyRecord`."""
 Bodies = Sequence[tuple[int, str, str, float, Any]]
@@ -96,6 +100,78 @@ def replay_of_record(record: Record) -> Replay:
         expected=[_expected(each.foreseen_people) for each in made] if foresees else (),
     )
     return replay_of_run(run, decisions)
+
+
+def replay_of_steps(run: Steps) -> Replay:
+    """Step a run to its end, and return what a player shows of it with the cells that its robots keep.
+
+    Parameters
+    ----------
+    run : Run
+        A run under way.
+
+    Raises
+    ------
+    InvalidParameterError
+        If the run has ended.
+    """
+    if run.finished:
+        remedy = "`run.trajectory` can be played without what the law knew"
+        raise InvalidParameterError("run", "be under way: it is stepped to its end here", run, remedy)
+    kept = [_Kept(run, index) for index in range(len(run.outcomes))]
+    while not run.finished:
+        run.step()
+        for each in kept:
+            each.add()
+    shown = replay_of_run(run.trajectory)
+    return replace(shown, robots=[replace(own, cells=kept[k].played()) for k, own in enumerate(shown.robots)])
+
+
+class _Kept:
+    """Cells that a robot of a run keeps, from now on."""
+
+    def __init__(self, run: Steps, robot: int) -> None:
+        self.run, self.robot, self.side = run, robot, math.nan
+        self.rows: list[tuple[float, Any, tuple[int, int], bytes]] = []
+        self.ways: list[Array] = []
+        self.belief = False
+        self.add()
+
+    def add(self) -> None:
+        """Keep those of now, without unknown ones around them."""
+        map_now, places = self.run.known_cells(self.robot), self.run.unseen_places(self.robot)
+        if map_now is not None:
+            self.side, kinds, low = map_now.cell, map_now.kinds, np.array(map_now.low)
+            self.ways.append(map_now.way)
+        elif places is not None:
+            if not self.rows:
+                self.belief, self.side = True, self.run.trajectory.robots[self.robot].law.shield.unseen.cell
+            low = places.min(axis=0, initial=np.inf) - 0.5 * self.side
+            columns, rows = np.round((places - low) / self.side - 0.5).astype(int).T
+            kinds = np.zeros((rows.max(initial=-1) + 1, columns.max(initial=-1) + 1), dtype=np.uint8)
+            kinds[rows, columns] = PERSON_POSSIBLE
+        else:
+            return
+        rows, columns = (np.flatnonzero(kinds.any(axis=axis)) for axis in (1, 0))
+        if len(rows):
+            kinds = kinds[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+            low = low + self.side * np.array([columns[0], rows[0]])
+        else:
+            kinds = kinds[:0, :0]
+        self.rows.append((self.run.time, low, kinds.shape, zlib.compress(kinds.tobytes(), 1)))
+
+    def played(self) -> PlayedCells | None:
+        """Return what a player shows of them; ``None`` of a law that keeps none."""
+        if not self.rows:
+            return None
+        times, lows, sizes, packed = zip(*self.rows, strict=True)
+
+        def kinds(row: int) -> Any:
+            return np.frombuffer(zlib.decompress(packed[row]), dtype=np.uint8).reshape(sizes[row])
+
+        return PlayedCells(
+            np.array(times), self.side, np.array(lows), np.array(sizes), kinds, belief=self.belief, way=self.ways
+        )
 
 
 def _expected(people: Array) -> Array:

@@ -27,6 +27,7 @@ from hrsafety.navigation.warnings.units import of_scenarios
 from hrsafety.plausibility import telling
 
 if TYPE_CHECKING:
+    from hrsafety._replay.record import Replay
     from hrsafety.navigation.crowd.world import World
 
 __all__ = ["Run"]
@@ -301,6 +302,11 @@ class Run:
             return None
         (x, y), kinds, cell, way = found
         return KnownCells(kinds, (x, y), cell, np.array(way, dtype=float).reshape(-1, 2))
+
+    def _replay(self) -> Replay:
+        from hrsafety.navigation.replays import replay_of_steps
+
+        return replay_of_steps(self)
 
     def step(
         self,

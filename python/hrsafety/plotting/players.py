@@ -22,13 +22,15 @@ def player(run: Any, path: str | os.PathLike[str] | None = None, *, title: str |
 
     Shown are robots with footprint, heading and way, people, what stands and unobserved floor, goals, the
     verdict of a shield with the area that it verified and where people can be by then, the guide's path, contacts, a
-    clock, speeds and clearances, and what was not judged. Everything can be reached by keyboard (``?`` lists the
+    clock, speeds and clearances, and what was not judged; of a `Run` also the map that a law makes of its scans, and
+    where people can be whom a robot does not see. Everything can be reached by keyboard (``?`` lists the
     keys), and stands in tables, too. An address that ends in ``#t=12.4`` opens the file at that instant.
 
     Parameters
     ----------
-    run : Trajectory, SafetyRecord, Judgement, Recording or Replay
-        What happened. A `SafetyRecord` has the decisions of a shield, which a run by itself does not keep.
+    run : Trajectory, SafetyRecord, Run, Judgement, Recording or Replay
+        What happened. A `SafetyRecord` has the decisions of a shield, which a run by itself does not keep. A `Run` is
+        stepped to its end, and `Run.known_cells` and `Run.unseen_places` are recorded from now on.
     path : str, path-like or None
         Where to write the file, too.
     title : str or None
@@ -44,7 +46,7 @@ def player(run: Any, path: str | os.PathLike[str] | None = None, *, title: str |
     Raises
     ------
     InvalidParameterError
-        If the run has no instants, or is nothing that can be played.
+        If the run has no instants, is a `Run` that has ended, or is nothing that can be played.
 
     Examples
     --------
@@ -73,8 +75,8 @@ def mcap(run: Any, path: str | os.PathLike[str]) -> Path:
 
     Parameters
     ----------
-    run : Trajectory, SafetyRecord, Judgement, Recording or Replay
-        What happened, as of `player`.
+    run : Trajectory, SafetyRecord, Run, Judgement, Recording or Replay
+        What happened, as of `player`; cells of a `Run` are not written.
     path : str or path-like
         Where to write; its folder must exist.
 
@@ -86,7 +88,7 @@ def mcap(run: Any, path: str | os.PathLike[str]) -> Path:
     Raises
     ------
     InvalidParameterError
-        If the run has no instants, or is nothing that can be played.
+        If the run has no instants, is a `Run` that has ended, or is nothing that can be played.
     MissingExtraError
         If foxglove-sdk is not installed.
 
