@@ -23,6 +23,7 @@ DRAWN = {
     "architecture.png": "make_architecture.py",
     "live.png": "make_views.py",
     "player.png": "make_views.py",
+    "player_map.png": "make_views.py",
 }
 
 

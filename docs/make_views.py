@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import tempfile
 import threading
@@ -31,6 +32,20 @@ def player(target: Path) -> None:
         browser.picture(target)
 
 
+def player_map(target: Path) -> None:
+    """Take a picture of the player of a robot that makes a map of its scans."""
+    lines = [[(0, -2), (8, -2), (8, 2), (0, 2), (0, -2)], [(3, -2), (3, 0.6)], [(5.5, 2), (5.5, -0.6)]]
+    walls = nav.StaticMap.from_polylines(lines, radius=0.03)
+    lidar = nav.Lidar(map=walls, beams=720, field_of_view=1.5 * math.pi, range_noise=0.01)
+    place = nav.Scenario(robot=nav.DifferentialDriveRobot(), start=(1.0, 0.0), goal=(7.0, 0.0), walls=walls)
+    run = nav.Run(place, nav.ArcRollouts(), nav.robots.AsBuilt(sensors=[lidar]))
+    with tempfile.TemporaryDirectory() as folder, tab(WIDTH, PLAYER) as browser:
+        page = Path(folder) / "run.html"
+        plotting.player(run, page, title="A robot in an unknown building")
+        browser.open(f"{page.as_uri()}#t=2.5")
+        browser.picture(target)
+
+
 def live(target: Path) -> None:
     """Take a picture of a running world."""
     said: list[str] = []
@@ -53,4 +68,5 @@ def live(target: Path) -> None:
 
 if __name__ == "__main__":
     player(DOCS / "images" / "player.png")
+    player_map(DOCS / "images" / "player_map.png")
     live(DOCS / "images" / "live.png")
