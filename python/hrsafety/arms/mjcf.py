@@ -16,7 +16,8 @@ from hrsafety.plausibility import ResultWarning
 
 __all__ = ["MjcfArm", "is_mjcf", "mjcf_arm"]
 
-_ROOT = re.compile(r"\s*(?:<\?.*?\?>\s*|<!--.*?-->\s*|<!DOCTYPE[^>]*>\s*)*<mujoco[\s/>]", re.DOTALL)
+# A comment, once read, is not read again as a longer one: no choice is taken back.
+_ROOT = re.compile(r"\s*+(?>(?:<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^>]*>)\s*+)*+<mujoco[\s/>]", re.DOTALL)
 _NAN = re.compile(r"""["'\s]nan["'\s]""", re.IGNORECASE)
 WATER = 1000.0
 """Density in kg/m^3 that MuJoCo takes where a file gives none."""

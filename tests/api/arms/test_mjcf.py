@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from hrsafety import arms, program
+from hrsafety.arms.mjcf import is_mjcf
 from hrsafety.errors import InvalidParameterError, MissingExtraError
 
 mujoco = pytest.importorskip("mujoco")
@@ -157,3 +158,10 @@ def test_a_program_of_an_arm_of_mujoco(tmp_path: Path) -> None:
     )
     study = program.load_program(tmp_path / "task.toml").report(intervals=200)
     assert study.free.time == pytest.approx(0.75, rel=1e-3)
+
+
+def test_comments_before_the_root_are_read_once() -> None:
+    comments = "<?xml version='1.0'?>\n" + "<!-- a -->\n" * 1000
+    assert not is_mjcf(f"{comments}<robot/>")
+    assert not is_mjcf("<!-- <mujoco> --><robot/>")
+    assert is_mjcf(f"{comments}<!DOCTYPE mujoco>\n<mujoco/>")
