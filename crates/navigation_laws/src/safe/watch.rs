@@ -282,7 +282,7 @@ impl Watch {
 
     /// Takes out of the belief what beams saw empty.
     fn see(&mut self, situation: &Situation<'_, f64>, pose: &PastPose) {
-        let trusted = self.unseen.trusted_range();
+        let (trusted, least) = (self.unseen.trusted_range(), self.unseen.kept_by_beams());
         match situation.scan.shown {
             Shown::Nothing => {}
             Shown::All { range } => {
@@ -295,6 +295,7 @@ impl Watch {
                 self.belief.see(
                     pose.place,
                     sensing.ends(pose.place, pose.heading, length, &self.blocking),
+                    least,
                 );
             }
             Shown::Beams { from, ends } => {
@@ -306,7 +307,7 @@ impl Watch {
                     let kept = (length - error).min(trusted).max(0.0);
                     from + along * (kept / length.max(f64::MIN_POSITIVE))
                 });
-                self.belief.see(from, shortened);
+                self.belief.see(from, shortened, least);
             }
         }
     }

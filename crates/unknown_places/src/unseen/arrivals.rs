@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
-use super::{Belief, eta};
+use super::Belief;
 
 /// Ways along 16 neighbors are at most this much longer than straight ones.
 const DETOUR: f64 = 1.0275;
@@ -67,7 +67,7 @@ impl Arrivals {
         self.seed(belief);
         let cell = self.cell;
         self.search(belief, longest / cell);
-        let (eta, half) = (eta(cell), cell * FRAC_1_SQRT_2);
+        let (eta, half) = (belief.eta(), cell * FRAC_1_SQRT_2);
         self.times.clear();
         self.times.extend(self.ways.iter().map(|way| {
             let left = way * cell / DETOUR - eta - half;

@@ -4,10 +4,10 @@ use nalgebra::Vector2;
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::sync::Arc;
 
-use super::{CellSet, Ground, eta};
+use super::{CellSet, Ground};
 use crate::map::walk_while;
 
-/// Cells in which those can be who are not tracked: the center of everybody is within [`eta`] of one of them.
+/// Cells in which those can be who are not tracked: the center of everybody is within [`Belief::eta`] of one of them.
 #[derive(Clone, Debug)]
 pub struct Belief {
     ground: Arc<Ground>,
@@ -16,6 +16,8 @@ pub struct Belief {
     budget: f64,
     /// Room for [`CellSet::spread`].
     beside: Vec<u64>,
+    /// Cells that the beams of a scan cross.
+    crossed: CellSet,
 }
 
 impl Belief {
@@ -24,6 +26,7 @@ impl Belief {
     pub fn new(ground: Arc<Ground>) -> Self {
         let cells = ground.walkable().clone();
         Self {
+            crossed: CellSet::empty(cells.size()),
             ground,
             cells,
             budget: 0.0,
@@ -47,6 +50,13 @@ impl Belief {
     #[must_use]
     pub fn budget(&self) -> f64 {
         self.budget
+    }
+
+    /// Distance `eta` in m between the center of a person and that of a cell: when the cells last grew, they held it, and
+    /// people have gone no farther since than what is left of the budget.
+    #[must_use]
+    pub fn eta(&self) -> f64 {
+        (self.budget + FRAC_1_SQRT_2) * self.ground.cell()
     }
 
     /// Lets everybody go a way in m. Eight neighbors hold every point within a side of a cell.
@@ -75,21 +85,30 @@ impl Belief {
         }
     }
 
-    /// Takes out the cells that beams cross before their ends, in m, and before a cell with a wall. People come in over
-    /// the rim, whatever is seen there.
-    pub fn see(&mut self, from: Vector2<f64>, ends: impl Iterator<Item = Vector2<f64>>) {
+    /// Takes out the cells that beams cross before their ends, in m, and before a cell with a wall, and those beside them
+    /// in which somebody would be within `least` m of a beam. People come in over the rim, whatever is seen there.
+    pub fn see(
+        &mut self,
+        from: Vector2<f64>,
+        ends: impl Iterator<Item = Vector2<f64>>,
+        least: f64,
+    ) {
         let ground = self.ground.clone();
+        self.crossed.clear();
         let start = ground.in_cells(from);
         for end in ends {
             let mut last = None;
             walk_while(start, ground.in_cells(end), |cell| {
                 if let Some(before) = last.take() {
-                    self.cells.remove(before);
+                    self.crossed.insert(before);
                 }
                 last = ground.cell_at(cell);
                 last.is_some_and(|cell| !ground.occupied().contains(cell))
             });
         }
+        let beside = least - self.eta() - ground.cell() * FRAC_1_SQRT_2;
+        let radius = beside.max(0.0) / ground.cell();
+        self.cells.remove_around(&self.crossed, radius);
         self.cells.unite(ground.rim());
     }
 
@@ -102,7 +121,7 @@ impl Belief {
     /// Whether somebody who is not tracked is reckoned with, within a distance in m of a place.
     #[must_use]
     pub fn covers_within(&self, place: Vector2<f64>, within: f64) -> bool {
-        let within = (eta(self.ground.cell()) + within) * (1.0 + 1e-9);
+        let within = (self.eta() + within) * (1.0 + 1e-9);
         let mut near = self.ground.around(place, within);
         near.any(|cell| self.cells.contains(cell))
     }

@@ -105,20 +105,49 @@ impl CellSet {
         }
     }
 
+    /// No cell is left.
+    pub fn clear(&mut self) {
+        self.words.fill(0);
+    }
+
+    /// Takes out the cells whose centers are within a radius, in cells, of those of another set of the same grid.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // bounded by the rows
+    pub fn remove_around(&mut self, other: &Self, radius: f64) {
+        let (width, rows) = (self.width, self.rows);
+        let high = radius.clamp(0.0, rows as f64) as usize;
+        // Rows so far above or below reach so far to either side.
+        let wide = |up: usize| (radius * radius - (up * up) as f64).max(0.0).sqrt() as usize;
+        let mut widened = vec![0; width];
+        for row in 0..rows {
+            widened.copy_from_slice(&other.words[row * width..][..width]);
+            if widened.iter().all(|word| *word == 0) {
+                continue;
+            }
+            let mut reached = 0;
+            for up in (0..=high).rev() {
+                for _ in reached..wide(up) {
+                    widen(&mut widened);
+                }
+                reached = wide(up);
+                let near = [row.checked_sub(up), Some(row + up)];
+                for near in near.into_iter().flatten().filter(|near| *near < rows) {
+                    let words = &mut self.words[near * width..][..width];
+                    for (word, taken) in words.iter_mut().zip(&widened) {
+                        *word &= !taken;
+                    }
+                }
+            }
+        }
+    }
+
     /// Adds the 8 neighbors of all cells that lie in another set of the same grid.
     pub fn spread(&mut self, within: &Self, beside: &mut Vec<u64>) {
         let width = self.width;
         beside.clear();
         for row in self.words.chunks_exact(width) {
-            for index in 0..width {
-                let before = if index == 0 {
-                    0
-                } else {
-                    row[index - 1] >> (BITS - 1)
-                };
-                let after = row.get(index + 1).map_or(0, |word| word << (BITS - 1));
-                beside.push(row[index] | (row[index] << 1) | before | (row[index] >> 1) | after);
-            }
+            let first = beside.len();
+            beside.extend_from_slice(row);
+            widen(&mut beside[first..]);
         }
         for row in 0..self.rows {
             let (first, last) = (row.saturating_sub(1), (row + 1).min(self.rows - 1));
@@ -128,5 +157,16 @@ impl CellSet {
                 self.words[place] |= near & within.words[place];
             }
         }
+    }
+}
+
+/// Adds the cells to the left and to the right of those of a row.
+fn widen(row: &mut [u64]) {
+    let mut before = 0;
+    for index in 0..row.len() {
+        let word = row[index];
+        let after = row.get(index + 1).map_or(0, |next| next << (BITS - 1));
+        row[index] = word | (word << 1) | (before >> (BITS - 1)) | (word >> 1) | after;
+        before = word;
     }
 }

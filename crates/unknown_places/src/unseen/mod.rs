@@ -2,7 +2,7 @@
 //!
 //! A person is a core of a radius `r_k` that never overlaps a wall and ends every beam that meets it. The belief is a
 //! set of cells of a side `h`; at every update the center of everybody who is not tracked is within
-//! `eta = h (1 + 1/sqrt 2)` of the center of one of them.
+//! `eta`, less than `h (1 + 1/sqrt 2)`, of the center of one of them.
 
 mod arrivals;
 mod belief;
@@ -109,17 +109,11 @@ impl Unseen {
         astray.min(self.sensing.range)
     }
 
-    /// Distance `eta` in m between a person and the center of a cell of the belief.
+    /// Distance in m from a beam within which nobody's center is: the core would have ended the beam.
     #[must_use]
-    pub fn eta(&self) -> f64 {
-        eta(self.cell)
+    pub fn kept_by_beams(&self) -> f64 {
+        self.person_core - self.pose_error - self.heading_error * self.trusted_range()
     }
-}
-
-/// Distance `eta` in m between a person and the center of a cell of the belief, for cells of a side in m.
-#[must_use]
-pub fn eta(cell: f64) -> f64 {
-    cell * (1.0 + FRAC_1_SQRT_2)
 }
 
 #[cfg(test)]

@@ -29,7 +29,7 @@ fn corner(cell: f64, core: f64) -> Arc<Ground> {
 
 fn scan(belief: &mut Belief, from: Vector2<f64>) {
     let sensing = Sensing::default();
-    belief.see(from, sensing.ends(from, 0.0, sensing.range, &[]));
+    belief.see(from, sensing.ends(from, 0.0, sensing.range, &[]), 0.0);
 }
 
 #[test]
@@ -74,9 +74,10 @@ fn belief_and_arrivals_are_those_of_the_cases() {
 }
 
 /// Somebody who walks in free space with corners and rests, and is not seen: the cells that a robot sees empty he
-/// leaves out. Returns in how many of the steps the belief did not hold him, and in how many he was hidden.
-fn hidden(seed: u64, speed: f64, walls: bool) -> [usize; 2] {
-    let ground = corner(0.05, 0.15);
+/// leaves out, and those within `least` m of the beams. Returns in how many of the steps the belief did not hold him, and in how
+/// many he was hidden.
+fn hidden(seed: u64, (speed, walls): (f64, bool), (cell, least): (f64, f64)) -> [usize; 2] {
+    let ground = corner(cell, 0.15);
     let mut stream = Stream::new(seed, 1);
     let room = |place: Vector2<f64>| {
         let inside = |[x0, y0, x1, y1]: [f64; 4]| {
@@ -127,13 +128,13 @@ fn hidden(seed: u64, speed: f64, walls: bool) -> [usize; 2] {
                 };
                 seen |= met < 8.0 && free(met);
             }
-            belief.see(robot, cells.into_iter());
+            belief.see(robot, cells.into_iter(), least);
         } else {
             // Whoever sees through walls takes out too much.
             let open = CellSet::empty(ground.size());
-            let open = Arc::new(Ground::of_cells([0.0; 2], 0.05, 0.15, open).unwrap());
+            let open = Arc::new(Ground::of_cells([0.0; 2], cell, 0.15, open).unwrap());
             let mut through = Belief::new(open);
-            through.see(robot, ends);
+            through.see(robot, ends, 0.0);
             for cell in ground.walkable().iter() {
                 if !through.cells().contains(cell) {
                     belief.cells.remove(cell);
@@ -151,13 +152,42 @@ fn hidden(seed: u64, speed: f64, walls: bool) -> [usize; 2] {
 
 #[test]
 fn somebody_hidden_is_within_eta_of_the_belief_at_every_step() {
-    let mut steps = 0;
-    for seed in 0..40 {
-        let [lost, unseen] = hidden(seed, 1.6, true);
-        assert_eq!(lost, 0, "{seed}");
-        steps += unseen;
+    for cell in [0.05, 0.025] {
+        let exact = Unseen {
+            cell,
+            pose_error: 0.0,
+            ..Unseen::default()
+        };
+        let mut steps = 0;
+        for seed in 0..40 {
+            let [lost, unseen] = hidden(seed, (1.6, true), (cell, exact.kept_by_beams()));
+            assert_eq!(lost, 0, "{seed}");
+            steps += unseen;
+        }
+        assert!(steps > 1500, "{steps}");
     }
-    assert!(steps > 1500, "{steps}");
+    let beyond: usize = (0..40)
+        .map(|seed| hidden(seed, (1.6, true), (0.025, 0.3))[0])
+        .sum();
+    assert!(beyond > 0);
+}
+
+#[test]
+fn cells_around_others_are_those_within_the_radius() {
+    let size = [150, 70];
+    let mut stream = Stream::new(5, 1);
+    let drawn = CellSet::of(size, |_| stream.uniform(0.0, 1.0) < 0.003);
+    for radius in [0.0, 1.0, 1.5, 3.4, 90.0] {
+        let mut found = CellSet::of(size, |_| true);
+        found.remove_around(&drawn, radius);
+        let brute = CellSet::of(size, |[column, row]| {
+            drawn.iter().all(|[x, y]| {
+                let away = [x as f64 - column as f64, y as f64 - row as f64];
+                away[0] * away[0] + away[1] * away[1] > radius * radius
+            })
+        });
+        assert_eq!(found, brute, "{radius}");
+    }
 }
 
 #[test]
@@ -175,7 +205,9 @@ fn whoever_breaks_an_assumption_leaves_the_belief() {
         })
     };
     assert!(runs(1.6) && !runs(1.8));
-    let through: usize = (0..10).map(|seed| hidden(seed, 1.6, false)[0]).sum();
+    let through: usize = (0..10)
+        .map(|seed| hidden(seed, (1.6, false), (0.05, 0.0))[0])
+        .sum();
     assert!(through > 100);
 }
 
@@ -259,7 +291,7 @@ fn whoever_was_tracked_and_is_lost_is_reckoned_with() {
     let mut belief = Belief::new(ground.clone());
     let from = Vector2::new(1.5, 2.0);
     let sensing = Sensing::default();
-    belief.see(from, sensing.ends(from, 0.0, sensing.range, &[]));
+    belief.see(from, sensing.ends(from, 0.0, sensing.range, &[]), 0.0);
     let place = Vector2::new(1.0, 1.0);
     assert!(!belief.covers(place) && belief.covers(Vector2::new(5.0, 1.0)));
     belief.add(place, 0.1);
@@ -283,13 +315,14 @@ fn arrivals_bound_straight_ways_from_below() {
     let mut arrivals = Arrivals::default();
     let middle = Vector2::new(2.525, 2.525);
     arrivals.find(&belief, middle, [2.4, 9.0], 1.6);
+    let eta = belief.eta();
     let mut stream = Stream::new(3, 0);
     for _ in 0..2000 {
         let place = middle + Vector2::new(stream.uniform(-2.2, 2.2), stream.uniform(-2.2, 2.2));
         let straight = (place - middle).norm();
         let found = arrivals.at(place);
         // Anybody within eta of the belief, straight to any point of the cell.
-        assert!(found <= ((straight - eta(0.05)) / 1.6).max(0.0) + 1e-9);
-        assert!(found >= (straight / 1.0275 - eta(0.05) - 0.0708) / 1.6 - 1e-9);
+        assert!(found <= ((straight - eta) / 1.6).max(0.0) + 1e-9);
+        assert!(found >= (straight / 1.0275 - eta - 0.0708) / 1.6 - 1e-9);
     }
 }
