@@ -14,6 +14,8 @@ from hypothesis.internal.conjecture import providers
 
 # Pictures are drawn without a display, here and in every process that a test starts.
 os.environ["MPLBACKEND"] = "Agg"
+# Functions of peers are called a few times each: compiling them takes longer than they do.
+os.environ["NUMBA_DISABLE_JIT"] = "1"
 # The list of fonts in the home folder may be stale, and its settings are not those of the tests.
 _MATPLOTLIB = tempfile.mkdtemp(prefix="hrsafety-matplotlib-")
 os.environ["MPLCONFIGDIR"] = _MATPLOTLIB

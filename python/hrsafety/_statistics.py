@@ -233,6 +233,10 @@ class Mean:
         return (ResultWarning("few_runs", "runs", message),)
 
 
+DRAWN_TOGETHER = 100_000
+"""Numbers of bootstrap samples that are in memory at once."""
+
+
 def mean_interval(values: npt.ArrayLike, *, resamples: int = 2000, seed: int = 0) -> Mean:
     """Return a mean with its 95 % bootstrap interval, as wide as few runs make it.
 
@@ -277,8 +281,10 @@ def mean_interval(values: npt.ArrayLike, *, resamples: int = 2000, seed: int = 0
         return Mean(0, math.nan, math.nan, math.nan)
     generator = np.random.Generator(np.random.PCG64(checked_seed("seed", seed)))
     means = np.empty(resamples)
-    for index in range(resamples):
-        means[index] = given[generator.integers(0, len(given), len(given))].mean()
+    together = max(1, DRAWN_TOGETHER // len(given))
+    for first in range(0, resamples, together):
+        part = means[first : first + together]
+        part[:] = given[generator.integers(0, len(given), (len(part), len(given)))].mean(axis=1)
     mean, runs = float(given.mean()), len(given)
     if runs == 1:
         return Mean(1, mean, mean, mean)
