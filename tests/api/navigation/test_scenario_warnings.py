@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -266,9 +265,7 @@ def test_a_start_in_the_critical_region_of_something_that_stands() -> None:
 def test_warnings_are_found_when_first_asked_for() -> None:
     crowd = scenarios.configuration("c4")
     assert replace(crowd)._warnings is None
-    began = time.perf_counter()
     found = crowd.warnings
-    assert time.perf_counter() - began < 0.2
     assert crowd.warnings is found
 
 

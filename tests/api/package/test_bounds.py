@@ -181,10 +181,11 @@ CASES = [
 
 @pytest.mark.parametrize(("call", "value"), CASES)
 def test_what_is_beyond_its_bound_is_refused_at_once(call: Callable[[Any], Any], value: float) -> None:
-    begin = time.perf_counter()
+    begin = time.process_time()
     with pytest.raises(InvalidParameterError) as caught:
         call(value)
-    assert time.perf_counter() - begin < 1.0
+    # Not a measure of speed: what is not refused takes minutes, or more memory than there is.
+    assert time.process_time() - begin < 30.0
     assert len(str(caught.value)) < 400
 
 
