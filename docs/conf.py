@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from sphinx.ext.autosummary import autosummary_toc
 from sphinx.util.nodes import make_refnode
 
 import hrsafety
@@ -78,7 +79,33 @@ def find_in_namespaces(app: Any, environment: Any, node: Any, shown: Any) -> Any
     return None
 
 
+GENERATED = "api/generated/"
+"""Pages of single names."""
+
+
+def leave_out_of_sidebar(app: Any, tree: Any) -> None:
+    """Keep pages of single names, which are many, out of the sidebar of every page."""
+    for node in list(tree.findall(autosummary_toc)):
+        node.parent.remove(node)
+    if app.env.docname.startswith(GENERATED):
+        app.env.metadata[app.env.docname]["orphan"] = True
+
+
+def link_package(app: Any, page: str, _template: str, context: dict[str, Any], _tree: Any) -> None:
+    """Let the page of a single name lead to that of its package."""
+    if not page.startswith(GENERATED):
+        return
+    package = page.removeprefix(GENERATED).split(".")[1]
+    place = f"api/{package}"
+    if place not in app.env.found_docs:
+        place = "api/index"
+    title = app.env.titles[place].astext()
+    context["body"] = f'<p><a href="{context["pathto"](place)}">{title}</a></p>\n{context["body"]}'
+
+
 def setup(app: Any) -> None:
     """Connect what finds links."""
+    app.connect("doctree-read", leave_out_of_sidebar, priority=400)
+    app.connect("html-page-context", link_package)
     app.connect("env-check-consistency", collect_places)
     app.connect("missing-reference", find_in_namespaces)
