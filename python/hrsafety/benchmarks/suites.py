@@ -58,7 +58,8 @@ def _chosen(case: Case, index: int) -> tuple[datasets.Recording, scenarios.Cross
 
 def _crossing(case: Case, index: int) -> tuple[nav.Scenario, nav.Law]:
     _, crossing = _chosen(case, index)
-    return replace(crossing.scenario, measurement=case.measurement), case.built()
+    scene = crossing.scenario
+    return replace(scene, measurement=case.measurement, seed=scene.seed + case.seed), case.built()
 
 
 RUNS = 24

@@ -91,6 +91,17 @@ def test_rows_of_other_recordings_or_speeds_are_not_taken_for_these(tmp_path: Pa
     assert len(names) == 3
 
 
+def test_errors_of_recorded_people_are_drawn_from_the_seed(shared: Path) -> None:
+    data = shared / "data" / "pedestrians" / "zara01.csv"
+
+    def clearances(seed: int | None, noise: float) -> list[float]:
+        found = benchmark("recordings", ["orca"], data=data, cases=3, seed=seed, noise=noise)
+        return [row.clearance for row in found.rows["orca"]]
+
+    assert clearances(None, 0.02) == clearances(0, 0.02) != clearances(1, 0.02)
+    assert clearances(0, 0.0) == clearances(1, 0.0)
+
+
 @pytest.mark.parametrize(
     "line", ["x,arrived,1,1,0,0,0,1,nan", "0,arrived,1,1,-1,0,0,1,nan", "0,flown,1,1,0,0,0,1,nan", "0,arrived"]
 )
