@@ -45,11 +45,11 @@ def _sensed(world: World, case: Case) -> World:
 
 
 def _seen(case: Case, index: int) -> World:
-    return _sensed(scenarios.circle_crossing(index, law=_law(case), visible=True), case)
+    return _sensed(scenarios.circle_crossing(case.seed + index, law=_law(case), visible=True), case)
 
 
 def _unseen(case: Case, index: int) -> World:
-    return _sensed(scenarios.circle_crossing(index, law=_law(case), visible=False), case)
+    return _sensed(scenarios.circle_crossing(case.seed + index, law=_law(case), visible=False), case)
 
 
 def _antipodal(case: Case, index: int) -> World:
