@@ -100,6 +100,7 @@ def keyframes(plugin: Path) -> dict[str, Any]:
 
 def main(checkout: Path, folder: Path) -> None:
     """Write both files."""
+    folder.mkdir(parents=True, exist_ok=True)
     worlds = [field(checkout, number) for number in range(BARN)]
     (folder / "barn_all.json").write_text(json.dumps({"cylinder_radius_m": 0.075, "worlds": worlds}))
     movers: dict[str, list[str]] = {}
