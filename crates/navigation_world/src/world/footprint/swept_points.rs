@@ -233,14 +233,13 @@ impl<R: Number> Around<R> {
             }
             let half = left.max(zero).sqrt();
             let foot = [zero.like(normal.x * beyond), zero.like(normal.y * beyond)];
-            for sign in [1.0, -1.0] {
-                let half = half * sign;
-                let at = half + place;
-                let crossing = [half * along.x + foot[0], half * along.y + foot[1]];
-                let within = zero.le(at) & at.le(zero.like(side.length));
-                let meets = left.ge(zero) & within & self.holds(crossing, radius);
-                least = R::select(meets, zero, least);
-            }
+            // Whoever is outside at the start and comes in crosses a side inward: at one of its two places.
+            let half = half * (-self.side * along.perp(&normal)).signum();
+            let at = half + place;
+            let crossing = [half * along.x + foot[0], half * along.y + foot[1]];
+            let within = zero.le(at) & at.le(zero.like(side.length));
+            let meets = left.ge(zero) & within & self.holds(crossing, radius);
+            least = R::select(meets, zero, least);
         }
         least
     }
