@@ -17,7 +17,7 @@ pub use ground::{Ground, MOST_CELLS};
 pub use sensing::Sensing;
 
 use numeric::error::{Failure, Given, Result, not_negative, positive};
-use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
+use std::f64::consts::SQRT_2;
 
 /// Assumptions about people who are not seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
