@@ -371,11 +371,10 @@ impl Guard {
     #[must_use]
     pub fn gap(&self, view: &View<'_>, command: Vector2<f64>) -> f64 {
         let plan = self.plan(&view.robot, command);
-        let gaps = view
-            .people
-            .iter()
-            .map(|person| plan.gap(person, &self.limits, 1e-5));
-        gaps.fold(f64::INFINITY, f64::min)
+        let people = view.people.iter();
+        people.fold(f64::INFINITY, |least, person| {
+            plan.gap(person, &self.limits, 1e-5, least)
+        })
     }
 
     /// The plan behind a command.

@@ -23,6 +23,9 @@ const SURELY: f64 = 1e-9;
 /// Accuracy of a least distance as a share of its largest change: it bounds the steps to find it.
 const FINEST: f64 = 1e-6;
 
+/// Instants of a plan that a search for the least distance begins with.
+const LOOKS: u32 = 16;
+
 /// Parts of a braking in which the directions of a robot that slows down are bounded by those of its last
 /// speed; one is enough where they do not depend on the speed.
 const PARTS: u32 = 8;
@@ -249,12 +252,12 @@ impl BrakingPlan {
         }
     }
 
-    /// Least `g` over the plan in m, to `accuracy` m (at the finest a millionth of what `g` can
-    /// change by) and never above it by more; infinite for a robot that rests.
+    /// Least `g` over the plan in m, or `most` if that is less, to `accuracy` m (at the finest a millionth of what `g`
+    /// can change by) and never above it by more; `most` for a robot that rests.
     #[must_use]
-    pub fn gap(&self, person: &Person, limits: &ShieldLimits, accuracy: f64) -> f64 {
+    pub fn gap(&self, person: &Person, limits: &ShieldLimits, accuracy: f64, most: f64) -> f64 {
         if self.rests() {
-            return f64::INFINITY;
+            return most;
         }
         let radius = limits.radius + person.radius();
         let (rate, end) = (self.rate(person), self.end());
@@ -262,15 +265,20 @@ impl BrakingPlan {
             return f64::NEG_INFINITY;
         }
         let accuracy = accuracy.max(FINEST * rate * end);
-        // Right after the ramp only the direction of the command counts.
-        let mut least = self.clearance(person, radius, self.period).0;
+        // Right after the ramp only the direction of the command counts. Steps are long where `g` is far above what is
+        // known to be the least, so some instants are looked at before.
+        let looks = (0..=LOOKS).map(|look| end * f64::from(look) / f64::from(LOOKS));
+        let looks = looks.chain([self.period]);
+        let mut least = looks
+            .map(|time| self.clearance(person, radius, time).0)
+            .fold(most, f64::min);
         let mut time = 0.0;
         while time <= end {
             let (clearance, until) = self.clearance(person, radius, time);
             least = least.min(clearance);
             time = Self::later(time, (clearance - least + accuracy) / rate, until);
         }
-        least.min(self.clearance(person, radius, end).0)
+        least
     }
 
     /// Whether nobody who is not seen can be ahead at any time of the plan, of a robot of a radius in m.

@@ -289,9 +289,12 @@ fn who_may_have_any_speed_is_ahead_unless_his_velocity_is_known() {
         };
         let plan = BrakingPlan::new(&robot, robot.velocity, &limits, TrackingError::EXACT);
         assert!(!plan.avoids(&anywhere, &limits, 0.0));
-        assert_eq!(plan.gap(&anywhere, &limits, 1e-3), f64::NEG_INFINITY);
+        assert_eq!(
+            plan.gap(&anywhere, &limits, 1e-3, f64::INFINITY),
+            f64::NEG_INFINITY
+        );
         assert!(plan.avoids(&known, &limits, 0.0));
-        let gap = plan.gap(&known, &limits, 1e-3);
+        let gap = plan.gap(&known, &limits, 1e-3, f64::INFINITY);
         assert!(gap > 3.0 && gap < 5.0, "{gap}");
     }
 }
@@ -314,7 +317,7 @@ fn a_gap_from_a_very_fast_one_takes_a_bounded_number_of_steps() {
     };
     let plan = BrakingPlan::new(&robot, robot.velocity, &limits, TrackingError::EXACT);
     let least = 4.4 - 1e12 * plan.end();
-    let gap = plan.gap(&fast, &limits, 1e-5);
+    let gap = plan.gap(&fast, &limits, 1e-5, f64::INFINITY);
     assert!((gap / least - 1.0).abs() < 1e-5, "{gap} {least}");
 }
 
