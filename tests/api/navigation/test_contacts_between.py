@@ -170,3 +170,14 @@ def test_a_contact_that_no_kept_row_of_a_run_shows_is_told() -> None:
         assert not every.success
         assert [each.subject for each in few.warnings if each.code == CONTACT_BETWEEN][:1] == ["every"]
         assert "obstacles[0] at" in str(next(each for each in few.warnings if each.subject == "every"))
+
+
+@pytest.mark.parametrize("touched", [0, 1])
+def test_an_outline_that_touches_one_of_several_people_is_counted(touched: int) -> None:
+    outline = nav.robots.Footprint.rectangle(0.8, 0.5)
+    places = [(0.0, 5.0), (0.0, 6.0)]
+    places[touched] = (2.0, 0.0)
+    robot = nav.Robot(nav.DifferentialDriveRobot(footprint=outline), start=(0.0, 0.0), goal=(4.0, 0.0))
+    world = nav.World(people=[nav.Person(start=place) for place in places], robots=[robot], time_limit=10.0)
+    run = nav.simulate(world, lambda seen: 20.0 * (seen.goal - seen.position) - 40.0 * seen.velocity)
+    assert (run.outcome, run.contacts_at_fault) == ("collided", 1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pickle
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -154,3 +155,17 @@ def test_a_scenario_file_says_how_late(tmp_path: Path) -> None:
 def test_a_latency_in_milliseconds_is_refused() -> None:
     with pytest.raises(InvalidParameterError, match=r"latency must be at most 60 s, got 100\.0; give seconds"):
         nav.Measurement(latency=100.0)
+
+
+@pytest.mark.parametrize("of", ["obstacles", "both"])
+@pytest.mark.parametrize("settings", [{}, {"built": nav.robots.AsBuilt()}, {"sensors": [nav.Lidar()]}], ids=str)
+def test_people_of_a_world_are_seen_where_they_were(settings: dict[str, Any], of: str) -> None:
+    walker = nav.Person(start=(6.0, 3.0), route=[(-9.0, 3.0)], velocity=(-1.2, 0.0), desired_speed=1.2, awareness=0.0)
+    late = nav.Measurement(scale=1e-9, latency=0.23, of=of)
+    robot = nav.Robot(start=(0.0, 0.0), goal=(5.0, 0.0), measurement=late, **settings)
+    run = nav.Run(nav.World(people=[walker], robots=[robot], time_limit=30.0), nav.VirtualForceField())
+    while run.time < 1.99:
+        seen = run.step()
+    place = 6.0 - 1.2 * (run.time - 0.23)
+    assert seen.obstacle_position[0] == pytest.approx([place, 3.0], abs=1e-6)
+    assert seen.obstacle_velocity[0] == pytest.approx([-1.2, 0.0], abs=1e-5)

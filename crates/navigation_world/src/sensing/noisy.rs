@@ -23,7 +23,7 @@ pub struct NoisyPositions {
 }
 
 impl NoisyPositions {
-    /// Sensor of a scenario, with the motion step in s and the distance of the second mark in m;
+    /// Sensor of a scenario, with the time between two looks at the scene in s and the distance of the second mark in m;
     /// `None` if everything is known exactly.
     pub fn new(
         scenario: &Scenario,
@@ -35,7 +35,7 @@ impl NoisyPositions {
         let of_robot = Some(measurement).filter(Measurement::of_robot);
         let of_obstacles = measurement.of_obstacle(false);
         Some(Self {
-            sensor: sampled::SampledScene::new(scenario)?,
+            sensor: sampled::SampledScene::new(scenario, step)?,
             mark: of_robot.map(|noise| Noise::new(noise, scenario.seed, MARK_STREAM)),
             mark_distance,
             last_measured: None,
@@ -48,6 +48,7 @@ impl NoisyPositions {
 
 impl Sensor for NoisyPositions {
     fn watch(&mut self, truth: &Truth<'_>) {
+        self.sensor.watch(truth.bodies);
         if let Some([center, mark]) = &mut self.past {
             center.push(truth.robot.position);
             mark.push(marks::second(truth, self.mark_distance));

@@ -57,18 +57,25 @@ impl<R: Real> Past<R> {
     #[must_use]
     pub fn new(scenario: &Scenario, step: f64) -> Option<Self> {
         let late = |measured: &Measurement| measured.of_robot() && measured.latency() > 0.0;
-        let steps = scenario.measurement.filter(late)?.latency() / step;
+        let latency = scenario.measurement.filter(late)?.latency();
+        Some(Self::of(latency, step))
+    }
+
+    /// Of positions that are measured with a latency in s, with the time between two of them in s.
+    #[must_use]
+    fn of(latency: f64, step: f64) -> Self {
+        let steps = latency / step;
         let near = steps.round();
         let steps = if (steps - near).abs() <= WHOLE_STEPS {
             near
         } else {
             steps
         };
-        Some(Self {
+        Self {
             whole: whole_of(steps),
             share: steps - steps.floor(),
             positions: VecDeque::new(),
-        })
+        }
     }
 
     /// A run begins in a lane: its robot has always stood at its start.
@@ -109,12 +116,21 @@ fn whole_of(steps: f64) -> usize {
     steps as usize
 }
 
+/// Where an obstacle was some time ago.
+#[derive(Clone, Debug)]
+enum Earlier {
+    /// Known from its motion.
+    Planned(Motion),
+    /// Known from having been watched: nobody knows before how it moves.
+    Watched(Past<f64>),
+}
+
 /// How one obstacle is measured.
 #[derive(Clone, Debug)]
 struct Watched {
     noise: Noise,
-    /// Its motion, where the past of it is looked at.
-    late: Option<Motion>,
+    /// Where it is measured late.
+    late: Option<Earlier>,
     cursor: usize,
     last_position: Option<[f64; 2]>,
 }
@@ -129,13 +145,21 @@ pub struct SampledScene {
 }
 
 impl SampledScene {
-    /// Sensors of a scenario, or `None` if everything is known exactly.
+    /// Sensors of a scenario, or `None` if everything is known exactly; `step`: time in s between two calls of
+    /// [`Self::watch`].
     #[must_use]
-    pub fn new(scenario: &Scenario) -> Option<Self> {
+    pub fn new(scenario: &Scenario, step: f64) -> Option<Self> {
         let measurement = scenario.measurement?;
         let noise = |stream| Noise::new(measurement, scenario.seed, stream);
         let late = |placed: &PlacedObstacle| {
-            (measurement.latency() > 0.0).then(|| placed.obstacle.motion.clone())
+            let earlier = || {
+                if placed.moves_unforeseen() {
+                    Earlier::Watched(Past::of(measurement.latency(), step))
+                } else {
+                    Earlier::Planned(placed.obstacle.motion.clone())
+                }
+            };
+            (measurement.latency() > 0.0).then(earlier)
         };
         let obstacles = (1..).zip(&scenario.obstacles);
         Some(Self {
@@ -156,6 +180,20 @@ impl SampledScene {
         })
     }
 
+    /// Keeps where everybody is whose motion nobody knows before, for what is measured late.
+    pub fn watch(&mut self, actual: &[Body]) {
+        for (watched, body) in self.obstacles.iter_mut().zip(actual) {
+            let late = watched.as_mut().and_then(|watched| watched.late.as_mut());
+            if let Some(Earlier::Watched(past)) = late {
+                if body.state.present {
+                    past.push(body.state.position.into());
+                } else {
+                    past.positions.clear();
+                }
+            }
+        }
+    }
+
     /// Measures the obstacles at a time in s and draws the error of the robot's position.
     pub fn measure(&mut self, time: f64, actual: &[Body], seen: &mut [Body]) -> Measured {
         let (period, latency) = (self.period, self.latency);
@@ -164,10 +202,17 @@ impl SampledScene {
             measured.state = match watched {
                 None => body.state,
                 Some(watched) => {
-                    let late = watched.late.as_ref();
                     let cursor = &mut watched.cursor;
-                    let ago = |motion: &Motion| motion.at_or_before_start(time - latency, cursor);
-                    let state = late.map_or(body.state, ago);
+                    let state = match &watched.late {
+                        None => body.state,
+                        Some(Earlier::Planned(motion)) => {
+                            motion.at_or_before_start(time - latency, cursor)
+                        }
+                        Some(Earlier::Watched(past)) => BodyState {
+                            position: past.delayed(body.state.position.into()).into(),
+                            ..body.state
+                        },
+                    };
                     watched.measure(state, period)
                 }
             };

@@ -224,7 +224,8 @@ def touch_of_outline(
     """
     assert episode.footprint is not None
     heading = np.asarray(episode.heading, dtype=np.float64)
-    radius = float(np.broadcast_to(np.asarray(episode.person_radius, dtype=np.float64), who[1] + 1)[who[1]])
+    radii = np.asarray(episode.person_radius, dtype=np.float64)
+    radius = float(radii if radii.ndim == 0 else radii[who[1]])
     touch, lasts = FirstTouch(), -1
     for step in who[0].tolist():
         start, way = paths[0][step], paths[1][step]

@@ -94,7 +94,7 @@ impl<'a, R: Real> LaneSensors<'a, R> {
 impl Samples {
     fn new(scenario: &Scenario) -> Option<Self> {
         Some(Self {
-            scene: SampledScene::new(scenario)?,
+            scene: SampledScene::new(scenario, scenario.rules.control_period)?,
             errors: Vec::new(),
             states: Vec::new(),
             actual: Vec::new(),

@@ -34,6 +34,12 @@ impl PlacedObstacle {
         self.speed_bound.unwrap_or(f64::INFINITY)
     }
 
+    /// Whether it moves as nobody knows before: its motion tells only where it starts.
+    #[must_use]
+    pub fn moves_unforeseen(&self) -> bool {
+        !self.stationary && self.obstacle.motion.is_stationary()
+    }
+
     /// No number of its contour at the start is larger, in m; infinite if it comes or goes.
     #[must_use]
     pub fn size(&self) -> f64 {
