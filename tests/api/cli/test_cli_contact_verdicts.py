@@ -79,6 +79,27 @@ def test_within_limits_is_green_and_code_0(judged: Judged, capsys: pytest.Captur
     assert shown.out.splitlines()[-1] == "passed  within limits: 1 of 1 contacts"
 
 
+@pytest.mark.parametrize(
+    ("stop", "doubt"),
+    [
+        (STOP.replace("deceleration = 3.0", "deceleration = 3000"), "implausible"),
+        (STOP.replace("uncertainty = 0.1\n", ""), "taken_as_zero"),
+        (STOP, None),
+    ],
+)
+def test_a_doubt_about_the_separation_distance_turns_the_verdict(
+    stop: str, doubt: str | None, judged: Judged, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, report, page = judged(GOOD + stop + "human_speed = 1.6\n")
+    said = capsys.readouterr().out.splitlines()[-1]
+    if doubt is None:
+        assert (code, report["verdict"], report["speed_over_distance"]["doubts"]) == (0, "within_limits", [])
+    else:
+        assert (code, report["verdict"], report["speed_over_distance"]["doubts"]) == (5, "not_checked", [doubt])
+        assert said == f"NOT CHECKED  the separation distance is not checked ({doubt}); exit code 5"
+    assert (f", not checked ({(doubt or '').replace('_', ' ')})" in page) == (doubt is not None)
+
+
 @pytest.mark.parametrize(("speed", "word"), [("5.0", "exceeds")])
 def test_what_exceeds_is_red_and_code_3(
     speed: str, word: str, judged: Judged, capsys: pytest.CaptureFixture[str]

@@ -60,6 +60,9 @@ def report_cell(options: argparse.Namespace) -> None:
 def _said(study: contact.ContactStudy) -> str:
     """Return the verdict with its number of contacts and, where they decide it, its doubts."""
     rows = [each for each in study.verdicts if each["verdict"] == study.verdict]
+    if not rows:
+        doubts = ", ".join(study.fields["speed_over_distance"]["doubts"])
+        return f"the separation distance is {VERDICT_WORDS[study.verdict]} ({doubts})"
     doubts = f" ({', '.join(study.fields['doubts'])})" if study.verdict == "not_checked" else ""
     return f"{VERDICT_WORDS[study.verdict]}: {len(rows)} of {len(study.verdicts)} contacts{doubts}"
 

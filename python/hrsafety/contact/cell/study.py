@@ -33,9 +33,9 @@ from hrsafety.contact.plan import MeasurementPlan
 from hrsafety.contact.simulation import ContactImpact
 from hrsafety.contact.speed import AllowedSpeed
 from hrsafety.errors import InvalidParameterError
-from hrsafety.plausibility import ResultWarning
+from hrsafety.plausibility import ResultWarning, unsafe_doubts
 from hrsafety.standards.separation import SpeedCurve
-from hrsafety.standards.verdicts import strictest
+from hrsafety.standards.verdicts import doubted, strictest
 from hrsafety.tables import Columns, Table, unit_suffix
 
 __all__ = ["ContactStudy", "Curve", "label_of", "numbers_of", "study", "verdicts_of"]
@@ -75,7 +75,8 @@ class ContactStudy(Table):
     Attributes
     ----------
     verdict : {"not_permitted", "exceeds", "not_checked", "within_limits"}
-        Strictest verdict of the contacts.
+        Strictest verdict of the contacts, and ``"not_checked"`` in place of ``"within_limits"`` where the separation
+        distance is doubted on the unsafe side.
     verdicts : list of dict
         One row for each planned contact: its place, planned and allowed speeds in m/s, margin, verdict, the doubts
         that take part in it by code, and the reasons in words.
@@ -165,7 +166,8 @@ def study(cell: Cell | str | PathLike[str], *, progress: Callable[[int, int], ob
     plan, annex = plan_of(cell, judged, loads), annex_of_cell(cell, judged, distances)
     drawn = _by_region(judged, loads)
     verdicts = [each.verdict for each in judged]
-    verdict = strictest(each["verdict"] for each in verdicts)
+    # Distances are handed over beside the contacts: a doubt about them is one about the whole.
+    verdict = doubted(strictest(each["verdict"] for each in verdicts), () if speeds is None else speeds.warnings)
     fields: dict[str, Any] = {
         "verdict": verdict,
         "regions": regions_of(judged),
@@ -475,6 +477,7 @@ def _speed_fields(cell: Cell, curve: SpeedCurve) -> dict[str, Any]:
     return {
         "rules": dict(cell.separation or {}),
         "contact": curve.status,
+        "doubts": [each.code for each in unsafe_doubts(curve.warnings)],
         "taken_as_zero": [name for name in ("intrusion", "uncertainty") if name not in (cell.separation or {})],
         "distance": curve.distance,
         "speed": curve.speed,
