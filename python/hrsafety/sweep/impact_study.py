@@ -142,8 +142,16 @@ class ImpactStudy(Study):
         return {column.name: found[column.name] for column in self.columns()}
 
     def doubts(self, rows: dict[str, Array]) -> tuple[ResultWarning, ...]:
-        """Return numbers that are hardly what was meant, see `Study.doubts`."""
-        return self._batch({**self.fixed, **rows}, 1).warnings
+        """Return numbers that are hardly what was meant, and foams that are too thin, see `Study.doubts`."""
+        found = self._batch({**self.fixed, **rows}, 1)
+        pressed = int(np.count_nonzero(found.bottomed))
+        if not pressed:
+            return found.warnings
+        message = (
+            f"{pressed} of the {len(found.bottomed)} rows that were looked at compress the foam by more than its "
+            "thickness: true loads are higher than computed; leave out rows whose status is bottomed"
+        )
+        return (*found.warnings, ResultWarning("bottomed", "status", message))
 
     def _batch(self, given: dict[str, Any], threads: int | None) -> impact.ImpactMetricsBatch:
         return impact.metrics_batch(
