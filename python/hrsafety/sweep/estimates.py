@@ -161,7 +161,10 @@ def estimate(
         threads=thread_count(threads),
     )
     wanted = range(len(plan)) if share is None else share.of(len(plan))
-    rows = sum(stop - start for start, stop in map(plan.span, wanted))
+    # Only the last chunk may have fewer rows.
+    rows = len(wanted) * plan.chunk_rows
+    if len(plan) - 1 in wanted:
+        rows -= len(plan) * plan.chunk_rows - plan.rows
     blocks = _measured(plan, store)
     one, most = blocks[0], blocks[-1]
     each = (most.size - one.size) / max(most.rows - one.rows, 1)
