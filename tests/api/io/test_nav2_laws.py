@@ -87,6 +87,13 @@ def test_controllers_are_laws_by_their_names(tmp_path: Path) -> None:
     assert found.monitor == {"FootprintApproach": {"time_before_collision": 1.5, "simulation_time_step": 0.1}}
 
 
+def test_a_cap_that_the_file_does_not_give_is_told(tmp_path: Path) -> None:
+    (doubt,) = (each for each in settings(tmp_path, TEXT).warnings if each.subject == "max_speed_xy")
+    assert doubt.message == "no max_speed_xy for FollowPath: 0.26 m/s is taken, less than max_vel_x, 0.3 m/s"
+    given = TEXT.replace("max_vel_x:", "max_speed_xy: 0.3\n      max_vel_x:")
+    assert "max_speed_xy" not in [each.subject for each in settings(tmp_path, given).warnings]
+
+
 def test_every_key_is_used_or_listed(tmp_path: Path) -> None:
     found = settings(tmp_path, TEXT)
     assert found.ignored == (

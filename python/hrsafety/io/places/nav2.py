@@ -19,6 +19,7 @@ from hrsafety.io.places.nav2_laws import (
     approaches_of,
     changes,
     controllers_of,
+    doubts_of,
     ignored_of,
 )
 from hrsafety.io.reader import Document, Provenance
@@ -313,11 +314,12 @@ def read_nav2(path: str | PathLike[str]) -> Nav2Settings:
     local = costmaps.get("local_costmap", {})
     approaches = approaches_of(monitor)
     try:
-        controllers: tuple[Nav2Controller, ...] | FileError = tuple(
-            _read_controllers(root, server, shapes.get("local_costmap", {}))
-        )
+        read = tuple(_read_controllers(root, server, shapes.get("local_costmap", {})))
     except FileError as error:
-        controllers = error
+        controllers: tuple[Nav2Controller, ...] | FileError = error
+    else:
+        controllers = read
+        doubts += [doubt for each in read for doubt in doubts_of(each)]
     return Nav2Settings(
         period=1.0 / _frequency(server),
         monitor=approaches,

@@ -12,8 +12,9 @@ from hrsafety._yaml.documents import YamlSection
 from hrsafety.errors import FileError, InvalidParameterError
 from hrsafety.navigation.laws.local_planners import DWB, PathIntegral, RegulatedPurePursuit
 from hrsafety.navigation.laws.twists import LocalPlanner
+from hrsafety.plausibility import ResultWarning
 
-__all__ = ["INFLATION", "Nav2Controller", "approaches_of", "changes", "controllers_of", "ignored_of"]
+__all__ = ["INFLATION", "Nav2Controller", "approaches_of", "changes", "controllers_of", "doubts_of", "ignored_of"]
 
 Parameters = Mapping[str, YamlSection]
 INFLATION = ("cost_scaling_factor", "inflation_radius")
@@ -151,6 +152,17 @@ def _controller(
     return Nav2Controller(
         name=name, law=law, entries=entries, used=frozenset(used), path=path[:-1], sections=frozenset(sections), off=off
     )
+
+
+def doubts_of(controller: Nav2Controller) -> Iterator[ResultWarning]:
+    """Yield doubts about what the file does not say of a controller."""
+    law = controller.law
+    if isinstance(law, DWB) and "max_speed_xy" not in controller.entries and law.max_speed_xy < law.max_vel_x:
+        message = (
+            f"no max_speed_xy for {controller.name}: {law.max_speed_xy:g} m/s is taken, less than max_vel_x, "
+            f"{law.max_vel_x:g} m/s"
+        )
+        yield ResultWarning("assumed", "max_speed_xy", message)
 
 
 def _value(entry: YamlSection, default: object) -> object:
