@@ -1,6 +1,6 @@
 //! Many runs over all cores: those that may be side by side share a task.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use numeric::threads::{team, try_map};
 
@@ -110,7 +110,7 @@ fn tasks(law: &AnyLaw, group: &Group<'_>) -> Vec<Vec<usize>> {
         .lanes_for(group.plan, jobs.len())
         .map(|(lanes, _)| lanes);
     // Only runs of the same gains may have to be told apart by their scenes.
-    let mut known: HashMap<Option<Key>, Vec<usize>> = HashMap::new();
+    let mut known: BTreeMap<Option<Key>, Vec<usize>> = BTreeMap::new();
     for (index, job) in jobs.iter().enumerate() {
         let Some(lanes) = lanes.filter(|lanes| lanes.pay(job)) else {
             others.push(index);

@@ -163,7 +163,7 @@ impl HolonomicRobot {
 }
 
 /// A change of velocity shortened to what a robot can add to its speed, and take from it, in m/s.
-#[inline(never)]
+#[inline(always)]
 fn shortened<R: Real>(
     velocity: Vector2<R>,
     asked: Vector2<R>,

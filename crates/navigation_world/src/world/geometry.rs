@@ -38,12 +38,8 @@ impl Body {
     #[must_use]
     pub fn widened<B: Real>(&self) -> Body<B> {
         let wide = |pair: [f64; 2]| pair.map(B::splat);
-        let mut shape = Shape::Disc { radius: B::zero() };
-        for lane in 0..B::WIDTH {
-            shape.set_lane(lane, &self.shape);
-        }
         Body {
-            shape,
+            shape: self.shape.widened(),
             regions: Regions {
                 critical_radius: B::splat(self.regions.critical_radius),
                 active_radius: B::splat(self.regions.active_radius),

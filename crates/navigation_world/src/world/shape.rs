@@ -62,6 +62,25 @@ impl Shape {
             } => half_length.hypot(half_width) * axis.norm(),
         }
     }
+
+    /// The outline in every lane.
+    #[must_use]
+    pub fn widened<B: Real>(&self) -> Shape<B> {
+        match *self {
+            Self::Disc { radius } => Shape::Disc {
+                radius: B::splat(radius),
+            },
+            Self::Rectangle {
+                half_length,
+                half_width,
+                axis,
+            } => Shape::Rectangle {
+                half_length: B::splat(half_length),
+                half_width: B::splat(half_width),
+                axis: Vector2::splat(axis.into()),
+            },
+        }
+    }
 }
 
 impl<B: Real> Shape<B> {
@@ -85,25 +104,7 @@ impl<B: Real> Shape<B> {
                 half_width.set(lane, *width);
                 axis.set_lane(lane, (*own).into());
             }
-            (other, Shape::Disc { radius }) => {
-                *other = Self::Disc {
-                    radius: B::splat(*radius),
-                };
-            }
-            (
-                other,
-                Shape::Rectangle {
-                    half_length,
-                    half_width,
-                    axis,
-                },
-            ) => {
-                *other = Self::Rectangle {
-                    half_length: B::splat(*half_length),
-                    half_width: B::splat(*half_width),
-                    axis: Vector2::splat((*axis).into()),
-                };
-            }
+            (other, outline) => *other = outline.widened(),
         }
     }
 

@@ -35,11 +35,19 @@ pub(crate) struct Group<'a> {
     pub interrupted: Interrupted<'a>,
 }
 
+impl Group<'_> {
+    /// Whether all runs are in one scenario.
+    fn shares_scenario(&self) -> bool {
+        let first = self.jobs.first();
+        first.is_some_and(|first| {
+            let mut jobs = self.jobs.iter();
+            jobs.all(|job| std::ptr::eq(job.scenario, first.scenario))
+        })
+    }
+}
+
 /// Control periods, times obstacles, between two questions whether to stop; about a millisecond.
 const PERIODS_PER_QUESTION: usize = 2048;
-
-/// Most obstacles that a law looks at one by one rather than only those that its robots feel.
-const FEW_OBSTACLES: usize = 4;
 
 /// Makes a lane, with its gains among those of all lanes, ready for the run that begins in it.
 type Enter<'a, R, L> = &'a mut dyn FnMut(&mut Option<Box<L>>, usize, &[R], &Scenario) -> Result<()>;
@@ -97,9 +105,12 @@ pub(crate) fn run_lanes<R: Real, L: Law<R> + ?Sized, C: Recorder<R>>(
     let periods_per_question = (PERIODS_PER_QUESTION / (1 + relay.obstacles.told.len())).max(1);
     let (mut next, mut until_question) = (0, periods_per_question);
     let (mut law, mut told_of_all) = (None, true);
+    // Runs in one scene that begin together feel its obstacles together.
+    let together = group.shares_scenario();
     let mut gains: Vec<R> = first.gains.iter().map(|gain| R::splat(*gain)).collect();
     loop {
         let mut entered = R::Mask::none();
+        let waits = together && relay.runs.running.any();
         for lane in 0..R::WIDTH {
             if relay.runs.running.lane(lane) {
                 continue;
@@ -112,7 +123,7 @@ pub(crate) fn run_lanes<R: Real, L: Law<R> + ?Sized, C: Recorder<R>>(
                     next += 1;
                 }
             }
-            if let Some(job) = group.jobs.get(next) {
+            if let Some(job) = group.jobs.get(next).filter(|_| !waits) {
                 for (gain, own) in gains.iter_mut().zip(job.gains) {
                     gain.set(lane, *own);
                 }
@@ -163,7 +174,7 @@ impl<'a, R: Real> Relay<'a, R> {
         let scenes = LaneScenes::all_in(first);
         let mut runs = LaneState::at_start(scenes, clock, count, maps.clone());
         runs.running = R::Mask::none();
-        let compact = R::WIDTH > 1 && count > FEW_OBSTACLES && sensors.is_none();
+        let compact = R::WIDTH > 1 && sensors.is_none() && !group.shares_scenario();
         Ok(Self {
             plan: group.plan,
             felt: compact.then(|| FeltObstacles::of_at_most(count)),
@@ -212,7 +223,7 @@ impl<'a, R: Real> Relay<'a, R> {
     /// The runs of some lanes begin.
     #[inline(never)]
     fn begin<L: Law<R> + ?Sized, C: Recorder<R>>(&mut self, lanes: R::Mask, law: &L) {
-        self.place(|_| true);
+        self.place(self.time(), |_| true);
         self.runs.start(lanes);
         if self.leader.is_none() {
             self.runs.begin(lanes, &self.obstacles.bodies);
@@ -244,11 +255,11 @@ impl<'a, R: Real> Relay<'a, R> {
         self.steps * R::splat(self.runs.clock.step)
     }
 
-    /// Brings obstacles of every lane to its instant, chosen by whether they are watched between two
+    /// Brings obstacles of every lane to its instant, in s, chosen by whether they are watched between two
     /// samples.
     #[inline(always)]
-    fn place(&mut self, chosen: impl Fn(bool) -> bool) {
-        let (time, runs) = (self.time(), &self.runs);
+    fn place(&mut self, time: R, chosen: impl Fn(bool) -> bool) {
+        let runs = &self.runs;
         let chosen = |slot: usize| chosen(runs.watched[slot]);
         self.obstacles.place(time, &runs.scenario, chosen);
     }
@@ -278,7 +289,7 @@ impl<'a, R: Real> Relay<'a, R> {
         if !self.runs.running.any() {
             return Ok(());
         }
-        self.place(|watched| !watched);
+        self.place(time, |watched| !watched);
         if R::WIDTH == 1
             && let Some(dormant) = &mut self.dormant
         {
@@ -378,8 +389,8 @@ impl<'a, R: Real> Relay<'a, R> {
             Integrator::Rk4 => self.rk4(law, stop),
         }
         self.steps += R::splat(1.0);
-        self.place(|watched| watched || C::EVERY_STEP);
         let later = self.time();
+        self.place(later, |watched| watched || C::EVERY_STEP);
         let bodies = &self.obstacles.bodies;
         self.runs.account(bodies, before, later, C::EVERY_STEP);
         self.runs.remember();

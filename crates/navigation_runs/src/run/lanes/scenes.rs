@@ -113,9 +113,9 @@ impl<R: Real> LaneObstacles<R> {
     #[inline(always)]
     pub fn place(&mut self, time: R, scenes: &LaneScenes<'_>, chosen: impl Fn(usize) -> bool) {
         let obstacles = self.obstacles.iter_mut().zip(&mut self.bodies);
-        for (slot, (obstacle, body)) in obstacles.enumerate() {
+        for (slot, ((obstacle, body), index)) in obstacles.zip(&self.told).enumerate() {
             if chosen(slot) {
-                obstacle.place(time, (scenes, self.told[slot]), &mut body.state);
+                obstacle.place(time, (scenes, *index), &mut body.state);
             }
         }
     }
@@ -147,6 +147,14 @@ impl<R: Real> LaneObstacles<R> {
     }
 }
 
+/// How an obstacle moves in all lanes, until one of them takes another piece.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Course {
+    Stands,
+    Straight,
+    Bends,
+}
+
 /// An obstacle of each lane. Where a lane has none it is absent, which adds nothing.
 #[derive(Clone)]
 struct LaneObstacle<R: Real> {
@@ -160,8 +168,8 @@ struct LaneObstacle<R: Real> {
     /// Whether any lane ever takes another piece, and whether any is ever absent.
     turns: bool,
     leaves: bool,
-    /// Whether all lanes move straight on for now.
-    steady: bool,
+    /// How all lanes move for now.
+    course: Course,
 }
 
 impl<R: Real> LaneObstacle<R> {
@@ -180,7 +188,7 @@ impl<R: Real> LaneObstacle<R> {
             presence: (R::splat(f64::INFINITY), R::splat(f64::NEG_INFINITY)),
             turns: false,
             leaves: true,
-            steady: true,
+            course: Course::Stands,
         };
         let body = Body {
             shape: Shape::Disc { radius: R::zero() },
@@ -228,11 +236,16 @@ impl<R: Real> LaneObstacle<R> {
     fn settle(&mut self, state: &mut BodyState<R>) {
         // A negative zero would not leave the sign of a velocity as it is.
         let zero = |axis: &R| (0..R::WIDTH).all(|lane| axis.lane(lane).to_bits() == 0);
-        self.steady = self.piece.acceleration.iter().all(zero);
         state.velocity = self.piece.velocity;
-        if self.steady {
+        self.course = Course::Bends;
+        if self.piece.acceleration.iter().all(zero) {
             // As the pieces compute it, whatever the time.
             state.velocity = self.piece.velocity.map(|axis| axis + R::zero());
+            self.course = Course::Straight;
+            if state.velocity.iter().all(zero) {
+                state.position = self.piece.position.map(|axis| axis + R::zero());
+                self.course = Course::Stands;
+            }
         }
         state.acceleration = self.piece.acceleration;
         if !self.leaves {
@@ -273,17 +286,26 @@ impl<R: Real> LaneObstacle<R> {
             self.turn(time, (scenes, obstacle));
             self.settle(state);
         }
-        if self.steady {
-            let t = time - self.piece.start;
-            for (axis, position) in state.position.iter_mut().enumerate() {
-                *position = self.piece.position[axis] + state.velocity[axis] * t;
+        match self.course {
+            Course::Stands => {}
+            Course::Straight => {
+                let t = time - self.piece.start;
+                for (axis, position) in state.position.iter_mut().enumerate() {
+                    *position = self.piece.position[axis] + state.velocity[axis] * t;
+                }
             }
-        } else {
-            (state.position, state.velocity) = self.piece.at(time);
+            Course::Bends => self.bend(time, state),
         }
         if self.leaves {
             state.present = self.presence.0.le(time) & time.le(self.presence.1);
         }
+    }
+
+    /// State on a way that is not straight; a function of its own, or the compiler would write both ways
+    /// number by number.
+    #[inline(never)]
+    fn bend(&self, time: R, state: &mut BodyState<R>) {
+        (state.position, state.velocity) = self.piece.at(time);
     }
 
     /// Takes the pieces that have begun.

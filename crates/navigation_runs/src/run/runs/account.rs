@@ -43,7 +43,9 @@ impl<W: World, R: Real> LaneState<W, R> {
         }
         self.squared_current += R::select(self.running, squared, R::zero());
         self.path += R::select(self.running, way, R::zero());
-        if self.outline.is_some() {
+        // Nothing asks for one lane where robots are side by side, or the compiler would take their numbers
+        // apart in every step.
+        if R::WIDTH == 1 && self.outline.is_some() {
             let since = (before.lane(0).into(), since.time.lane(0));
             let end = self.end_time.lane(0);
             let end = if end.is_nan() { time.lane(0) } else { end };

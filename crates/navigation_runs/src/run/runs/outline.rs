@@ -90,6 +90,7 @@ impl<W: World, R: Real> LaneState<W, R> {
 
     /// Least distances and contacts of a robot with an outline in a motion step that began at a place and a time in s;
     /// without them at the start.
+    #[inline(never)]
     pub(super) fn watch_outline(
         &mut self,
         bodies: &[Body<R>],
