@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy as np
 from hrsafety._records import dataclass
 from hrsafety.contact import Annex, MeasurementPlan
 from hrsafety.contact.cell.handover import distances_fields
-from hrsafety.contact.cell.stops import stopping_of
+from hrsafety.contact.cell.stops import distances_of, doubts_of
 from hrsafety.plausibility import ResultWarning
 from hrsafety.program.annexed import annex_of_task
 from hrsafety.program.contacts import MASSES, Choice, Waypoints
@@ -21,7 +20,7 @@ from hrsafety.program.plan import plan_of
 from hrsafety.program.runs import Runs
 from hrsafety.program.task import ProgramTask
 from hrsafety.program.zoned import PathSpeeds, SpeedZones, speeds_of, told_limit, zones_of
-from hrsafety.standards.fields import FieldDistances, field_distances
+from hrsafety.standards.fields import FieldDistances
 from hrsafety.standards.verdicts import doubted, strictest
 from hrsafety.tables import Columns, Table
 
@@ -149,12 +148,14 @@ def study_of(program: ProgramTask, *, intervals: int | None = None, threads: int
     segments = tuple(sorted(_costs(runs, free, limited, choice), key=lambda each: -_ranked(each)))
     times = tuple(_times(runs, zones))
     warnings = _warnings(runs, found, (free, limited, *(() if zones is None or zones.run is None else (zones.run,))))
-    own = tuple(each for each in general if each.code not in program.confirmed)
-    verdict = doubted(strictest(each.verdict for each in found), own) if found else doubted("within_limits", own)
     distances = None
     if program.separation is not None and fastest > 0.0:
         slow = min(least, fastest) if least > 0.0 else None
-        distances = _field(program.separation, fastest, slow)
+        distances = distances_of(program.separation, fastest, slow)
+    # Distances are handed over beside the contacts: a doubt about them is one about the whole.
+    apart = doubts_of(None, distances)
+    own = tuple(each for each in (*general, *apart) if each.code not in program.confirmed)
+    verdict = doubted(strictest(each.verdict for each in found), own) if found else doubted("within_limits", own)
     plan = plan_of(runs, limited, choice)
     annex = annex_of_task(program, found, fastest, distances)
     fields = _fields(runs, verdict, found, times, segments, zones, distances) | {"annex": annex.fields()}
@@ -174,7 +175,7 @@ def study_of(program: ProgramTask, *, intervals: int | None = None, threads: int
         least_allowed=least,
         waypoints=waypoints,
         speeds=speeds_of(runs, choice),
-        warnings=warnings,
+        warnings=tuple(dict.fromkeys([*warnings, *apart])),
         fields=fields,
         _table=table,
     )
@@ -313,16 +314,6 @@ def _fields(
             for name, run in (("joints", runs.retimed(None)), ("contact", runs.retimed(runs.planned)))
         },
     }
-
-
-def _field(separation: Mapping[str, Any], fastest: float, slow: float | None) -> FieldDistances | None:
-    """Return the distances of a scanner field, ``None`` where the stop was not measured from that speed."""
-    rules = {name: value for name, value in separation.items() if name not in ("farthest", "max_speed")}
-    if "stopping" in rules:
-        rules["stopping"] = stopping_of(separation)
-        if fastest > float(np.max(rules["stopping"].speed)):
-            return None
-    return field_distances(fastest, contact_speed=slow, **rules)
 
 
 def _segment(runs: Runs, each: SegmentCost) -> dict[str, Any]:

@@ -8,7 +8,9 @@ from typing import Annotated
 from hrsafety._arguments import not_negative, positive
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
+from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import HrsafetyWarning, ResultWarning
+from hrsafety.standards.guards import LEAST_INTRUSION, minimum_distance
 from hrsafety.standards.separation import WALKING_SPEED, StoppingData, separation_distance, speed_over_distance
 
 __all__ = ["FieldDistances", "field_distances"]
@@ -57,6 +59,8 @@ def field_distances(
     human_speed: float = WALKING_SPEED,
     intrusion: float | None = None,
     uncertainty: float | None = None,
+    height: float | None = None,
+    capability: float | None = None,
     stopping: StoppingData | None = None,
     load: float | None = None,
     extension: float | None = None,
@@ -71,11 +75,14 @@ def field_distances(
         Allowed contact speed in m/s; ``None`` where contact is not permitted or not checked.
     reaction_time, deceleration, human_speed, intrusion, uncertainty, stopping, load, extension
         As for `separation_distance`.
+    height, capability : float or None
+        Height of the field above the floor in m and what its sensors detect in m, as for `minimum_distance`; the
+        intrusion distance follows from them, and is not given beside them.
 
     Returns
     -------
     FieldDistances
-        Both distances with their terms.
+        Both distances with their terms; with a doubt where the intrusion distance is shorter than that of any field.
 
     Raises
     ------
@@ -86,14 +93,15 @@ def field_distances(
     --------
     >>> from hrsafety import standards
     >>> found = standards.field_distances(
-    ...     1.0, contact_speed=0.25, reaction_time=0.12, deceleration=2.5, intrusion=0.2, uncertainty=0.1
+    ...     1.0, contact_speed=0.25, reaction_time=0.12, deceleration=2.5, height=0.3, uncertainty=0.1
     ... )
     >>> f"{found.stop:.3f} m, {found.slow_down:.4f} m"
-    '1.452 m, 1.2795 m'
+    '2.332 m, 2.1595 m'
     """
     speed = positive("robot_speed", robot_speed)
     target = 0.0 if contact_speed is None else min(not_negative("contact_speed", contact_speed), speed)
     brakes = {"deceleration": deceleration, "stopping": stopping, "load": load, "extension": extension}
+    intrusion = intrusion_of_field(intrusion, height, capability)
     added = {"intrusion": intrusion or 0.0, "uncertainty": uncertainty or 0.0}
     told = speed_over_distance(  # checks all numbers, and finds their doubts
         [1.0],
@@ -137,5 +145,43 @@ def field_distances(
         stop_terms=stops,
         slow_down_terms={} if contact_speed is None else slows,
         said=", ".join(f"no {name}" for name in zero) + (" given" if zero else ""),
-        warnings=told.warnings,
+        warnings=(*told.warnings, *_doubts(intrusion)),
     )
+
+
+def intrusion_of_field(intrusion: float | None, height: float | None, capability: float | None) -> float | None:
+    """Return the intrusion distance in m: as it is given, or that of a field at a height.
+
+    Parameters
+    ----------
+    intrusion, height, capability : float or None
+        As for `field_distances`.
+
+    Returns
+    -------
+    float or None
+        ``None`` where nothing is given.
+
+    Raises
+    ------
+    InvalidParameterError
+        If both are given, a capability stands without a height, or the field lies too high or too low.
+    """
+    if height is None:
+        if capability is not None:
+            raise InvalidParameterError("capability", "stand beside the height of the field", capability)
+        return intrusion
+    if intrusion is not None:
+        raise InvalidParameterError("intrusion", "not be given beside the height of the field: it follows", intrusion)
+    return minimum_distance(1.0, capability=capability, height=height).intrusion
+
+
+def _doubts(intrusion: float | None) -> tuple[ResultWarning, ...]:
+    """Return the doubt about an intrusion distance that no field of a scanner has."""
+    if intrusion is None or intrusion >= LEAST_INTRUSION:
+        return ()
+    words = (
+        f"intrusion is {intrusion:g} m: somebody reaches over a scanner field by {LEAST_INTRUSION:g} m and more, and "
+        "its distances are too short; give the height of the field in its place"
+    )
+    return (ResultWarning("intrusion_too_short", "intrusion", words),)

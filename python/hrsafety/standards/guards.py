@@ -14,6 +14,8 @@ __all__ = ["GuardDistance", "minimum_distance"]
 
 LOWEST_FACTOR = 15.0
 LOWEST_OFFSET = 0.05
+LEAST_INTRUSION = 0.85
+"""Intrusion distance C in m of the highest field parallel to the floor, and of one across the way of a body."""
 
 
 @displayed

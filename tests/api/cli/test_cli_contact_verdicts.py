@@ -44,7 +44,7 @@ STOP = """
 max_speed = 1.5
 reaction_time = 0.1
 deceleration = 3.0
-intrusion = 0.2
+intrusion = 0.85
 uncertainty = 0.1
 """
 DRIVE = """
@@ -383,7 +383,7 @@ def test_the_area_of_a_contact_is_that_of_its_flat_covering(
 
 
 def test_what_is_taken_as_0_is_told(judged: Judged, capsys: pytest.CaptureFixture[str]) -> None:
-    stop = STOP.replace("intrusion = 0.2\n", "").replace("uncertainty = 0.1\n", "")
+    stop = STOP.replace("intrusion = 0.85\n", "").replace("uncertainty = 0.1\n", "")
     _, report, page = judged(GOOD + stop)
     assert report["speed_over_distance"]["taken_as_zero"] == ["intrusion", "uncertainty"]
     assert "No intrusion, no uncertainty given for the distance, taken as 0" in page

@@ -233,3 +233,37 @@ def test_contact_at_a_high_speed_is_told_by_every_function() -> None:
     for call, value in ((standards.separation_distance, 5.0), (standards.separation_speed, 8.0)):
         with pytest.warns(ImplausibleWarning, match="target_speed is 3 m/s, outside the plausible 0 to 2 m/s"):
             call(value, **rules)
+
+
+# ---- the field of a scanner ---------------------------------------------------------------------
+
+FIELD = {"contact_speed": 0.25, "reaction_time": 0.12, "deceleration": 2.5, "uncertainty": 0.1}
+
+
+@pytest.mark.parametrize(("height", "reached"), [(0.0, 1.2), (0.3, 1.08), (0.875, 0.85), (1.0, 0.85)])
+def test_the_height_of_a_field_gives_its_intrusion(height: float, reached: float) -> None:
+    found = standards.field_distances(1.0, height=height, **FIELD)
+    given = standards.field_distances(1.0, intrusion=reached, **FIELD)
+    assert found.stop_terms["intrusion"] == pytest.approx(reached)
+    assert (found.stop, found.slow_down) == pytest.approx((given.stop, given.slow_down))
+    assert found.warnings == given.warnings == ()
+
+
+@pytest.mark.parametrize("intrusion", [0.0, 0.2, 0.8499])
+def test_an_intrusion_that_no_field_has_is_doubted(intrusion: float) -> None:
+    (doubt,) = standards.field_distances(1.0, intrusion=intrusion, **FIELD).warnings
+    assert (doubt.code, doubt.safe_side) == ("intrusion_too_short", False)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"height": 0.3, "intrusion": 1.08}, "intrusion must not be given beside the height"),
+        ({"capability": 0.05}, "capability must stand beside the height"),
+        ({"height": 1.2}, "height must be"),
+        ({"height": 0.1, "capability": 0.07}, "height must be at least 0.3 for a capability of 0.07"),
+    ],
+)
+def test_fields_that_cannot_be_are_refused(arguments: dict[str, float], message: str) -> None:
+    with pytest.raises(InvalidParameterError, match=message):
+        standards.field_distances(1.0, **FIELD, **arguments)

@@ -9,14 +9,13 @@ from typing import Any
 from hrsafety.contact.annex import Annex, Assumption, Hazard, annex_of
 from hrsafety.contact.cell.cell import Cell
 from hrsafety.contact.cell.judgement import Judged
-from hrsafety.contact.cell.stops import stopping_of
 from hrsafety.contact.covering import Covering
 from hrsafety.contact.drive import Drive
 from hrsafety.contact.plan import MeasurementPlan, PlannedMeasurement
 from hrsafety.contact.simulation import ContactImpact
-from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import unsafe_doubts
 from hrsafety.standards.contact_limits import ContactLimit
-from hrsafety.standards.fields import FieldDistances, field_distances
+from hrsafety.standards.fields import FieldDistances
 from hrsafety.standards.limit_sets import LimitSet
 from hrsafety.standards.verdicts import strictest
 
@@ -26,7 +25,6 @@ __all__ = [
     "assumed",
     "assumptions_about",
     "distances_fields",
-    "distances_of",
     "hazard_of",
     "limit_words",
     "payload_assumed",
@@ -121,37 +119,11 @@ def plan_of(cell: Cell, judged: Sequence[Judged], loads: Sequence[dict[str | Non
     return MeasurementPlan(rows=tuple(rows))
 
 
-def distances_of(cell: Cell, contact_speed: float | None) -> FieldDistances | None:
-    """Return the distances for the field of a scanner from the largest speed of the robot.
-
-    Parameters
-    ----------
-    cell : Cell
-        With its separation.
-    contact_speed : float or None
-        Allowed contact speed in m/s; ``None`` where contact has none.
-
-    Returns
-    -------
-    FieldDistances or None
-        ``None`` without separation, or where the stop was not measured from that speed.
-    """
-    if cell.separation is None:
-        return None
-    rules = {name: value for name, value in cell.separation.items() if name not in ("farthest", "max_speed")}
-    if "stopping" in rules:
-        rules["stopping"] = stopping_of(cell.separation)
-    try:
-        return field_distances(cell.separation["max_speed"], contact_speed=contact_speed, **rules)
-    except InvalidParameterError:
-        # The curve of speeds says that nothing is known of faster stops.
-        return None
-
-
 def distances_fields(found: FieldDistances) -> dict[str, Any]:
     """Return both distances with their terms as the report holds them."""
     names = ("stop", "slow_down", "robot_speed", "contact_speed", "stop_terms", "slow_down_terms", "said")
-    return {name: getattr(found, name) for name in names}
+    doubts = [each.code for each in unsafe_doubts(found.warnings)]
+    return {name: getattr(found, name) for name in names} | {"doubts": doubts}
 
 
 def annex_of_cell(cell: Cell, judged: Sequence[Judged], distances: FieldDistances | None) -> Annex:

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import chain
 from types import MappingProxyType
 from typing import Any
+
+import numpy as np
 
 from hrsafety import _keys as kind
 from hrsafety._keys import Keys, checked, located
 from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import ResultWarning
+from hrsafety.standards.fields import FieldDistances, field_distances, intrusion_of_field
 from hrsafety.standards.separation import SpeedCurve, StoppingData
 from hrsafety.standards.separation import speed_over_distance as allowed_over_distance
 
-__all__ = ["separation_of", "speed_over_distance", "stopping_of"]
+__all__ = ["distances_of", "doubts_of", "separation_of", "speed_over_distance"]
 
 
 def _stops(path: str, value: Any) -> Any:
@@ -25,12 +30,15 @@ def _stops(path: str, value: Any) -> Any:
 _STOPPING: Keys = MappingProxyType(
     {**dict.fromkeys(("speed", "load", "extension"), kind.numbers), **dict.fromkeys(("time", "distance"), _stops)}
 )
+_FIELD = ("height", "capability")
+"""Of the field of a scanner, in the place of the intrusion distance."""
 _SEPARATION: Keys = MappingProxyType(
     {
         **dict.fromkeys(
-            ("max_speed", "reaction_time", "deceleration", "human_speed", "intrusion", "uncertainty", "farthest"),
+            ("max_speed", "reaction_time", "deceleration", "human_speed", "uncertainty", "farthest"),
             kind.number,
         ),
+        **dict.fromkeys(("intrusion", *_FIELD), kind.number),
         "stopping": kind.table,
         **dict.fromkeys(("load", "extension"), kind.number),
     }
@@ -91,13 +99,47 @@ def speed_over_distance(distance: object, separation: Mapping[str, Any], *, cont
     SpeedCurve
         The speeds.
     """
-    rules = {name: value for name, value in separation.items() if name != "farthest"}
+    return allowed_over_distance(distance, contact_speed=contact_speed, **_rules(separation))
+
+
+def distances_of(separation: Mapping[str, Any], speed: float, contact_speed: float | None) -> FieldDistances | None:
+    """Return the distances for the field of a scanner from a speed of the robot by the rules of a cell.
+
+    Parameters
+    ----------
+    separation : mapping
+        Of a `Cell` or a program.
+    speed : float
+        Largest speed of the robot in m/s.
+    contact_speed : float or None
+        Allowed contact speed in m/s; ``None`` where contact has none.
+
+    Returns
+    -------
+    FieldDistances or None
+        ``None`` where the stop was not measured from that speed.
+    """
+    rules = _rules(separation)
+    del rules["max_speed"]
+    measured = rules.get("stopping")
+    if measured is not None and speed > float(np.max(measured.speed)):
+        return None
+    return field_distances(speed, contact_speed=contact_speed, **rules)
+
+
+def doubts_of(speeds: SpeedCurve | None, distances: FieldDistances | None) -> tuple[ResultWarning, ...]:
+    """Return the doubts about a separation, each once."""
+    parts = (each.warnings for each in (speeds, distances) if each is not None)
+    return tuple(dict.fromkeys(chain.from_iterable(parts)))
+
+
+def _rules(separation: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the rules as the functions of distances take them."""
+    rules = {name: value for name, value in separation.items() if name not in ("farthest", *_FIELD)}
+    reached = intrusion_of_field(*(separation.get(name) for name in ("intrusion", *_FIELD)))
+    if reached is not None:
+        rules["intrusion"] = reached
     if "stopping" in rules:
-        rules["stopping"] = stopping_of(separation)
-    return allowed_over_distance(distance, contact_speed=contact_speed, **rules)
-
-
-def stopping_of(separation: Mapping[str, Any]) -> StoppingData:
-    """Return the measured stops of a cell."""
-    with located("stopping"):
-        return StoppingData(**separation["stopping"])
+        with located("stopping"):
+            rules["stopping"] = StoppingData(**separation["stopping"])
+    return rules

@@ -17,7 +17,7 @@ from hrsafety.contact.cell.cell import Cell, PlannedContact, contact_of
 from hrsafety.contact.cell.chances import chance_doubts, chance_of
 from hrsafety.contact.cell.driven import drive_doubts, driven_of, driven_row
 from hrsafety.contact.cell.file import load_cell
-from hrsafety.contact.cell.handover import annex_of_cell, distances_fields, distances_of, plan_of, regions_of
+from hrsafety.contact.cell.handover import annex_of_cell, distances_fields, plan_of, regions_of
 from hrsafety.contact.cell.judgement import (
     FASTEST,
     Judged,
@@ -27,7 +27,7 @@ from hrsafety.contact.cell.judgement import (
     known,
     reasons_of,
 )
-from hrsafety.contact.cell.stops import speed_over_distance
+from hrsafety.contact.cell.stops import distances_of, doubts_of, speed_over_distance
 from hrsafety.contact.covering import covering_of
 from hrsafety.contact.plan import MeasurementPlan
 from hrsafety.contact.simulation import ContactImpact
@@ -162,12 +162,15 @@ def study(cell: Cell | str | PathLike[str], *, progress: Callable[[int, int], ob
     least = governing(judged)
     contact_speed = _least(judged)
     speeds = _over_distance(cell, contact_speed)
-    distances = distances_of(cell, contact_speed)
+    rules = cell.separation
+    distances = None if rules is None else distances_of(rules, rules["max_speed"], contact_speed)
+    apart = doubts_of(speeds, distances)
     plan, annex = plan_of(cell, judged, loads), annex_of_cell(cell, judged, distances)
     drawn = _by_region(judged, loads)
     verdicts = [each.verdict for each in judged]
     # Distances are handed over beside the contacts: a doubt about them is one about the whole.
-    verdict = doubted(strictest(each["verdict"] for each in verdicts), () if speeds is None else speeds.warnings)
+    left = tuple(each for each in apart if each.code not in cell.confirmed)
+    verdict = doubted(strictest(each["verdict"] for each in verdicts), left)
     fields: dict[str, Any] = {
         "verdict": verdict,
         "regions": regions_of(judged),
@@ -179,7 +182,7 @@ def study(cell: Cell | str | PathLike[str], *, progress: Callable[[int, int], ob
         "results": [_result(cell, each, impacts) for each, impacts in zip(judged, loads, strict=True)],
         "curves": _curve_fields(drawn, curves),
         "map": None if least is None else _map(cell, least, progress),
-        "speed_over_distance": None if speeds is None else _speed_fields(cell, speeds),
+        "speed_over_distance": None if speeds is None else _speed_fields(cell, speeds, left),
         "sensitivity": None if least is None else _sensitivity(cell, least),
         "probability": [_named(each) | chance for each, chance in zip(judged, chances, strict=True)],
         "distances": None if distances is None else distances_fields(distances),
@@ -195,7 +198,7 @@ def study(cell: Cell | str | PathLike[str], *, progress: Callable[[int, int], ob
         speeds=speeds,
         plan=plan,
         annex=annex,
-        warnings=(*_warnings(cell, judged, drawn), *(() if speeds is None else speeds.warnings)),
+        warnings=(*_warnings(cell, judged, drawn), *apart),
     )
 
 
@@ -473,12 +476,13 @@ def _over_distance(cell: Cell, least: float | None) -> SpeedCurve | None:
     return speed_over_distance(distances, cell.separation, contact_speed=least)
 
 
-def _speed_fields(cell: Cell, curve: SpeedCurve) -> dict[str, Any]:
+def _speed_fields(cell: Cell, curve: SpeedCurve, doubts: tuple[ResultWarning, ...]) -> dict[str, Any]:
+    zero = [each.subject for each in doubts if each.code == "taken_as_zero"]
     return {
         "rules": dict(cell.separation or {}),
         "contact": curve.status,
-        "doubts": [each.code for each in unsafe_doubts(curve.warnings)],
-        "taken_as_zero": [name for name in ("intrusion", "uncertainty") if name not in (cell.separation or {})],
+        "doubts": [each.code for each in unsafe_doubts(doubts)],
+        "taken_as_zero": [name for name in ("intrusion", "uncertainty") if any(name in each for each in zero)],
         "distance": curve.distance,
         "speed": curve.speed,
         "mode": curve.mode,
