@@ -22,6 +22,8 @@ from hrsafety.contact.simulation import ContactBatch, ContactImpact, impact_of, 
 from hrsafety.contact.speed import AllowedSpeed, AllowedSpeeds, allowed_of, speeds_of
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import telling
+from hrsafety.standards.contact_limits import ContactLimit
+from hrsafety.standards.sets import above_published
 
 __all__ = ["Contact", "Support"]
 
@@ -173,6 +175,8 @@ class Contact:
         body = body_of(source, self.region, None if own is not None else self.body, given=tuple(arrays))
         shared, values = self._row(spring_of(body.region, arrays), body.mass, tolerance, **more)
         doubts = self.robot.warnings if isinstance(self.robot, ContactRobot) else ()
+        if isinstance(limits, ContactLimit):
+            doubts = (*doubts, *above_published(limits))
         return Prepared(shared, values | limits_of(limits), covering_of(self.covering), source, doubts)
 
     def _at_rest(self, what: str) -> None:

@@ -63,7 +63,7 @@ class Prepared(NamedTuple):
     limits : object
         What says which limits hold, and for which part of the body.
     doubts : tuple of ResultWarning
-        Those about the robot.
+        Those about the robot and the limits.
     """
 
     shared: dict[str, object]

@@ -12,11 +12,12 @@ from typing import Any
 
 from hrsafety._arguments import meant
 from hrsafety.errors import InvalidParameterError
-from hrsafety.standards.contact_limits import Quantity
+from hrsafety.plausibility import ResultWarning
+from hrsafety.standards.contact_limits import ContactLimit, Quantity
 from hrsafety.standards.limit_sets import MILLIMETER, SQUARE_CENTIMETER, LimitRow, LimitSet
 from hrsafety.standards.user_sets import SUFFIXES, load_limits
 
-__all__ = ["SETS", "limits"]
+__all__ = ["SETS", "above_published", "limits"]
 
 SETS = ("iso_ts_15066_2016",)
 """Sets that ship with the package, the default one first."""
@@ -52,6 +53,42 @@ def limits(name_or_path: str | os.PathLike[str] = SETS[0]) -> LimitSet:
         rule = f"be {' or '.join(SETS)}, or a file that ends in {' or '.join(SUFFIXES)}"
         raise InvalidParameterError("name_or_path", rule, name_or_path, meant(name_or_path, SETS))
     return load_limits(name_or_path)
+
+
+def above_published(limit: ContactLimit) -> tuple[ResultWarning, ...]:
+    """Return the doubts about limits of the user that are higher than those that ship with the package.
+
+    Parameters
+    ----------
+    limit : ContactLimit
+        Of any set.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        One for a force and one for a pressure, none where the package knows no such region.
+    """
+    published = _shipped(SETS[0])
+    if limit.set_id in SETS or limit.region not in published.regions or not limit.permitted:
+        return ()
+    rows = [row for row in published.rows if (row.region, row.contact) == (limit.region, limit.contact)]
+    found = []
+    for name, own, unit, scale in (
+        ("force", limit.force, "N", 1.0),
+        ("pressure", limit.pressure, "N/cm2", SQUARE_CENTIMETER),
+    ):
+        # Names of areas are the user's: the one that bears most counts.
+        known = [getattr(row, name).value for row in rows if getattr(row, name) is not None and row.permitted]
+        if own is None or (known and own <= max(known)):
+            continue
+        says = f"at most {max(known) * scale:g} {unit}" if known else "that no such contact is permitted"
+        if known or any(not row.permitted for row in rows):
+            message = (
+                f"{name} is {own * scale:g} {unit} for {limit.region}, {limit.contact}: {published.title} says {says}; "
+                "with numbers that are too high every speed is"
+            )
+            found.append(ResultWarning("above_published", f"limits.{name}", message))
+    return tuple(found)
 
 
 @cache

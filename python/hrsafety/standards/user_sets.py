@@ -55,8 +55,8 @@ def load_limits(path: str | os.PathLike[str]) -> LimitSet:
     Raises
     ------
     InvalidParameterError
-        If the file cannot be read, a column is unknown, a row has no source, a number is not positive,
-        or two rows say the same; the message names the row.
+        If the file cannot be read, a column is unknown, a row has no source, a number is not positive, two rows say
+        the same, or more is allowed to a clamped part of the body than to a free one; the message names the row.
 
     Examples
     --------
@@ -197,7 +197,7 @@ def _checked(rows: Rows) -> Iterator[LimitRow]:
         raise InvalidParameterError("file", "have rows", 0)
     if len(rows) > MOST_ROWS:
         raise InvalidParameterError("file", f"have at most {MOST_ROWS} rows", len(rows))
-    places: dict[tuple[str, str | None, str], str] = {}
+    found: dict[tuple[str, str | None, str], tuple[str, LimitRow]] = {}
     bodies: dict[tuple[str, str], tuple[float, str]] = {}
     spelled: dict[tuple[str, str], str] = {}
     for place, given in rows:
@@ -207,9 +207,8 @@ def _checked(rows: Rows) -> Iterator[LimitRow]:
             other = spelled.setdefault((kind, name.casefold()), name)
             if other != name:
                 raise InvalidParameterError(f"{place}: {kind}", f"be spelled as above ({other!r})", name)
-        if key in places:
-            raise InvalidParameterError(place, f"not say again what {places[key]} says", Shown(_named(row)))
-        places[key] = place
+        if key in found:
+            raise InvalidParameterError(place, f"not say again what {found[key][0]} says", Shown(_named(row)))
         for name in ("spring_constant", "effective_mass"):
             quantity: Quantity | None = getattr(row, name)
             if quantity is None:
@@ -218,7 +217,22 @@ def _checked(rows: Rows) -> Iterator[LimitRow]:
             if value != quantity.value:
                 rule = f"be the same in all rows of {row.region} ({value:g} in {other})"
                 raise InvalidParameterError(f"{place}: {name}", rule, quantity.value)
+        found[key] = (place, row)
+        of_both = [found.get((row.region, row.area, kind)) for kind in ("quasi_static", "transient")]
+        if of_both[0] is not None and of_both[1] is not None:
+            _ordered(place, of_both[0][1], of_both[1][1])
         yield row
+
+
+def _ordered(place: str, clamped: LimitRow, free: LimitRow) -> None:
+    """Refuse limits of a clamped part of the body above those of one that is free to give way."""
+    for name in ("force", "pressure"):
+        given, most = getattr(clamped, name), getattr(free, name)
+        if given is not None and most is not None and given.value > most.value:
+            unit = "N" if name == "force" else "Pa"
+            rule = f"be at most as high for quasi_static as for transient ({most.value:g} {unit})"
+            shown = Shown(f"{given.value:g} {unit}")
+            raise InvalidParameterError(f"{place}: {name}", rule, shown, "exchange both if they are mixed up")
 
 
 def _named(row: LimitRow) -> str:

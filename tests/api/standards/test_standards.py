@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hrsafety import standards
+from hrsafety import contact, standards
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ImplausibleWarning
 
@@ -252,6 +252,36 @@ def test_rows_that_contradict_each_other_are_refused(tmp_path: Path) -> None:
         own(tmp_path, ROWS[0], stricter)
     with pytest.raises(InvalidParameterError, match=r"file must have rows"):
         own(tmp_path)
+
+
+@pytest.mark.parametrize("place", ["", "sternum"])
+def test_a_clamped_part_bears_no_more_than_a_free_one(tmp_path: Path, place: str) -> None:
+    clamped, free = f"chest,{place},quasi_static,280,,,,tests,", f"chest,{place},transient,140,,,,tests,"
+    for rows in ((clamped, free), (free, clamped)):
+        words = r"line 3: force must be at most as high for quasi_static as for transient \(140 N\), got 280 N"
+        with pytest.raises(InvalidParameterError, match=words):
+            own(tmp_path, *rows)
+    assert own(tmp_path, clamped, free.replace("140", "280")).contact("chest", "transient").force == 280.0
+
+
+@pytest.mark.parametrize(
+    ("row", "found"),
+    [
+        ("chest,,transient,280,,,,tests,", []),
+        ("chest,,transient,281,,,,tests,", ["limits.force"]),
+        ("chest,,transient,,400,,,tests,", ["limits.pressure"]),
+        ("chest,,transient,500,400,,,tests,", ["limits.force", "limits.pressure"]),
+        ("face,,transient,50,,,,tests,", ["limits.force"]),  # no such contact is permitted
+        ("tail,,transient,5000,,,,tests,", []),  # nothing to compare with
+    ],
+)
+def test_limits_above_the_published_ones_are_doubted(tmp_path: Path, row: str, found: list[str]) -> None:
+    region, _, kind = row.split(",")[:3]
+    limit = own(tmp_path, row).contact(region, kind)
+    hit = contact.Contact(robot=8.0, body=40.0, region=25e3, area=1e-4)
+    doubts = [each for each in hit.allowed_speed(limit).warnings if each.code == "above_published"]
+    assert [each.subject for each in doubts] == found
+    assert not any(each.safe_side for each in doubts)
 
 
 @pytest.mark.parametrize("kind", ["csv", "toml"])
