@@ -58,7 +58,7 @@ def made(**more: Any) -> contact.Cell:
         "contacts": [
             planned("chest", "quasi_static", area=1e-4),
             planned("chest", "transient", area=1e-4),
-            planned("hand_finger", "transient", area=4e-4, own_area=True),
+            planned("hand_finger", "transient", covered_area=4e-4, area=1e-4),
         ],
         "coverings": {"pad": PAD},
         "strains": {"pad": 0.4},
@@ -134,7 +134,7 @@ def test_a_wrong_cell_is_refused(name: str, value: object, words: str) -> None:
         ({"speed": 0.0}, "speed must be above 0"),
         ({"speed": 21.0}, "speed must be above 0 and at most 20"),
         ({"area": -1.0}, "contact_area must be above 0"),
-        ({"own_area": True}, "own_area must come with an area"),
+        ({"covered_area": 0.0}, "covered_area must be above 0"),
         ({"limit": "chest"}, "limit must be a ContactLimit"),
     ],
 )
@@ -173,3 +173,38 @@ def test_no_contact_is_within_limits_above_its_allowed_speed(
         assert not row["doubts"]
     elif row["verdict"] == "exceeds":
         assert row["allowed_speed"] < speed
+
+
+def test_an_area_on_the_pad_is_not_that_of_the_bare_contact(tmp_path: Path) -> None:
+    path = tmp_path / "cell.toml"
+    verdicts = []
+    for area in ("1e-4", "4e-4"):
+        path.write_text(FILE.replace("contact_area = 4e-4", f"contact_area = {area}"), encoding="utf-8")
+        hand = contact.study(path).fields["results"][2]
+        verdicts.append({row["covering"]: row["speed_pressure"] for row in hand["rows"]})
+    assert verdicts[0][None] == verdicts[1][None]
+    assert verdicts[0]["pad"] != verdicts[1]["pad"]
+
+
+@pytest.mark.parametrize(
+    ("rules", "doubts"),
+    [
+        ({"height": 0.3}, []),
+        ({"intrusion": 0.85}, []),
+        ({"intrusion": 0.2}, ["intrusion_too_short"]),
+        ({}, ["taken_as_zero"]),
+    ],
+)
+def test_a_field_that_is_reached_over_is_told(rules: dict[str, float], doubts: list[str]) -> None:
+    values = {"max_speed": 1.5, "reaction_time": 0.1, "deceleration": 3.0, "uncertainty": 0.1} | rules
+    harmless = [planned("hand_finger", "transient", area=1e-4, covered_area=4e-4)]
+    more: dict[str, Any] = {"contacts": harmless, "separation": values, "uncertain": {}}
+    found = contact.study(made(**more))
+    assert found.fields["speed_over_distance"]["doubts"] == doubts
+    assert found.verdict == ("not_checked" if doubts else "within_limits")
+    assert [each.code for each in found.warnings][-len(doubts) or len(found.warnings) :] == doubts
+    confirmed = {"intrusion_too_short": "a laser curtain, J. Doe", "taken_as_zero": "J. Doe"}
+    assert contact.study(made(**more, confirmed=confirmed)).verdict == "within_limits"
+    # A cell that is made of another one keeps what was given.
+    again = made(**more | {"separation": made(**more).separation})
+    assert contact.study(again).fields["distances"] == found.fields["distances"]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from hrsafety import _keys as kind
-from hrsafety._arguments import checked_text, count, flag, instance, number, sequence
+from hrsafety._arguments import checked_text, count, instance, number, sequence
 from hrsafety._records import dataclass
 from hrsafety._words import meant
 from hrsafety.contact.annex import annex_of
@@ -62,8 +62,8 @@ class PlannedContact:
         Name of the covering; ``None``: bare.
     area : float or None
         Area of the bare contact in m^2; without it the pressure of a bare contact is not checked.
-    own_area : bool
-        Whether that area also takes the place of that of a flat covering.
+    covered_area : float or None
+        What it touches of a flat covering, in m^2; ``None``: the area of the covering.
 
     Examples
     --------
@@ -77,7 +77,7 @@ class PlannedContact:
     speed: float
     covering: str | None = None
     area: float | None = None
-    own_area: bool = False
+    covered_area: float | None = None
 
     def __post_init__(self) -> None:
         """Check the values."""
@@ -87,12 +87,12 @@ class PlannedContact:
             raise InvalidParameterError("speed", f"be above 0 and at most {FASTEST_PLANNED:g}", self.speed)
         if self.covering is not None:
             checked_text("covering", self.covering, "be the name of a covering")
-        if self.area is not None:
-            object.__setattr__(self, "area", number("contact_area", self.area))
-            if not 0.0 < self.area < 10.0:
-                raise InvalidParameterError("contact_area", "be above 0 and below 10", self.area)
-        if flag("own_area", self.own_area) and self.area is None:
-            raise InvalidParameterError("own_area", "come with an area", self.own_area)
+        for name, shown in (("area", "contact_area"), ("covered_area", "covered_area")):
+            given = getattr(self, name)
+            if given is not None:
+                object.__setattr__(self, name, area := number(shown, given))
+                if not 0.0 < area < 10.0:
+                    raise InvalidParameterError(shown, "be above 0 and below 10", area)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -194,7 +194,7 @@ class Cell:
             instance(f"coverings[{name!r}]", pad, Covering)
         for index, each in enumerate(contacts):
             instance(f"contacts[{index}]", each, PlannedContact)
-            checked_fit(f"contacts[{index}]", each.covering, each.area if each.own_area else None, self.coverings)
+            checked_fit(f"contacts[{index}]", each.covering, each.covered_area, self.coverings)
         human_speed, chance = number("human_speed", self.human_speed), number("allowed_chance", self.allowed_chance)
         if not 0.0 <= human_speed < FASTEST_PLANNED:
             raise InvalidParameterError("human_speed", "be at least 0 and below 20", human_speed)
@@ -233,7 +233,7 @@ class Cell:
         return found | {name: value for name, value in more.items() if value}
 
 
-def checked_fit(path: str, covering: str | None, own_area: float | None, coverings: Mapping[str, Covering]) -> None:
+def checked_fit(path: str, covering: str | None, covered_area: float | None, coverings: Mapping[str, Covering]) -> None:
     """Refuse a contact whose covering is not there, or has an area of its own beside the one that is given.
 
     Parameters
@@ -242,7 +242,7 @@ def checked_fit(path: str, covering: str | None, own_area: float | None, coverin
         Name of the contact in messages.
     covering : str or None
         Name of its covering.
-    own_area : float or None
+    covered_area : float or None
         Area that takes the place of that of the covering.
     coverings : mapping
         Those that there are.
@@ -252,9 +252,9 @@ def checked_fit(path: str, covering: str | None, own_area: float | None, coverin
     if covering not in coverings:
         rule = f"name a covering ({', '.join(coverings) or 'none is given'}) or be {NO_COVERING!r}"
         raise InvalidParameterError(f"{path}.covering", rule, covering, meant(covering, coverings))
-    if own_area is not None and coverings[covering].shape != "flat":
+    if covered_area is not None and coverings[covering].shape != "flat":
         rule = f"be left out beside covering {covering!r}, whose area follows from its shape"
-        raise InvalidParameterError(f"{path}.contact_area", rule, own_area)
+        raise InvalidParameterError(f"{path}.contact_area", rule, covered_area)
 
 
 def _pushing(drive: Drive, robot: ContactRobot) -> Drive:
@@ -286,8 +286,8 @@ def contact_of(cell: Cell, planned: PlannedContact, covering: str | None) -> Con
     if covering is None:
         return Contact(robot=robot, body=limit, area=planned.area)
     pad = cell.coverings[covering]
-    if planned.own_area and pad.shape == "flat":
-        pad = replace(pad, area=planned.area)
+    if planned.covered_area is not None and pad.shape == "flat":
+        pad = replace(pad, area=planned.covered_area)
     return Contact(robot=robot, body=limit, covering=pad, max_strain=cell.strains.get(covering))
 
 
@@ -299,6 +299,7 @@ def _input(planned: PlannedContact) -> dict[str, Any]:
         "speed": planned.speed,
         "covering": planned.covering,
         "contact_area": planned.area,
+        "covered_area": planned.covered_area,
     }
 
 

@@ -204,14 +204,18 @@ def _contacts(
         path = f"contacts[{index}]"
         values = checked(path, entry, _CONTACT, required=("region",))
         shared = {name: given[name] for name in ("speed", "covering", "contact_area") if name in given}
-        found += _classes(path, {**shared, **values}, values, limits, coverings)
+        covered = values.get("contact_area")
+        if covered is not None and {**shared, **values}.get("covering", NO_COVERING) != NO_COVERING:
+            # Beside the covering a contact may touch more than bare, which would flatter the bare one.
+            values["contact_area"] = given.get("contact_area")
+        found += _classes(path, {**shared, **values}, covered, limits, coverings)
     return found
 
 
 def _classes(
     path: str,
     values: Mapping[str, Any],
-    entry: Mapping[str, Any],
+    covered_area: float | None,
     limits: LimitSet,
     coverings: Mapping[str, Covering],
 ) -> list[PlannedContact]:
@@ -220,8 +224,7 @@ def _classes(
     if "speed" not in values:
         raise kind.missing(f"{path}.speed", "give it here or at the top of the file")
     covering = None if values.get("covering") == NO_COVERING else values.get("covering")
-    own_area = "contact_area" in entry
-    checked_fit(path, covering, values.get("contact_area") if own_area else None, coverings)
+    checked_fit(path, covering, covered_area, coverings)
     classes: tuple[str, ...] = CONTACTS
     if "contact" in values:
         classes = (one_of(f"{path}.contact", values["contact"], CONTACTS),)
@@ -232,7 +235,7 @@ def _classes(
                 speed=values["speed"],
                 covering=covering,
                 area=values.get("contact_area"),
-                own_area=own_area,
+                covered_area=covered_area,
             )
             for each in classes
         ]
