@@ -81,7 +81,17 @@ class SweepResult:
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why the result may not mean what it seems to; empty when there is no doubt."""
         of_study = (ResultWarning(**each) for each in self._store.manifest.get("warnings", ()))
-        return (*self._design.warnings, *of_study)
+        return (*self._design.warnings, *of_study, *self._unfinished())
+
+    def _unfinished(self) -> Iterator[ResultWarning]:
+        """Doubt numbers of a part of the rows: the hardest cases may be those that are not there yet."""
+        done, whole = len(self.finished), self.chunk_count
+        if done < whole:
+            message = (
+                f"{done} of {whole} chunks are finished: rows, extremes and shares are of these only; run the same "
+                "sweep again, it resumes"
+            )
+            yield ResultWarning("incomplete", "chunks", message)
 
     @property
     def units(self) -> dict[str, str]:

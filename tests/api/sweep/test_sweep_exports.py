@@ -97,6 +97,7 @@ def test_part_of_a_sweep_can_be_read(tmp_path: Path) -> None:
     assert len(part) == 6
     np.testing.assert_allclose(part["y"], 2.0 * np.linspace(0.0, 0.5, 6), rtol=1e-14)
     assert "3 of 6 chunks" in repr(part)
+    assert [each.code for each in part.warnings] == ["incomplete"]
     # Files of it say so, too.
     assert part.provenance["chunks"] == {"finished": 3, "of": 6}
     pytest.importorskip("xarray", reason="needs the extra sweep")
