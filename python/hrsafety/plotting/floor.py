@@ -181,7 +181,7 @@ def events(axes: Axes, run: Trajectory, look: Mapping[str, object]) -> None:
             shape: style.Properties = {"marker": (3, 0, angle), "markersize": 8.5, "linestyle": "none"}
             shape |= {"markeredgecolor": "white", "markeredgewidth": 0.7, "color": color}
             axes.plot(*run.position[row], zorder=5.5, **shape)
-    for instant in run.contact_time[np.isfinite(run.contact_time)]:
+    for instant in inputs.contact_times(run):
         axes.plot(*run.position[inputs.row_at(run, float(instant))], zorder=7.0, **CONTACT)
     if not np.isfinite(run.arrival_time):
         end: style.Properties = {"markersize": 7, "color": color, "markeredgecolor": "white"}

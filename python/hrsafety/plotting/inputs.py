@@ -98,6 +98,13 @@ def check_same_scene(runs: Sequence[Trajectory]) -> None:
             raise InvalidParameterError(f"trajectories[{index}]", requirement, run.scenario)
 
 
+def contact_times(run: Trajectory) -> Array:
+    """Return the instants of first contacts in s, with each obstacle that was touched and with the walls."""
+    instants = np.append(run.contact_time, run.map_contact_time)
+    found: Array = instants[np.isfinite(instants)]
+    return found
+
+
 def row_at(run: Trajectory, instant: float) -> int:
     """Return the row that is nearest to an instant in s."""
     after = int(np.searchsorted(run.time, instant))

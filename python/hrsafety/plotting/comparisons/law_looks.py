@@ -89,7 +89,7 @@ def event_handles(runs: Runs, *, ends: bool = True, until: float = np.inf) -> li
     handles: list[Artist] = []
     if ends and any(not np.isfinite(run.arrival_time) for run in runs.values()):
         handles.append(handle("end, not arrived", marker="s", markersize=7))
-    if any((run.contact_time <= until).any() for run in runs.values()):
+    if any((inputs.contact_times(run) <= until).any() for run in runs.values()):
         handles.append(cross_handle())
     return handles
 

@@ -336,6 +336,7 @@ def _draw_instant(axes: Axes, runs: Runs, looks: Mapping[str, style.Properties],
         floor.line(axes, path, zorder=3.8, **(looks[name] | {"linewidth": 1.2}))
         shapes.add_robot(axes, scenario, path[-1], looks[name]["color"], filled=False)
         axes.plot(*path[-1], "o", color=looks[name]["color"], markersize=3.5, zorder=4.2)
-        for touch in other.contact_time[other.contact_time <= instant]:
+        touches = inputs.contact_times(other)
+        for touch in touches[touches <= instant]:
             axes.plot(*other.position[inputs.row_at(other, float(touch))], zorder=7.0, **law_looks.CROSS)
     shapes.add_start_and_goal(axes, scenario)

@@ -32,10 +32,9 @@ MOST_DRAWS = 100_000_000
 def comparison_standings(result: Comparison | Result, *, title: str | None = None) -> Figure:
     """Draw the shares of success and of contact of each law with their 95 % intervals.
 
-    Below the share of the episodes with a contact, a hollow circle is the share of those in which the robot moved
-    toward a person whom it touched, and a cross that of those in which it was touched from behind or from the side
-    while it moved. The last panel has the rank of each law by its success, with the 95 % interval over episodes that
-    are drawn again.
+    Below the share of the episodes with a contact, a hollow circle is the share of those with a contact at fault, and a
+    cross that of those in which the robot was touched from behind or from the side while it moved. The last panel has
+    the rank of each law by its success, with the 95 % interval over episodes that are drawn again.
 
     Parameters
     ----------
@@ -91,20 +90,20 @@ def comparison_standings(result: Comparison | Result, *, title: str | None = Non
     handles = [
         handle("arrived without contact", marker="o", markersize=7, color=blue),
         handle("with a contact", marker="o", markersize=7, color=red),
-        handle("robot moved toward it", marker="o", markersize=7, color=red, markerfacecolor="white"),
-        handle("robot moved away", marker="x", markersize=7, color=red),
+        handle("at fault", marker="o", markersize=7, color=red, markerfacecolor="white"),
+        handle("touched from behind or from the side", marker="x", markersize=7, color=red),
     ]
     style.legend_below(figure, handles, columns=len(handles))
     return figure
 
 
 def _of_comparison(result: Comparison) -> tuple[list[str], list[list[Share]], inputs.Array]:
-    """Return names of laws, shares of success, contact, contact toward and away, and successes by law and episode."""
+    """Return names of laws, shares of success, contact, fault and touches from behind, and each success by law."""
     standings = result.standings()
     shares = [
         [each.success for each in standings],
         [each.contact for each in standings],
-        [each.toward_contact for each in standings],
+        [each.at_fault for each in standings],
         [each.away_contact for each in standings],
     ]
     return [each.law for each in standings], shares, (result.outcome == "arrived").astype(np.float64)
@@ -113,7 +112,7 @@ def _of_comparison(result: Comparison) -> tuple[list[str], list[list[Share]], in
 def _of_benchmark(result: Result) -> tuple[list[str], list[list[Share]], inputs.Array]:
     """Return the same of a benchmark; episodes that some entry has not run count for no rank."""
     names = list(result.rows)
-    found = (result.success, result.contact, result.toward, result.away)
+    found = (result.success, result.contact, result.at_fault, result.away)
     cases = set.intersection(*({row.case for row in rows} for rows in result.rows.values()))
     success = [[row.outcome == "arrived" for row in rows if row.case in cases] for rows in result.rows.values()]
     return names, [[share(name) for name in names] for share in found], np.array(success, dtype=np.float64)

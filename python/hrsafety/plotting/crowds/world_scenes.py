@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -269,15 +270,16 @@ def gaps(run: Trajectory, robot: int) -> Array:
 
 
 def contacts(run: Trajectory) -> list[tuple[int, int]]:
-    """Return row and robot of the first contact of each robot with each person, in order of time."""
+    """Return row and robot of the first contact of each robot with each person and the walls, in order of time."""
     found = []
     for robot, own in enumerate(run.scenario.robots):
         if own.body.footprint is not None:
-            instants = run.robots[robot].contact_time
-            found += [(int(np.abs(run.time - when).argmin()), robot) for when in instants[np.isfinite(instants)]]
+            found += [(inputs.row_at(run, float(when)), robot) for when in inputs.contact_times(run.robots[robot])]
             continue
         touching = gaps(run, robot) < -TOUCH
         found += [(int(touching[:, person].argmax()), robot) for person in np.flatnonzero(touching.any(axis=0))]
+        walls = run.robots[robot].map_contact_time
+        found += [(inputs.row_at(run, walls), robot)] if math.isfinite(walls) else []
     return sorted(found)
 
 

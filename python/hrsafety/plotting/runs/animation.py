@@ -211,7 +211,8 @@ class _Stage:
         self.heading.set_data(*(run.position[row] + np.outer([0.0, ahead], [np.cos(angle), np.sin(angle)])).T)
         if self.scanned is not None:
             self.scan.set_data(*self.scanned(row).T)
-        touched = run.contact_time[run.contact_time <= run.time[row]]
+        touched = inputs.contact_times(run)
+        touched = touched[touched <= run.time[row]]
         rows = [inputs.row_at(run, float(instant)) for instant in touched]
         self.contacts.set_data(run.position[rows, 0], run.position[rows, 1])
         fresh = bool((touched > run.time[row] - floor.FLASH_TIME).any())

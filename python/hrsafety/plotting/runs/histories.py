@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -107,19 +108,20 @@ def _draw_distances(axes: Axes, run: Trajectory) -> tuple[float, list[Line2D]]:
     for index, color in zip(chosen, palette, strict=True):
         line = axes.plot(run.time, run.distance[:, index], color=color, label=f"{all_names[index]}, d", zorder=3.0)
         handles += line
-        if np.isfinite(run.contact_time[index]):
-            row = inputs.row_at(run, float(run.contact_time[index]))
-            cross: style.Properties = {
-                "marker": "X",
-                "color": style.CONTACT_COLOR,
-                "markersize": 10,
-                "markeredgecolor": "white",
-            }
-            axes.plot(run.time[row], run.distance[row, index], linestyle="none", zorder=6.0, **cross)
+        _mark_contact(axes, run, float(run.contact_time[index]), run.distance[:, index])
+    _mark_contact(axes, run, run.map_contact_time, to_goal)
     radii = [shapes.region_radii(obstacles[index]) for index in chosen]
     _draw_radii(axes, radii, palette)
     handles += _more_handles(run, rest=bool(rest), radii=bool(radii))
     return HEADROOM * max([float(to_goal.max()), *(active for active, _ in radii)]), handles
+
+
+def _mark_contact(axes: Axes, run: Trajectory, instant: float, values: inputs.Array) -> None:
+    """Mark a first contact on a curve, if there was one."""
+    if math.isfinite(instant):
+        row = inputs.row_at(run, instant)
+        cross: style.Properties = {"marker": "X", "color": style.CONTACT_COLOR, "markersize": 10}
+        axes.plot(run.time[row], values[row], linestyle="none", zorder=6.0, markeredgecolor="white", **cross)
 
 
 def _closest(run: Trajectory) -> list[int]:
@@ -151,7 +153,7 @@ def _more_handles(run: Trajectory, *, rest: bool, radii: bool) -> list[Line2D]:
     if radii:
         handles.append(Line2D([], [], color=style.NEUTRAL, linestyle="--", linewidth=1.1, label="active, $r_2$"))
         handles.append(Line2D([], [], color=style.NEUTRAL, linestyle=":", linewidth=1.1, label="critical, $r_3$"))
-    if np.isfinite(run.contact_time).any():
+    if inputs.contact_times(run).size:
         cross: style.Properties = {"marker": "X", "color": style.CONTACT_COLOR, "markersize": 9, "linestyle": "none"}
         handles.append(Line2D([], [], label="first contact", **cross))
     return handles
@@ -160,14 +162,16 @@ def _more_handles(run: Trajectory, *, rest: bool, radii: bool) -> list[Line2D]:
 def _mark_arrival(axes: Axes, run: Trajectory, gap: float) -> None:
     """Mark the instant of arrival, if there is one, with its time a gap in s before it."""
     if np.isfinite(run.arrival_time):
-        axes.axvline(run.arrival_time, color=style.GOAL_COLOR, linewidth=1.2, zorder=1.6)
-        look: style.Properties = {"color": style.GOAL_COLOR, "fontsize": style.SMALL_FONT_SIZE}
+        touched = run.outcome == "collided"
+        color = style.CONTACT_COLOR if touched else style.GOAL_COLOR
+        axes.axvline(run.arrival_time, color=color, linewidth=1.2, zorder=1.6)
+        look: style.Properties = {"color": color, "fontsize": style.SMALL_FONT_SIZE}
         look |= {
             "ha": "right",
             "va": "top",
             "bbox": {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.0},
         }
-        text = f"arrival {run.arrival_time:.2f} s"
+        text = f"arrival {run.arrival_time:.2f} s{', after a contact' if touched else ''}"
         axes.text(run.arrival_time - gap, 0.97, text, transform=axes.get_xaxis_transform(), zorder=5.0, **look)
 
 

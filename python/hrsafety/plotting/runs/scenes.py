@@ -223,7 +223,7 @@ def _path_handles(
     handles += shapes.start_and_goal_handles() + walls.handles(walls.maps_of(runs))
     if any(not np.isfinite(run.arrival_time) for run in runs):
         handles.append(floor.handle("end, not arrived", marker="s", markersize=7))
-    if any(np.isfinite(run.contact_time).any() for run in runs):
+    if any(inputs.contact_times(run).size for run in runs):
         handles.append(floor.handle("first contact", **floor.CONTACT))
     obstacles = next((run.scenario.obstacles for run in runs if run.scenario.obstacles), ())
     seen = _in_view(runs, limits)
