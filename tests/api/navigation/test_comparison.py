@@ -375,3 +375,36 @@ def test_statistics_refuse_what_is_no_sample() -> None:
         mean_interval(3.0)
     with pytest.raises(InvalidParameterError):
         mean_interval([1.0], resamples=0)
+
+
+# ---- seeds that change nothing ------------------------------------------------------------------
+
+
+def same(table: nav.RunTable) -> list[str]:
+    return [each.message for each in table.warnings if each.code == "same_runs"]
+
+
+def test_runs_that_are_the_same_with_every_seed_are_told() -> None:
+    noisy = replace(SCENES["c4"], measurement=nav.Measurement())
+    field, tree = nav.VirtualForceField(), LAWS["tree"]
+    (words,) = same(nav.simulate_many({"c1": C1, "noisy": noisy}, {"field": field}, seeds=5))
+    assert words.startswith("the 5 runs of field in c1 are the same with every seed")
+    assert "more of this kind" not in words
+    (words,) = same(nav.compare(SCENES, {"field": field, "masoud": nav.Masoud()}, seeds=2).runs)
+    assert f"({2 * len(SCENES) - 1} more of this kind" in words
+    # One run of each, gains that differ, noise, and a planner that draws.
+    for table in (
+        nav.simulate_many(SCENES, [field, nav.Masoud()]),
+        nav.simulate_many(C1, field, gains=np.array([[4.0, 3.0, 1.0, 2.0], [4.0, 4.0, 1.0, 2.0]])),
+        nav.simulate_many(noisy, field, seeds=5),
+        nav.simulate_many(C1, tree, seeds=3),
+    ):
+        assert same(table) == []
+
+
+def test_worlds_that_draw_nothing_are_told() -> None:
+    def world(seed: int) -> nav.World:
+        return scenarios.circle_crossing(seed, law=nav.VirtualForceField())
+
+    assert same(nav.simulate_many([world(seed) for seed in range(3)])) == []
+    assert len(same(nav.simulate_many(world(0), seeds=3))) == 1

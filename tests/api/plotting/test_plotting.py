@@ -189,6 +189,30 @@ def test_contacts_and_ends_without_arrival_are_marked():
     assert len([line for line in figure.axes[0].get_lines() if line.get_marker() == "s"]) == 1
 
 
+def test_a_way_through_a_wall_is_marked_as_a_contact():
+    wall = nav.StaticMap.from_polylines([[(2.0, -2.0), (2.0, 2.0)]])
+    scenario = nav.Scenario(start=(0.0, 0.0), goal=(4.0, 0.0), walls=wall)
+    run = nav.simulate(scenario, nav.Masoud())
+    assert run.outcome == "collided"
+    assert np.isfinite(run.arrival_time)
+    place = run.position[int(np.abs(run.time - run.map_contact_time).argmin())].tolist()
+    for figure in (plotting.paths(run), plotting.comparison_paths({"straight on": run})):
+        crosses = [line.get_xydata().tolist() for line in figure.axes[0].lines if line.get_marker() == "X"]
+        assert [place] in crosses
+        assert "first contact" in [text.get_text() for text in figure.legends[0].get_texts()]
+    (axes,) = plotting.distances(run).axes
+    (cross,) = [line for line in axes.lines if line.get_marker() == "X"]
+    assert cross.get_xdata()[0] == pytest.approx(run.map_contact_time)
+    (words,) = [text for text in axes.texts if "arrival" in text.get_text()]
+    assert "after a contact" in words.get_text()
+    assert words.get_color() == style.CONTACT_COLOR
+    world = nav.World.of(scenario)
+    robot = nav.Robot(start=(0.0, 0.0), goal=(4.0, 0.0), law=nav.Masoud())
+    of_world = nav.simulate(dataclasses.replace(world, robots=[robot]))
+    figure = plotting.crowds.crowd_paths(of_world)
+    assert any(line.get_marker() == "X" for line in figure.axes[0].lines)
+
+
 def test_regions_can_be_left_out():
     patches = plotting.paths(made_up_run(DISC), regions=False).axes[0].patches
     assert {round(patch.radius, 3) for patch in patches if isinstance(patch, Circle)} == {0.1, 0.12}

@@ -57,12 +57,11 @@ def legend_words(figure: object) -> list[str]:
     return [text.get_text() for legend in legends for text in legend.get_texts()]
 
 
-def three_episodes(outcomes: list[list[str]], moving: list[list[int]]) -> nav.Comparison:
+def three_episodes(outcomes: list[list[str]], faults: list[list[int]]) -> nav.Comparison:
     runs = nav.compare([made_up_run(DISC).scenario] * 3, {"first": LAW, "second": LAW}).runs
+    columns = {"outcome": outcomes, "contacts_moving": faults, "contacts_at_fault": faults}
     return nav.Comparison(
-        runs=dataclasses.replace(
-            runs, outcome=np.ravel(outcomes), contacts_moving=np.ravel(moving), contacts_toward=np.ravel(moving)
-        )
+        runs=dataclasses.replace(runs, **{name: np.ravel(values) for name, values in columns.items()})
     )
 
 
@@ -183,12 +182,12 @@ def test_sequence_shows_every_robot_at_the_instant_or_at_its_end(runs):
 def test_standings_are_the_shares_and_their_intervals():
     result = three_episodes([["arrived", "arrived", "collided"], ["collided"] * 3], [[0, 0, 0], [1, 0, 1]])
     left, right, places = plotting.comparison_standings(result).axes
-    success, contact, moving = [
+    success, contact, at_fault = [
         [line.get_xdata().tolist() for line in axes.get_lines() if line.get_marker() == "o"]
         for axes in (left, right, right)
     ]
     assert success == [[2 / 3, 0.0]]
-    assert contact == moving == [[1 / 3, 1.0], [0.0, 2 / 3]]
+    assert contact == at_fault == [[1 / 3, 1.0], [0.0, 2 / 3]]
     ends = left.collections[0].get_segments()
     standing = result.standing("first").success
     assert np.allclose([end[0] for end in ends[0]], [standing.low, standing.high])
