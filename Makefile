@@ -12,7 +12,7 @@ unexport MAKEFLAGS MFLAGS
 # As maturin does: the binding crate is loaded by an interpreter, not linked with one.
 export PYO3_BUILD_EXTENSION_MODULE = 1
 
-.PHONY: build develop hooks test test-rust test-fast test-ros lint bench docs images fuzz check reproduce clean
+.PHONY: build develop hooks test test-rust test-fast test-ros lint lint-rust lint-python bench docs images fuzz check reproduce clean
 
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
@@ -58,9 +58,13 @@ test-ros: build
 	$(ROS_VENV)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r tests/ros/requirements.txt
 	HRSAFETY_ROS_PYTHON=$(abspath $(ROS_VENV))/bin/python $(BIN)/python -m pytest tests/ros
 
-lint: build
+lint: lint-rust lint-python
+
+lint-rust:
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --locked -- -D warnings
+
+lint-python: build
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy --strict python/hrsafety
@@ -71,9 +75,9 @@ docs: build
 	$(BIN)/sphinx-build -W --keep-going -j auto -b html docs target/docs
 	$(BIN)/python docs/check_links.py target/docs
 
-# The linters wait for one core most of the time: pages are written beside them.
+# Each waits for one core part of the time.
 check: build
-	$(MAKE) -j2 --output-sync=target lint docs
+	$(MAKE) -j3 --output-sync=target lint-rust lint-python docs
 
 # RECORDING names a table of recorded people for the gallery.
 RECORDING ?= zara01.csv

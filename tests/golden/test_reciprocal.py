@@ -19,7 +19,7 @@ from hrsafety import navigation as nav
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
-EPISODES, STEPS = 500, 6
+EPISODES, STEPS = 240, 6
 INTERVAL, HORIZON = 0.125, 2.0
 FAR = 1000.0
 VELOCITY = 1e-5  # m/s
@@ -277,7 +277,7 @@ def test_velocities_are_those_of_pyrvo() -> None:
             largest = max(largest, float(apart[apart <= VELOCITY].max(initial=0.0)))
     assert not unexplained
     assert sizes == set(range(2, 21))
-    assert compared > 30_000
+    assert compared > 14_000
     assert beyond <= LARGEST_SHARE * compared
     assert 0.0 < largest <= VELOCITY
 
@@ -295,5 +295,5 @@ def test_velocities_solve_the_program_exactly() -> None:
                 gap = np.hypot(*(agents.position - agents.position[index]).T) - agents.radius - agents.radius[index]
                 touching += bool(np.delete(gap, index).min() < 0.0)
     # Both parts of the method are there: programs without a solution, and contacts to be left.
-    assert blocked > 30
-    assert touching > 30
+    assert blocked > 15
+    assert touching > 15

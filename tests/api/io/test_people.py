@@ -397,8 +397,8 @@ def right_files(factory: pytest.TempPathFactory) -> tuple[Path, dict[str, tuple[
 # ---- size ---------------------------------------------------------------------------------------
 
 
-def test_three_million_rows_are_read_without_a_loop_over_rows(tmp_path: Path) -> None:
-    people, instants = 3000, 1000
+def test_a_million_rows_are_read_without_a_loop_over_rows(tmp_path: Path) -> None:
+    people, instants = 1000, 1000
     rng = np.random.default_rng(0)
     path = tmp_path / "large.csv"
     with path.open("w") as file:
@@ -410,7 +410,7 @@ def test_three_million_rows_are_read_without_a_loop_over_rows(tmp_path: Path) ->
     began = process_time()
     found = io.load_people(path)
     # Wide: no row is read by Python.
-    assert process_time() - began < 40.0
+    assert process_time() - began < 15.0
     assert len(found) == people * instants
 
 

@@ -224,7 +224,10 @@ fn whoever_lurks_beside_the_beams_is_within_eta_of_the_belief() {
             "{found:?}"
         );
     }
-    // Whoever takes out more than what a core would have ended takes him out.
+}
+
+#[test]
+fn whoever_takes_out_more_than_what_a_core_would_have_ended_loses_who_lurks() {
     let beyond: usize = (0..5).map(|seed| lurking(seed, 0.025, 0.2)[0]).sum();
     assert!(beyond > 0);
 }
