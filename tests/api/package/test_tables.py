@@ -49,7 +49,7 @@ RESULTS: dict[str, Callable[[], Table]] = {
         nav.robots.HOLONOMIC_WHEELS[0], nav.robots.WheelReference.sine(duration=1.0)
     ),
     "Comparison": lambda: nav.compare({"c1": scenarios.configuration("c1"), "c3": CROSSING}, LAWS),
-    "RunTable": lambda: nav.simulate_many(NOISY, LAW, seeds=5, paths=True),
+    "RunTable": lambda: nav.simulate_many(NOISY, LAWS, paths=True),
     "RunTable of a batch": lambda: nav.simulate_batch([scenarios.configuration("c2"), CROSSING], LAW),
     "GainSearch": lambda: nav.optimize_gains([CROSSING], **FEW),
     "global GainSearch": lambda: nav.optimize_gains([CROSSING], method="cma_es", evaluations=200),
