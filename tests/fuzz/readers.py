@@ -77,6 +77,7 @@ def _tables(folder: Path, found: dict[str, tuple[Path, Callable[[Path], Any]]]) 
     found["load_track"] = (track, io.load_track)
     for name, reader, source in (
         ("materials.toml", contact.load_materials, _MATERIALS),
+        ("press.csv", lambda path: contact.load_compression_test(path, thickness=0.02, area=0.01), _PRESS),
         ("limits.toml", load_limits, _LIMITS),
         ("limits.csv", load_limits, _LIMIT_ROWS),
         ("rows.csv", read_rows, _rows()),
@@ -92,6 +93,7 @@ def _rows() -> str:
 
 
 _MATERIALS = '[[materials]]\nname = "soft"\nlaw = "linear"\nE = 1e5\nsource = "own test"\n'
+_PRESS = "displacement_mm,force_N\n0,0\n1,40\n2,60\n6,90\n12,200\n"
 _LIMITS = (
     'id = "own"\ntitle = "Own"\nedition = "1"\n'
     '[[limits]]\nregion = "chest"\ncontact = "transient"\nforce_N = 100.0\nsource = "own tests"\n'

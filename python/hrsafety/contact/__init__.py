@@ -16,6 +16,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.contact.cell.robot import ContactRobot as ContactRobot
     from hrsafety.contact.cell.study import ContactStudy as ContactStudy, study as study
     from hrsafety.contact.chance import Exceedance as Exceedance
+    from hrsafety.contact.compression import load_compression_test as load_compression_test
     from hrsafety.contact.contact import Contact as Contact, Support as Support
     from hrsafety.contact.covering import (
         CompressedCovering as CompressedCovering,

@@ -5,20 +5,23 @@ from __future__ import annotations
 import os
 import tomllib
 from collections.abc import Mapping
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from hrsafety._arguments import readable
+from hrsafety._arguments import number, readable
 from hrsafety._display import displayed
 from hrsafety._words import meant
+from hrsafety.contact.compression import load_compression_test
 from hrsafety.contact.materials import Material, material
 from hrsafety.errors import InvalidParameterError, Shown
 
-__all__ = ["CatalogMaterial", "load_materials"]
+__all__ = ["CatalogMaterial", "load_materials", "material_beside"]
 
 MOST_BYTES = 2**22
 MOST_MATERIALS = 1000
 _WORDS = ("name", "source", "note")
+_OF_TEST = ("law", "file", "thickness", "area")
 
 
 @displayed
@@ -50,7 +53,8 @@ def load_materials(path: str | os.PathLike[str]) -> Mapping[str, CatalogMaterial
     ----------
     path : path-like
         A TOML file with a table ``[[materials]]`` for each: ``name``, ``source``, ``law`` and the numbers of
-        the law as in `contact.material`, in Pa; ``note`` if wanted.
+        the law as in `contact.material`, in Pa; ``note`` if wanted. A table may name a compression test in place of
+        its points: ``law = "table"``, ``file``, and ``thickness`` and ``area`` of the specimen.
 
     Returns
     -------
@@ -89,14 +93,29 @@ def load_materials(path: str | os.PathLike[str]) -> Mapping[str, CatalogMaterial
         raise InvalidParameterError(f"{place.name}: materials", rule, Shown(f"{type(entries).__name__}"))
     found: dict[str, CatalogMaterial] = {}
     for index, entry in enumerate(entries):
-        read = _material(f"{place.name}: materials[{index}]", entry)
+        read = _material(f"{place.name}: materials[{index}]", entry, place.parent)
         if read.name in found:
             raise InvalidParameterError(f"{place.name}: materials[{index}].name", "differ from the others", read.name)
         found[read.name] = read
     return MappingProxyType(found)
 
 
-def _material(where: str, entry: Any) -> CatalogMaterial:
+def material_beside(given: Mapping[str, Any], folder: Path) -> Material:
+    """Return a law from the table of a file; a compression test that it names lies beside that file."""
+    if "file" not in given:
+        return material(given)
+    for key in given:
+        if key not in _OF_TEST:
+            raise InvalidParameterError("material", f"have no keys but {', '.join(_OF_TEST)} with a file", key)
+    if given.get("law") != "table":
+        raise InvalidParameterError("material.law", 'be "table" with a file', given.get("law"))
+    if not isinstance(given["file"], str):
+        raise InvalidParameterError("material.file", "be a text in quotes", given["file"])
+    sizes = {name: number(f"material.{name}", given[name]) for name in ("thickness", "area") if name in given}
+    return load_compression_test(folder / given["file"], **sizes)
+
+
+def _material(where: str, entry: Any, folder: Path) -> CatalogMaterial:
     if not isinstance(entry, dict):
         raise InvalidParameterError(where, "be a table", Shown(type(entry).__name__))
     words = {}
@@ -109,6 +128,6 @@ def _material(where: str, entry: Any) -> CatalogMaterial:
     if "law" not in law:
         raise InvalidParameterError(f"{where}.law", "be given", Shown("nothing"), meant("law", entry))
     try:
-        return CatalogMaterial(words["name"], words["source"], words["note"], material(law))
+        return CatalogMaterial(words["name"], words["source"], words["note"], material_beside(law, folder))
     except InvalidParameterError as error:
         raise error.renamed(f"{where} ({words['name']!r}): {error.argument}") from None

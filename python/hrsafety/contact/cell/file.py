@@ -12,7 +12,7 @@ from typing import Any
 from hrsafety import _keys as kind
 from hrsafety._keys import Keys, checked, located, one_of, parsed
 from hrsafety._words import meant
-from hrsafety.contact.catalogs import CatalogMaterial, load_materials
+from hrsafety.contact.catalogs import CatalogMaterial, load_materials, material_beside
 from hrsafety.contact.cell.cell import (
     MOST_CONTACTS,
     MOST_COVERINGS,
@@ -182,6 +182,11 @@ def coverings_of(
                 raise InvalidParameterError(f"{path}.material", rule, known, meant(known, catalog))
             values["material"], sources[name] = catalog[known].law, f"{known}: {catalog[known].source}"
         with located(path):
+            if isinstance(values["material"], Mapping):
+                test = values["material"].get("file")
+                values["material"] = material_beside(values["material"], folder)
+                if test is not None:
+                    read[f"compression test of {name}"] = _sha256(folder / test)
             strains[name] = values.pop("max_strain", None)
             found[name] = Covering(**values)
     return found, strains, sources

@@ -1,0 +1,219 @@
+"""Compression tests of coverings: force over way, or stress over strain, of a table as a material."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from hrsafety._arguments import Array, positive
+from hrsafety.contact.materials import StressTable
+from hrsafety.errors import Shown
+from hrsafety.io.cells import TableColumn, read_columns
+from hrsafety.io.headers import cells_of, delimiter_of, first_row, is_number
+from hrsafety.io.reader import Document
+from hrsafety.plausibility import HrsafetyWarning, issue
+
+__all__ = ["load_compression_test"]
+
+_WORDS: Mapping[str, tuple[str, ...]] = {
+    "strain": ("strain", "compression_strain", "dehnung", "stauchung"),
+    "way": (
+        "displacement",
+        "deflection",
+        "compression",
+        "deformation",
+        "stroke",
+        "way",
+        "weg",
+        "standardweg",
+        "position",
+    ),
+    "stress": ("stress", "compressive_stress", "pressure", "spannung", "druckspannung"),
+    "force": ("force", "load", "standardforce", "kraft", "standardkraft"),
+}
+_UNITS: Mapping[str, Mapping[str, float]] = {
+    "strain": {"1": 1.0, "m_m": 1.0, "mm_mm": 1.0, "percent": 0.01, "%": 0.01},
+    "way": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6},
+    "stress": {"pa": 1.0, "kpa": 1e3, "mpa": 1e6, "n_mm2": 1e6, "n_cm2": 1e4},
+    "force": {"n": 1.0, "kn": 1e3, "mn": 1e-3},
+}
+POINTS = 128
+"""Points of a material at most: means of the rows between even strains."""
+UNLOADED = 0.02
+"""Share of the largest strain, and of the largest stress, up to which a specimen counts as unloaded."""
+ROUGH = 0.05
+"""Share of the largest stress by which the stress may fall while a specimen is pressed: noise."""
+LOADED = 0.5
+"""Share of the largest strain from which on a specimen counts as pressed before."""
+
+
+class _Column(NamedTuple):
+    """Column of a table with the size of its unit."""
+
+    place: int
+    title: str
+    scale: float
+
+
+def load_compression_test(
+    path: str | os.PathLike[str], *, thickness: float | None = None, area: float | None = None
+) -> StressTable:
+    r"""Read a compression test: its last loading up to the largest strain becomes a material.
+
+    Parameters
+    ----------
+    path : path-like
+        A text table with a header, whose names carry their unit: ``strain`` (or ``strain_%``) or ``displacement_mm``,
+        and ``stress_kPa`` or ``force_N``; units may stand in brackets or in a row of their own. Other columns are left
+        out.
+    thickness, area : float or None
+        Of the specimen before the test, in m and m^2; for columns of displacement and force.
+
+    Returns
+    -------
+    StressTable
+        At most 128 points, each the mean of the rows around it. It holds for the speed of the test: foams are stiffer in
+        a quick collision, see ``rate`` of a `Covering`.
+
+    Raises
+    ------
+    FileError
+        If the file is no such table, or the test does not begin unloaded, or its stress falls while it is pressed.
+    InvalidParameterError
+        If a size is missing or not positive.
+
+    Warns
+    -----
+    HrsafetyWarning
+        If the specimen was pressed before: the first loading of a foam is stiffer than the later ones.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from hrsafety import contact
+    >>> rows = "displacement_mm,force_N\n0,0\n1,40\n2,60\n6,90\n12,200\n"
+    >>> _ = Path("press.csv").write_text(rows)
+    >>> foam = contact.load_compression_test("press.csv", thickness=0.02, area=0.01)
+    >>> foam.strain.tolist(), foam.stress.tolist()
+    ([0.0, 0.05, 0.1, 0.3, 0.6], [0.0, 4000.0, 6000.0, 9000.0, 20000.0])
+    """
+    document = Document(path)
+    columns, skip, delimiter, count = _columns(document)
+    chosen = []
+    for name, other, size, given in (("strain", "way", "thickness", thickness), ("stress", "force", "area", area)):
+        column = columns.get(name) or columns.get(other)
+        if column is None:
+            rule = f"have a column of {name}, or of {'displacement' if other == 'way' else other}, with its unit"
+            raise document.error("columns_needed", rule, Shown(", ".join(_titles(document))[:200]))
+        divisor = 1.0
+        if name not in columns:
+            if given is None:
+                raise document.error(
+                    "size_needed", f"come with the {size} of the specimen", Shown(column.title), f"{size}="
+                )
+            divisor = positive(size, given)
+        chosen.append(column._replace(scale=column.scale / divisor))
+    numbers = [TableColumn(each.place, each.title) for each in chosen]
+    table = read_columns(document, delimiter=delimiter, numbers=numbers, skip=skip, columns=count).numbers
+    table = table[np.isfinite(table).all(axis=1)] * [each.scale for each in chosen]
+    if len(table) < 2:
+        raise document.error("no_rows", "hold at least two rows of numbers", len(table))
+    # Presses count down or up, and pull is the positive direction of many.
+    strain, stress = (each if abs(each.max()) >= abs(each.min()) else -each for each in table.T)
+    return _material(document, strain, stress)
+
+
+def _material(document: Document, strain: Array, stress: Array) -> StressTable:
+    """Return the last loading up to the largest strain as points."""
+    most = int(np.argmax(strain))
+    if not 0.0 < strain[most] < 1.0:
+        remedy = "name its unit, as strain_%, or check the thickness of the specimen"
+        raise document.error("strain", "have a largest strain above 0 and below 1", float(strain[most]), remedy)
+    # The last stretch of unloaded rows before: it begins where the specimen came to rest.
+    loaded = np.flatnonzero(strain[:most] > UNLOADED * strain[most])
+    free = np.flatnonzero(strain[:most] <= UNLOADED * strain[most])
+    last = int(free[-1]) if len(free) else 0
+    before = loaded[loaded < last]
+    first = int(before[-1]) + 1 if len(before) else 0
+    start = first + int(np.argmin(strain[first : last + 1]))
+    if (strain[:start] > LOADED * strain[most]).any():
+        issue(
+            f"{document.name}: the specimen was pressed before; its last loading is read, and the first one is stiffer",
+            HrsafetyWarning,
+            stacklevel=3,
+        )
+    strain, stress = strain[start : most + 1], stress[start : most + 1]
+    if strain[0] > UNLOADED * strain[-1] or abs(stress[0]) > UNLOADED * stress.max():
+        shown = Shown(f"strain {strain[0]:.3g} with {stress[0]:.3g} Pa")
+        raise document.error(
+            "preloaded", "begin unloaded, at strain 0 and stress 0", shown, "take off what it begins at"
+        )
+    pressed = strain > 0.0
+    strain, stress = strain[pressed], stress[pressed]
+    bins = np.minimum((POINTS * strain / strain[-1]).astype(np.int64), POINTS - 1) if len(strain) > POINTS else None
+    if bins is not None:
+        rows = np.bincount(bins, minlength=POINTS)
+        there = rows > 0
+        sums = (np.bincount(bins, each, minlength=POINTS)[there] for each in (strain, stress))
+        strain, stress = (each / rows[there] for each in sums)
+    raised = np.maximum.accumulate(np.maximum(stress, 0.0))
+    if (raised - stress).max() > ROUGH * raised[-1] or not (np.diff(strain) > 0.0).all():
+        worst = int(np.argmax(raised - stress))
+        shown = Shown(f"{stress[worst]:.4g} Pa at strain {strain[worst]:.3g} after {raised[worst]:.4g} Pa")
+        raise document.error(
+            "not_rising", "have a stress that does not fall while it is pressed", shown, "smooth it first"
+        )
+    return StressTable(strain=np.append(0.0, strain), stress=np.append(0.0, raised))
+
+
+# ---- header -------------------------------------------------------------------------------------
+
+
+def _titles(document: Document) -> list[str]:
+    _, header = first_row(document)
+    return cells_of(header, delimiter_of(header))
+
+
+def _columns(document: Document) -> tuple[dict[str, _Column], int, str, int]:
+    """Return the columns that are known, the lines before the rows, the delimiter, and the number of columns."""
+    number, header = first_row(document)
+    delimiter = delimiter_of(header)
+    titles = cells_of(header, delimiter)
+    if number < 0 or is_number(titles[0]):
+        raise document.error("columns_needed", "have a header, such as displacement_mm,force_N", Shown(header[:80]))
+    skip = number + 1
+    below = document.first_lines[skip] if skip < len(document.first_lines) else ""
+    units = cells_of(below, delimiter)
+    if len(units) == len(titles) and not any(is_number(each) for each in units):
+        titles, skip = [f"{title} {unit}" for title, unit in zip(titles, units, strict=True)], skip + 1
+    found: dict[str, _Column] = {}
+    for place, title in enumerate(titles):
+        quantity, scale = _meaning(title)
+        if not quantity:
+            continue
+        if scale is None:
+            remedy = f"add one of {', '.join(_UNITS[quantity])} to its name, as {title}_{next(iter(_UNITS[quantity]))}"
+            raise document.error("unit_needed", "name the unit of each column", title, remedy, line=number + 1)
+        if quantity in found:
+            shown = Shown(f"{found[quantity].title} and {title}")
+            raise document.error("ambiguous_columns", f"have one column of {quantity}", shown, line=number + 1)
+        found[quantity] = _Column(place, title, scale)
+    return found, skip, delimiter, len(titles)
+
+
+def _meaning(title: str) -> tuple[str, float | None]:
+    """Return the quantity of a column and the size of its unit; strain alone needs none."""
+    plain = re.sub(r"[\s\[\]()/.\-^*]+", "_", title.lower().replace("²", "2")).strip("_").replace("_in_", "_")
+    plain = re.sub(r"_(mm|cm)_2$", r"_\g<1>2", plain)
+    for quantity, words in _WORDS.items():
+        for word in words:
+            if plain == word:
+                return quantity, 1.0 if quantity == "strain" else None
+            unit = plain.removeprefix(f"{word}_")
+            if unit != plain and unit in _UNITS[quantity]:
+                return quantity, _UNITS[quantity][unit]
+    return "", None

@@ -1,0 +1,144 @@
+"""Compression tests of foams in tables: what is read is what was measured, in every form of a file."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hrsafety import contact, standards
+from hrsafety.errors import HrsafetyError
+from hrsafety.plausibility import HrsafetyWarning
+
+THICKNESS, AREA = 0.025, 0.01
+SIZES = {"thickness": THICKNESS, "area": AREA}
+FOAM = contact.GibsonAshby(modulus=2.5e5, plateau=12e3, lock=0.85)
+STRAIN = np.linspace(0.0, 0.7, 1500)
+
+
+def stress_of(strain: np.ndarray) -> np.ndarray:
+    """Return a curve with a plateau that rises at the end."""
+    return 12e3 * (1.0 - np.exp(-20.0 * strain)) + 6e4 * strain**5
+
+
+def written(folder: Path, header: str, *columns: np.ndarray, delimiter: str = ",") -> Path:
+    place = folder / "press.csv"
+    rows = [delimiter.join(f"{each:.9g}" for each in row) for row in zip(*columns, strict=True)]
+    place.write_text("\n".join([header, *rows]) + "\n", encoding="utf-8")
+    return place
+
+
+FORMS = {
+    "strain and stress": ("strain,stress_Pa", 1.0, 1.0, {}),
+    "percent and kPa": ("Strain [%],Stress [kPa]", 100.0, 1e-3, {}),
+    "N/mm^2": ("strain_percent,stress (N/mm^2)", 100.0, 1e-6, {}),
+    "way and force": ("displacement_mm,force_N", 1e3 * THICKNESS, AREA, SIZES),
+    "a row of units": (
+        "Standardweg,Standardkraft\nmm,kN",
+        1e3 * THICKNESS,
+        1e-3 * AREA,
+        {"thickness": THICKNESS, "area": AREA},
+    ),
+    "pull is positive": ("Displacement (mm),Load (N)", -1e3 * THICKNESS, -AREA, SIZES),
+}
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_every_form_is_the_same_material(tmp_path: Path, form: str) -> None:
+    header, of_strain, of_stress, sizes = FORMS[form]
+    found = contact.load_compression_test(
+        written(tmp_path, header, of_strain * STRAIN, of_stress * stress_of(STRAIN)), **sizes
+    )
+    assert len(found.strain) <= 129
+    assert (found.strain[0], found.stress[0]) == (0.0, 0.0)
+    assert found.strain[-1] == pytest.approx(0.7, rel=0.02)
+    np.testing.assert_allclose(found.stress, stress_of(np.asarray(found.strain)), rtol=0.02, atol=40.0)
+
+
+def test_loads_with_it_are_those_of_the_whole_curve(tmp_path: Path) -> None:
+    read = contact.load_compression_test(written(tmp_path, "strain,stress_Pa", STRAIN, stress_of(STRAIN)))
+    whole = contact.StressTable(strain=STRAIN, stress=stress_of(STRAIN))
+    limit = standards.limits().contact("chest", "transient")
+    speeds = [
+        contact.Contact(robot=8.0, body=limit, covering=contact.Covering(material=law, thickness=THICKNESS, area=6e-3))
+        .allowed_speed()
+        .speed
+        for law in (read, whole)
+    ]
+    assert speeds[0] == pytest.approx(speeds[1], rel=5e-3)
+
+
+def test_the_last_of_several_loadings_is_read_and_told(tmp_path: Path) -> None:
+    cycle = np.concatenate([STRAIN, STRAIN[::-1]])
+    strain = np.tile(cycle, 3)
+    stress = np.concatenate([factor * stress_of(cycle) for factor in (1.3, 1.05, 1.0)])
+    strain[4 * len(STRAIN) :] *= 1.0001  # the last one goes furthest
+    with pytest.warns(HrsafetyWarning, match="was pressed before"):
+        found = contact.load_compression_test(written(tmp_path, "strain,stress_Pa", strain, stress))
+    np.testing.assert_allclose(found.stress, stress_of(np.asarray(found.strain)), rtol=0.02, atol=40.0)
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 10**6), noise=st.floats(0.0, 0.01))
+def test_noise_is_averaged(tmp_path_factory: pytest.TempPathFactory, seed: int, noise: float) -> None:
+    draw = np.random.default_rng(seed)
+    stress = stress_of(STRAIN) + noise * 2e4 * draw.standard_normal(len(STRAIN))
+    stress[0] = 0.0
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = contact.load_compression_test(
+            written(tmp_path_factory.mktemp("press"), "strain,stress_Pa", STRAIN, stress)
+        )
+    assert (np.diff(found.stress) >= 0.0).all()
+    np.testing.assert_allclose(found.stress[5:], stress_of(np.asarray(found.strain[5:])), atol=40.0 + noise * 2e4)
+
+
+@pytest.mark.parametrize(
+    ("header", "columns", "sizes", "words"),
+    [
+        ("strain,stress", (STRAIN, stress_of(STRAIN)), {}, "name the unit of each column, got 'stress'"),
+        ("strain,temperature", (STRAIN, STRAIN), {}, "have a column of stress, or of force"),
+        ("time_s,force_N", (STRAIN, STRAIN), {"area": AREA}, "have a column of strain, or of displacement"),
+        ("displacement_mm,stress_Pa", (STRAIN, STRAIN), {}, "come with the thickness of the specimen"),
+        ("strain,force_N", (STRAIN, STRAIN), {}, "come with the area of the specimen"),
+        ("strain,force_N", (STRAIN, STRAIN), {"area": -1.0}, "area must be"),
+        ("strain,stress_Pa", (100.0 * STRAIN, stress_of(STRAIN)), {}, "largest strain above 0 and below 1"),
+        ("strain,stress_Pa", (STRAIN + 0.1, stress_of(STRAIN)), {}, "begin unloaded"),
+        ("strain,stress_Pa", (STRAIN, stress_of(STRAIN) + 5e3), {}, "begin unloaded"),
+        ("strain,stress_Pa", (STRAIN, STRAIN * (0.5 - STRAIN) + 0.14), {}, "begin unloaded"),
+        ("strain,stress_Pa", (STRAIN, 1e4 * STRAIN * (0.8 - STRAIN)), {}, "does not fall"),
+        ("strain,stress_Pa", (STRAIN[:1], STRAIN[:1]), {}, "at least two rows"),
+        ("strain,strain_%,stress_Pa", (STRAIN, STRAIN, STRAIN), {}, "one column of strain"),
+    ],
+)
+def test_what_is_no_test_is_refused(
+    tmp_path: Path, header: str, columns: tuple[np.ndarray, ...], sizes: dict[str, float], words: str
+) -> None:
+    with pytest.raises(HrsafetyError, match=words):
+        contact.load_compression_test(written(tmp_path, header, *columns), **sizes)
+
+
+def test_a_cell_and_a_catalog_take_a_file(tmp_path: Path) -> None:
+    press = written(tmp_path, "displacement_mm,force_N", 1e3 * THICKNESS * STRAIN, AREA * stress_of(STRAIN))
+    law = contact.load_compression_test(press, thickness=THICKNESS, area=AREA)
+    numbers = f'law = "table"\nfile = "press.csv"\nthickness = {THICKNESS}\narea = {AREA}\n'
+    catalog = tmp_path / "foams.toml"
+    catalog.write_text(f'[[materials]]\nname = "grey"\nsource = "press"\n{numbers}', encoding="utf-8")
+    assert contact.load_materials(catalog)["grey"].law == law
+    inline = "{ " + ", ".join(numbers.strip().split("\n")) + " }"
+    cell = tmp_path / "cell.toml"
+    for head, material in (("", inline), ('catalog = "foams.toml"\n', '"grey"')):
+        cell.write_text(
+            f'{head}speed = 0.2\ncovering = "pad"\n[robot]\nmass = 8.0\n[[coverings]]\nname = "pad"\n'
+            f"material = {material}\nthickness = 0.02\narea = 4e-3\n"
+            '[[contacts]]\nregion = "chest"\ncontact = "transient"\n',
+            encoding="utf-8",
+        )
+        assert contact.load_cell(cell).coverings["pad"].material == law
+    cell.write_text(cell.read_text().replace('"grey"', '{ law = "table", file = "gone.csv" }'), encoding="utf-8")
+    with pytest.raises(HrsafetyError, match=r"gone\.csv"):
+        contact.load_cell(cell)
