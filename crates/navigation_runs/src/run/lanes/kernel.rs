@@ -16,7 +16,7 @@ use navigation_world::world::geometry::RobotState;
 use navigation_world::world::scenario::Scenario;
 use navigation_world::world::shape::Shape;
 use numeric::error::{Failure, Result};
-use numeric::lanes::{Mask, Real, Truth, Vector2};
+use numeric::lanes::{Lanes, Mask, Real, Truth, Vector2};
 
 /// A run to be made.
 #[derive(Clone, Copy)]
@@ -61,7 +61,7 @@ pub(crate) struct LawInLanes<'a, R, L: ?Sized> {
 }
 
 /// Runs that take turns in the lanes.
-struct Relay<'a, R: Real> {
+pub(crate) struct Relay<'a, R: Real> {
     plan: &'a RunPlan,
     obstacles: LaneObstacles<R>,
     felt: Option<FeltObstacles<R>>,
@@ -88,7 +88,7 @@ struct Relay<'a, R: Real> {
 /// An option is out of range, the law cannot work in a scenario, the state of a run became non-finite, or
 /// the caller asked to stop.
 #[inline(always)]
-pub(crate) fn run_lanes<R: Real, L: Law<R> + ?Sized, C: Recorder<R>>(
+pub(crate) fn run_lanes<R: Staged, L: Law<R> + ?Sized, C: Recorder<R>>(
     group: &Group<'_>,
     maps: &Maps,
     LawInLanes {
@@ -161,7 +161,27 @@ pub(crate) fn run_lanes<R: Real, L: Law<R> + ?Sized, C: Recorder<R>>(
     }
 }
 
-impl<'a, R: Real> Relay<'a, R> {
+/// Numbers of runs for which a Runge-Kutta step may evaluate the force in every stage. Lanes hold it: no law is
+/// compiled for stages of lanes.
+pub(crate) trait Staged: Real {
+    /// A Runge-Kutta step that is not under a held force.
+    fn staged_step<L: Law<Self> + ?Sized>(relay: &mut Relay<'_, Self>, law: &mut L, stop: Stop<'_>);
+}
+
+impl Staged for f64 {
+    fn staged_step<L: Law<f64> + ?Sized>(relay: &mut Relay<'_, f64>, law: &mut L, stop: Stop<'_>) {
+        relay.rk4(law, stop);
+    }
+}
+
+impl<const N: usize> Staged for Lanes<N> {
+    #[inline(always)]
+    fn staged_step<L: Law<Self> + ?Sized>(relay: &mut Relay<'_, Self>, _: &mut L, _: Stop<'_>) {
+        rk4_held(&mut relay.runs);
+    }
+}
+
+impl<'a, R: Staged> Relay<'a, R> {
     /// Lanes without work, all in one scenario.
     fn new(group: &Group<'a>, first: &'a Scenario, maps: &Maps) -> Result<Self> {
         let clock = group.plan.run.clock(first)?;
@@ -384,9 +404,8 @@ impl<'a, R: Real> Relay<'a, R> {
         let before: Vector2<R> = self.runs.position;
         match self.plan.run.integrator {
             Integrator::SemiImplicitEuler => semi_implicit_euler(&mut self.runs),
-            // Lanes are for held forces; without lanes this law is not compiled a second time.
-            Integrator::Rk4 if self.plan.run.hold || R::WIDTH > 1 => rk4_held(&mut self.runs),
-            Integrator::Rk4 => self.rk4(law, stop),
+            Integrator::Rk4 if self.plan.run.hold => rk4_held(&mut self.runs),
+            Integrator::Rk4 => R::staged_step(self, law, stop),
         }
         self.steps += R::splat(1.0);
         let later = self.time();
