@@ -5,14 +5,16 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from hrsafety import zones
+from hrsafety import io, zones
 from hrsafety.cli import output, progress, terminal, verdict
 from hrsafety.cli.parsers import UsageError
 from hrsafety.errors import InvalidParameterError
 from hrsafety.pages.report import Report, ReportCell, ReportTable, Section
+from hrsafety.plausibility import ResultWarning
 from hrsafety.zones.checking import VERDICTS
 from hrsafety.zones.monitor_files import corners_of_text
 
@@ -72,6 +74,23 @@ def _footprint(text: str) -> object:
             rule = 'be a radius in m, or corners as "[[x, y], [x, y], ...]"'
             raise InvalidParameterError("--footprint", rule, text) from None
         return corners
+
+
+def _of_file(path: str) -> tuple[dict[str, Any], tuple[ResultWarning, ...]]:
+    """Return what the file of the zones says of the robot elsewhere, and doubts; nothing if it holds zones alone."""
+    try:
+        settings = io.read_nav2(path)
+    except InvalidParameterError:
+        return {}, ()
+    holonomic = settings.drive == "holonomic"
+    found = {
+        "footprint": settings.robot_radius if settings.footprint is None else settings.padded,
+        "max_speed": settings.max_speed,
+        "min_speed": None if holonomic or settings.min_speed is None else min(settings.min_speed, 0.0),
+        "max_turn_rate": settings.max_turn_rate,
+        "holonomic": holonomic or None,
+    }
+    return {name: value for name, value in found.items() if value is not None}, settings.warnings
 
 
 # ---- zones that hold -----------------------------------------------------------------------------
@@ -222,7 +241,10 @@ def _check(options: argparse.Namespace) -> None:
         output.require_page("--out")
     mend = None if options.mend is None else output.target("--mend", options.mend, (".yaml", ".yml"))
     output.check_json(options)
-    given = _given(options)
+    of_file, doubts = _of_file(options.file)
+    if options.holonomic:
+        of_file.pop("min_speed", None)
+    given = of_file | _given(options)
     conditions, _ = zones.Conditions.assumed(**given)
     with output.located(options.file):
         monitor = zones.load_monitor(options.file, footprint=conditions.footprint)
@@ -235,6 +257,7 @@ def _check(options: argparse.Namespace) -> None:
             progress=None if shown is None else lambda done, total: shown("attacks", done, total, None),
             **given,
         )
+    found = replace(found, warnings=tuple(dict.fromkeys((*found.warnings, *doubts))))
     report = _check_report(found, options)
     print(terminal.told(report))
     written = []

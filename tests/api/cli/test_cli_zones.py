@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -71,6 +72,47 @@ def test_a_check_that_is_not_told_the_robot_is_not_checked(tmp_path: Path, capsy
     told = capsys.readouterr()
     assert "NOT CHECKED  holds" in told.out
     assert "taken from the default robot of Nav2" in told.err
+
+
+SETTINGS = """
+velocity_smoother:
+  ros__parameters:
+    max_velocity: [0.4, 0.0, 0.5]
+    min_velocity: [-0.1, 0.0, -0.5]
+    max_accel: [2.5, 0.0, 3.2]
+    max_decel: [-2.5, 0.0, -3.2]
+controller_server:
+  ros__parameters:
+    controller_plugins: ["FollowPath"]
+    FollowPath: {plugin: "dwb_core::DWBLocalPlanner", max_vel_x: 0.4, max_speed_xy: 0.4, max_vel_theta: 0.5,
+      min_vel_x: 0.0, max_vel_y: 0.0, min_vel_y: 0.0, acc_lim_x: 2.5, decel_lim_x: -2.5, acc_lim_theta: 3.2}
+local_costmap:
+  local_costmap:
+    ros__parameters:
+      footprint: "[[0.3, 0.2], [0.3, -0.2], [-0.3, -0.2], [-0.3, 0.2]]"
+      footprint_padding: 0.01
+"""
+
+
+def test_a_check_knows_the_robot_that_stands_in_the_same_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, values = tmp_path / "params.yaml", tmp_path / "v.json"
+    file.write_text(DEFAULT + SETTINGS)
+
+    def conditions(*options: str) -> dict[str, Any]:
+        main(["zones", "check", str(file), *CHECKED, *options, "--json", str(values)])
+        found: dict[str, Any] = json.loads(values.read_text())["conditions"]
+        return found
+
+    found = conditions()
+    assert (found["max_speed"], found["max_turn_rate"]) == (0.4, 0.5)
+    assert found["footprint"][0] == pytest.approx([0.31, 0.21])
+    # What nobody has measured stays a doubt, and what is given counts.
+    told = capsys.readouterr().err
+    assert "not told, taken from the default robot of Nav2: deceleration" in told
+    assert "max_speed" not in told
+    assert conditions("--max-speed", "0.3")["max_speed"] == 0.3
 
 
 @pytest.mark.parametrize(
