@@ -76,8 +76,8 @@ def load_compression_test(
     Returns
     -------
     StressTable
-        At most 128 points, each the mean of the rows around it. It holds for the speed of the test: foams are stiffer in
-        a quick collision, see ``rate`` of a `Covering`.
+        At most 128 points, each the mean of the rows around it. It holds for the speed of the test: foams are stiffer
+        in a quick collision, see ``rate`` of a `Covering`.
 
     Raises
     ------

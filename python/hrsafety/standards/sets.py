@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
-import json
 import os
-from collections.abc import Iterator
-from functools import cache
-from importlib import resources
 from pathlib import Path
-from typing import Any
 
 from hrsafety._arguments import meant
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
-from hrsafety.standards.contact_limits import ContactLimit, Quantity
-from hrsafety.standards.limit_sets import MILLIMETER, SQUARE_CENTIMETER, LimitRow, LimitSet
+from hrsafety.standards.contact_limits import ContactLimit
+from hrsafety.standards.limit_sets import SQUARE_CENTIMETER, LimitSet
+from hrsafety.standards.shipped import SETS, shipped
 from hrsafety.standards.user_sets import SUFFIXES, load_limits
 
 __all__ = ["SETS", "above_published", "limits"]
-
-SETS = ("iso_ts_15066_2016",)
-"""Sets that ship with the package, the default one first."""
 
 
 def limits(name_or_path: str | os.PathLike[str] = SETS[0]) -> LimitSet:
@@ -48,7 +41,7 @@ def limits(name_or_path: str | os.PathLike[str] = SETS[0]) -> LimitSet:
     '2016'
     """
     if isinstance(name_or_path, str) and name_or_path in SETS:
-        return _shipped(name_or_path)
+        return shipped(name_or_path)
     if not isinstance(name_or_path, (str, os.PathLike)) or Path(name_or_path).suffix.lower() not in SUFFIXES:
         rule = f"be {' or '.join(SETS)}, or a file that ends in {' or '.join(SUFFIXES)}"
         raise InvalidParameterError("name_or_path", rule, name_or_path, meant(name_or_path, SETS))
@@ -68,7 +61,7 @@ def above_published(limit: ContactLimit) -> tuple[ResultWarning, ...]:
     tuple of ResultWarning
         One for a force and one for a pressure, none where the package knows no such region.
     """
-    published = _shipped(SETS[0])
+    published = shipped(SETS[0])
     if limit.set_id in SETS or limit.region not in published.regions or not limit.permitted:
         return ()
     rows = [row for row in published.rows if (row.region, row.contact) == (limit.region, limit.contact)]
@@ -89,56 +82,3 @@ def above_published(limit: ContactLimit) -> tuple[ResultWarning, ...]:
             )
             found.append(ResultWarning("above_published", f"limits.{name}", message))
     return tuple(found)
-
-
-@cache
-def _shipped(name: str) -> LimitSet:
-    file = resources.files("hrsafety.standards") / "data" / f"{name}.json"
-    data = json.loads(file.read_text(encoding="utf-8"))
-    return LimitSet(
-        id=data["id"],
-        title=data["title"],
-        edition=data["edition"],
-        note=data["also"],
-        rows=tuple(_rows(data)),
-        sources=data["sources"],
-    )
-
-
-def _rows(data: dict[str, Any]) -> Iterator[LimitRow]:
-    factors = {each["region"]: each["transient_factor"] for each in data["regions"]}
-    for each in data["regions"]:
-        spring = _quantity(each["spring_constant_N_per_mm"], 1.0 / MILLIMETER)
-        mass = _quantity(each["effective_mass_kg"])
-        force = _quantity(each["force_N"])
-        for contact, numbers, permitted in _both(force, factors[each["region"]]):
-            yield LimitRow(
-                each["region"],
-                None,
-                contact,
-                permitted,
-                force=numbers,
-                spring_constant=spring,
-                effective_mass=mass,
-            )
-    for each in data["areas"]:
-        area = each["area"] if each["side"] is None else f"{each['area']}, {each['side']}"
-        pressure = _quantity(each["pressure_N_per_cm2"], 1.0 / SQUARE_CENTIMETER)
-        for contact, numbers, permitted in _both(pressure, factors[each["region"]]):
-            yield LimitRow(each["region"], area, contact, permitted, pressure=numbers)
-
-
-def _both(limit: Quantity, factor: dict[str, Any]) -> Iterator[tuple[str, Quantity | None, bool]]:
-    """Yield a limit for both classes of contact; without a factor transient contact is not permitted."""
-    yield "quasi_static", limit, True
-    if factor["value"] is None:
-        yield "transient", None, False
-    else:
-        yield "transient", limit._replace(value=limit.value * factor["value"]), True
-
-
-def _quantity(entry: dict[str, Any], scale: float = 1.0) -> Quantity:
-    """Return a number of the data in SI units; a number without a source does not load."""
-    if not entry["sources"]:
-        raise InvalidParameterError("sources", "name where the number was read", entry["value"])
-    return Quantity(round(entry["value"] * scale, 9), entry["certainty"], tuple(entry["sources"]))

@@ -8,12 +8,14 @@ import os
 import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 from hrsafety._arguments import meant, readable, word
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.standards.contact_limits import CERTAINTIES, CONTACTS, Quantity
 from hrsafety.standards.limit_sets import MILLIMETER, SQUARE_CENTIMETER, LimitRow, LimitSet
+from hrsafety.standards.shipped import SETS, shipped
 
 __all__ = ["COLUMNS", "SUFFIXES", "load_limits", "template"]
 
@@ -28,7 +30,7 @@ LONGEST_WORD = 200
 NOT_PERMITTED = "not_permitted"
 
 _NEEDED = ("region", "contact", "source")
-_HEADER = ("id", "title", "edition", "note", "limits")
+_HEADER = ("id", "title", "edition", "note", "base", "limits")
 _SCALES = {
     "force_N": 1.0,
     "pressure_N_per_cm2": 1.0 / SQUARE_CENTIMETER,
@@ -44,7 +46,8 @@ def load_limits(path: str | os.PathLike[str]) -> LimitSet:
     Parameters
     ----------
     path : path-like
-        A file in TOML or CSV with the columns of `template`.
+        A file in TOML or CSV with the columns of `template`. In TOML ``base`` names a set of the package whose rows the
+        file changes: what a row leaves out is that of the base.
 
     Returns
     -------
@@ -80,6 +83,14 @@ def load_limits(path: str | os.PathLike[str]) -> LimitSet:
     try:
         header, rows = _toml(text) if place.suffix.lower() == ".toml" else ({}, _csv(text))
         found = tuple(_checked(rows))
+        base = None
+        if "base" in header:
+            base = shipped(word("base", header["base"], SETS))
+            found = tuple(_over(base, dict(zip((place for place, _ in rows), found, strict=True))))
+        if header.get("id", place.stem) in SETS:
+            raise InvalidParameterError(
+                "id", "differ from those of the sets of the package", header.get("id", place.stem)
+            )
     except InvalidParameterError as error:
         raise error.renamed(f"{place.name}: {error.argument}") from None
     return LimitSet(
@@ -88,7 +99,7 @@ def load_limits(path: str | os.PathLike[str]) -> LimitSet:
         edition=header.get("edition", "not given"),
         note=header.get("note", ""),
         rows=found,
-        sources={},
+        sources={} if base is None else base.sources,
     )
 
 
@@ -118,7 +129,12 @@ def template(kind: str = "csv") -> str:
         '# contact is "quasi_static" (clamped) or "transient". A force or pressure that is left out is not checked.',
         f'# force_N = "{NOT_PERMITTED}" says that this contact is not permitted at all.',
         f"# certainty is one of {', '.join(CERTAINTIES)}.",
-        *('id = ""', 'title = ""', 'edition = ""', "", "# [[limits]]"),
+        *('id = ""', 'title = ""', 'edition = ""'),
+        *(
+            f'# base = "{SETS[0]}"  # rows below stand over its rows; other ones are those of the base',
+            "",
+            "# [[limits]]",
+        ),
         *(f"# {column} =" for column in COLUMNS),
     ]
     return "\n".join(lines) + "\n"
@@ -233,6 +249,33 @@ def _ordered(place: str, clamped: LimitRow, free: LimitRow) -> None:
             rule = f"be at most as high for quasi_static as for transient ({most.value:g} {unit})"
             shown = Shown(f"{given.value:g} {unit}")
             raise InvalidParameterError(f"{place}: {name}", rule, shown, "exchange both if they are mixed up")
+
+
+def _over(base: LimitSet, own: Mapping[str, LimitRow]) -> Iterator[LimitRow]:
+    """Yield the rows of a set with those of the user, by their places in the file, over them."""
+    places = {(row.region, row.area, row.contact): place for place, row in own.items()}
+    known = {(row.region, row.area, row.contact) for row in base.rows}
+    for key, place in places.items():
+        if key not in known:
+            rule = f"be a row of {base.id}, which is the base"
+            raise InvalidParameterError(place, rule, Shown(_named(own[place])), "columns() of the base lists its rows")
+    bodies: dict[str, dict[str, Any]] = {}
+    for row in own.values():
+        given = {name: getattr(row, name) for name in ("spring_constant", "effective_mass")}
+        bodies.setdefault(row.region, {}).update({name: each for name, each in given.items() if each is not None})
+    merged: dict[tuple[str, str | None], LimitRow] = {}
+    for row in base.rows:
+        found = replace(row, **{name: each for name, each in bodies.get(row.region, {}).items() if getattr(row, name)})
+        where = places.get((row.region, row.area, row.contact))
+        if where is not None:
+            mine = own[where]
+            loads = {name: getattr(mine, name) or getattr(row, name) for name in ("force", "pressure")}
+            found = replace(found, permitted=mine.permitted, **(loads if mine.permitted else dict.fromkeys(loads)))
+        other = merged.setdefault((row.region, row.area), found)
+        if other is not found:
+            of_file = where or places.get((other.region, other.area, other.contact)) or "base"
+            _ordered(of_file, *sorted((other, found), key=lambda each: each.contact))
+        yield found
 
 
 def _named(row: LimitRow) -> str:

@@ -284,6 +284,64 @@ def test_limits_above_the_published_ones_are_doubted(tmp_path: Path, row: str, f
     assert not any(each.safe_side for each in doubts)
 
 
+def over_base(folder: Path, *rows: str, head: str = "") -> standards.LimitSet:
+    path = folder / "own.toml"
+    tables = "".join(f"[[limits]]\n{row}\n" for row in rows)
+    path.write_text(f'base = "iso_ts_15066_2016"\n{head}{tables}', encoding="utf-8")
+    return standards.limits(path)
+
+
+def test_rows_over_a_base_change_what_they_say(tmp_path: Path) -> None:
+    row = 'region = "hand_finger"\ncontact = "transient"\nforce_N = 200.0\nsource = "own tests"'
+    found = over_base(tmp_path, row)
+    assert (found.id, found.regions, found.areas()) == ("own", ISO.regions, ISO.areas())
+    hand, same = found.contact("hand_finger", "transient"), found.contact("hand_finger", "quasi_static")
+    assert (hand.force, hand.force_limit.sources) == (200.0, ("own tests",))
+    whole = ISO.contact("hand_finger", "transient")
+    assert (hand.pressure, hand.spring_constant, hand.body_mass) == (
+        whole.pressure,
+        whole.spring_constant,
+        whole.body_mass,
+    )
+    assert same.force == ISO.contact("hand_finger", "quasi_static").force
+    others = [region for region in ISO.regions if region != "hand_finger"]
+    for region in others:
+        for kind in ("quasi_static", "transient"):
+            assert found.contact(region, kind).force == ISO.contact(region, kind).force
+    # A spring is that of the whole region, and what is forbidden has no numbers.
+    stiff = over_base(tmp_path, row + "\nspring_constant_N_per_mm = 90.0").contact("hand_finger", "quasi_static")
+    assert stiff.spring_constant == 9e4
+    none = 'region = "chest"\ncontact = "transient"\nforce_N = "not_permitted"\nsource = "own rule"'
+    assert over_base(tmp_path, none).contact("chest", "transient").status == "not_permitted"
+
+
+@pytest.mark.parametrize(
+    ("row", "head", "words"),
+    [
+        (
+            'region = "hand"\ncontact = "transient"\nforce_N = 1.0',
+            "",
+            r"limits\[0\] must be a row of iso_ts_15066_2016",
+        ),
+        ('region = "chest"\narea = "heart"\ncontact = "transient"\nforce_N = 1.0', "", "must be a row of iso"),
+        (
+            'region = "chest"\ncontact = "transient"\nforce_N = 100.0',
+            "",
+            "at most as high for quasi_static as for trans",
+        ),
+        (
+            'region = "chest"\ncontact = "quasi_static"\nforce_N = 300.0',
+            "",
+            "at most as high for quasi_static as for trans",
+        ),
+        ('region = "chest"\ncontact = "transient"\nforce_N = 200.0', 'id = "iso_ts_15066_2016"\n', "id must differ"),
+    ],
+)
+def test_rows_that_do_not_fit_a_base_are_refused(tmp_path: Path, row: str, head: str, words: str) -> None:
+    with pytest.raises(InvalidParameterError, match=words):
+        over_base(tmp_path, row + '\nsource = "own tests"', head=head)
+
+
 @pytest.mark.parametrize("kind", ["csv", "toml"])
 def test_a_template_has_the_columns_and_no_values(tmp_path: Path, kind: str) -> None:
     path = tmp_path / f"empty.{kind}"
