@@ -284,7 +284,7 @@ def test_velocities_are_those_of_pyrvo() -> None:
 
 def test_velocities_solve_the_program_exactly() -> None:
     blocked, touching = 0, 0
-    for seed in range(0, EPISODES, 12):
+    for seed in range(0, EPISODES, 6):
         for agents, _, _ in episode(seed):
             ours = commanded(agents)
             for index, velocity in enumerate(ours):
@@ -295,5 +295,5 @@ def test_velocities_solve_the_program_exactly() -> None:
                 gap = np.hypot(*(agents.position - agents.position[index]).T) - agents.radius - agents.radius[index]
                 touching += bool(np.delete(gap, index).min() < 0.0)
     # Both parts of the method are there: programs without a solution, and contacts to be left.
-    assert blocked > 15
-    assert touching > 15
+    assert blocked > 30
+    assert touching > 30
