@@ -37,13 +37,13 @@ hooks: build
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check pre-commit
 	$(BIN)/pre-commit install
 
-# The native module is compiled on one core for minutes: tests in Rust run beside that.
+# The native module is compiled on one core for minutes, and Python waits for it: tests in Rust take what is left.
 test:
 	$(MAKE) -j2 build test-rust
 	$(PYTEST)
 
 test-rust:
-	cargo test --workspace --locked
+	nice cargo test --workspace --locked
 
 # What fails first when a formula, a message or a name is wrong: units in Rust, and the quick files.
 test-fast: build
