@@ -21,7 +21,7 @@ __all__ = ["CatalogMaterial", "load_materials", "material_beside"]
 MOST_BYTES = 2**22
 MOST_MATERIALS = 1000
 _WORDS = ("name", "source", "note")
-_OF_TEST = ("law", "file", "thickness", "area")
+_OF_TEST = ("law", "file", "thickness", "area", "loading")
 
 
 @displayed
@@ -54,7 +54,7 @@ def load_materials(path: str | os.PathLike[str]) -> Mapping[str, CatalogMaterial
     path : path-like
         A TOML file with a table ``[[materials]]`` for each: ``name``, ``source``, ``law`` and the numbers of
         the law as in `contact.material`, in Pa; ``note`` if wanted. A table may name a compression test in place of
-        its points: ``law = "table"``, ``file``, and ``thickness`` and ``area`` of the specimen.
+        its points: ``law = "table"``, ``file``, and what `load_compression_test` takes beside it.
 
     Returns
     -------
@@ -112,7 +112,7 @@ def material_beside(given: Mapping[str, Any], folder: Path) -> Material:
     if not isinstance(given["file"], str):
         raise InvalidParameterError("material.file", "be a text in quotes", given["file"])
     sizes = {name: number(f"material.{name}", given[name]) for name in ("thickness", "area") if name in given}
-    return load_compression_test(folder / given["file"], **sizes)
+    return load_compression_test(folder / given["file"], **sizes, loading=given.get("loading"))
 
 
 def _material(where: str, entry: Any, folder: Path) -> CatalogMaterial:

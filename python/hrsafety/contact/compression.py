@@ -5,32 +5,24 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
-from hrsafety._arguments import Array, positive
+from hrsafety._arguments import Array, positive, word
 from hrsafety.contact.materials import StressTable
 from hrsafety.errors import Shown
 from hrsafety.io.cells import TableColumn, read_columns
 from hrsafety.io.headers import cells_of, delimiter_of, first_row, is_number
 from hrsafety.io.reader import Document
-from hrsafety.plausibility import HrsafetyWarning, issue
 
 __all__ = ["load_compression_test"]
 
 _WORDS: Mapping[str, tuple[str, ...]] = {
     "strain": ("strain", "compression_strain", "dehnung", "stauchung"),
     "way": (
-        "displacement",
-        "deflection",
-        "compression",
-        "deformation",
-        "stroke",
-        "way",
-        "weg",
-        "standardweg",
-        "position",
+        *("displacement", "deflection", "compression", "deformation", "stroke", "position", "crosshead"),
+        *("crosshead_displacement", "extension", "way", "weg", "standardweg"),
     ),
     "stress": ("stress", "compressive_stress", "pressure", "spannung", "druckspannung"),
     "force": ("force", "load", "standardforce", "kraft", "standardkraft"),
@@ -47,8 +39,10 @@ UNLOADED = 0.02
 """Share of the largest strain, and of the largest stress, up to which a specimen counts as unloaded."""
 ROUGH = 0.05
 """Share of the largest stress by which the stress may fall while a specimen is pressed: noise."""
-LOADED = 0.5
-"""Share of the largest strain from which on a specimen counts as pressed before."""
+LOADED, RELEASED = 0.3, 0.15
+"""Shares of the largest strain: a loading goes beyond the first one, and the next begins below the second."""
+SHALLOW = 0.02
+"""Strain that no test of a covering ends below: percent or another unit was meant."""
 
 
 class _Column(NamedTuple):
@@ -60,18 +54,25 @@ class _Column(NamedTuple):
 
 
 def load_compression_test(
-    path: str | os.PathLike[str], *, thickness: float | None = None, area: float | None = None
+    path: str | os.PathLike[str],
+    *,
+    thickness: float | None = None,
+    area: float | None = None,
+    loading: Literal["first", "last"] | None = None,
 ) -> StressTable:
-    r"""Read a compression test: its last loading up to the largest strain becomes a material.
+    r"""Read a compression test: a loading from rest to its largest strain becomes a material.
 
     Parameters
     ----------
     path : path-like
-        A text table with a header, whose names carry their unit: ``strain`` (or ``strain_%``) or ``displacement_mm``,
-        and ``stress_kPa`` or ``force_N``; units may stand in brackets or in a row of their own. Other columns are left
-        out.
+        A text table with a header, whose names carry their unit: ``strain_%`` (``strain_1`` for shares) or
+        ``displacement_mm``, and ``stress_kPa`` or ``force_N``; units may stand in brackets or in a row of their own.
+        Other columns are left out.
     thickness, area : float or None
         Of the specimen before the test, in m and m^2; for columns of displacement and force.
+    loading : {"first", "last"} or None
+        Which loading counts of a specimen that was pressed several times: the first one is the stiffest, the last one
+        that of a pad in use. ``None``: there is one.
 
     Returns
     -------
@@ -82,14 +83,10 @@ def load_compression_test(
     Raises
     ------
     FileError
-        If the file is no such table, or the test does not begin unloaded, or its stress falls while it is pressed.
+        If the file is no such table, or holds several loadings and it is not said which counts, or the test does not
+        begin unloaded, or its stress falls while it is pressed.
     InvalidParameterError
         If a size is missing or not positive.
-
-    Warns
-    -----
-    HrsafetyWarning
-        If the specimen was pressed before: the first loading of a foam is stiffer than the later ones.
 
     Examples
     --------
@@ -101,14 +98,16 @@ def load_compression_test(
     >>> foam.strain.round(3).tolist(), foam.stress.round(1).tolist()
     ([0.0, 0.05, 0.1, 0.3, 0.6], [0.0, 4000.0, 6000.0, 9000.0, 20000.0])
     """
+    if loading is not None:
+        word("loading", loading, ("first", "last"))
     document = Document(path)
-    columns, skip, delimiter, count = _columns(document)
+    columns, skip, delimiter, titles = _columns(document)
     chosen = []
     for name, other, size, given in (("strain", "way", "thickness", thickness), ("stress", "force", "area", area)):
         column = columns.get(name) or columns.get(other)
         if column is None:
-            rule = f"have a column of {name}, or of {'displacement' if other == 'way' else other}, with its unit"
-            raise document.error("columns_needed", rule, Shown(", ".join(_titles(document))[:200]))
+            rule = f"have a column with its unit that is called {', '.join((*_WORDS[name], *_WORDS[other]))}"
+            raise document.error("columns_needed", rule, Shown(", ".join(titles)[:200]))
         divisor = 1.0
         if name not in columns:
             if given is None:
@@ -118,34 +117,26 @@ def load_compression_test(
             divisor = positive(size, given)
         chosen.append(column._replace(scale=column.scale / divisor))
     numbers = [TableColumn(each.place, each.title) for each in chosen]
-    table = read_columns(document, delimiter=delimiter, numbers=numbers, skip=skip, columns=count).numbers
+    table = read_columns(document, delimiter=delimiter, numbers=numbers, skip=skip, columns=len(titles)).numbers
     table = table[np.isfinite(table).all(axis=1)] * [each.scale for each in chosen]
     if len(table) < 2:
         raise document.error("no_rows", "hold at least two rows of numbers", len(table))
     # Presses count down or up, and pull is the positive direction of many.
     strain, stress = (each if abs(each.max()) >= abs(each.min()) else -each for each in table.T)
-    return _material(document, strain, stress)
+    return _material(document, *_loading(document, strain, stress, loading))
 
 
-def _material(document: Document, strain: Array, stress: Array) -> StressTable:
-    """Return the last loading up to the largest strain as points."""
-    most = int(np.argmax(strain))
-    if not 0.0 < strain[most] < 1.0:
-        remedy = "name its unit, as strain_%, or check the thickness of the specimen"
-        raise document.error("strain", "have a largest strain above 0 and below 1", float(strain[most]), remedy)
-    # The last stretch of unloaded rows before: it begins where the specimen came to rest.
-    loaded = np.flatnonzero(strain[:most] > UNLOADED * strain[most])
-    free = np.flatnonzero(strain[:most] <= UNLOADED * strain[most])
-    last = int(free[-1]) if len(free) else 0
-    before = loaded[loaded < last]
-    first = int(before[-1]) + 1 if len(before) else 0
-    start = first + int(np.argmin(strain[first : last + 1]))
-    if (strain[:start] > LOADED * strain[most]).any():
-        issue(
-            f"{document.name}: the specimen was pressed before; its last loading is read, and the first one is stiffer",
-            HrsafetyWarning,
-            stacklevel=3,
-        )
+def _loading(document: Document, strain: Array, stress: Array, which: str | None) -> tuple[Array, Array]:
+    """Return the rows of a loading, from rest to its largest strain."""
+    largest = float(strain.max())
+    if not SHALLOW <= largest < 1.0:
+        remedy = "check the unit of its column and the thickness of the specimen"
+        raise document.error("strain", f"have a largest strain of at least {SHALLOW:g} and below 1", largest, remedy)
+    found = _loadings(strain, largest)
+    if len(found) > 1 and which is None:
+        remedy = 'give loading: "last" is a pad in use, "first" the stiffest'
+        raise document.error("several_loadings", "hold one loading", len(found), remedy)
+    start, most = found[0 if which == "first" else -1]
     strain, stress = strain[start : most + 1], stress[start : most + 1]
     if strain[0] > UNLOADED * strain[-1] or abs(stress[0]) > UNLOADED * stress.max():
         shown = Shown(f"strain {strain[0]:.3g} with {stress[0]:.3g} Pa")
@@ -153,7 +144,25 @@ def _material(document: Document, strain: Array, stress: Array) -> StressTable:
             "preloaded", "begin unloaded, at strain 0 and stress 0", shown, "take off what it begins at"
         )
     pressed = strain > 0.0
-    strain, stress = strain[pressed], stress[pressed]
+    return strain[pressed], stress[pressed]
+
+
+def _loadings(strain: Array, largest: float) -> list[tuple[int, int]]:
+    """Return where each loading begins, at rest, and where it is deepest."""
+    beyond, released = strain > LOADED * largest, strain < RELEASED * largest
+    # What is between both shares belongs to what was before.
+    last = np.maximum.accumulate(np.where(beyond | released, np.arange(len(strain)), 0))
+    change = np.diff(np.concatenate([[0], beyond[last], [0]]))
+    begins, ends = np.flatnonzero(change > 0).tolist(), np.flatnonzero(change < 0).tolist()
+    found = []
+    for rest, begin, end in zip([0, *ends], begins, ends, strict=False):
+        start = rest + int(np.argmin(strain[rest : begin + 1]))
+        found.append((start, begin + int(np.argmax(strain[begin:end]))))
+    return found
+
+
+def _material(document: Document, strain: Array, stress: Array) -> StressTable:
+    """Return the rows of a loading as points."""
     bins = np.minimum((POINTS * strain / strain[-1]).astype(np.int64), POINTS - 1) if len(strain) > POINTS else None
     if bins is not None:
         rows = np.bincount(bins, minlength=POINTS)
@@ -173,13 +182,8 @@ def _material(document: Document, strain: Array, stress: Array) -> StressTable:
 # ---- header -------------------------------------------------------------------------------------
 
 
-def _titles(document: Document) -> list[str]:
-    _, header = first_row(document)
-    return cells_of(header, delimiter_of(header))
-
-
-def _columns(document: Document) -> tuple[dict[str, _Column], int, str, int]:
-    """Return the columns that are known, the lines before the rows, the delimiter, and the number of columns."""
+def _columns(document: Document) -> tuple[dict[str, _Column], int, str, list[str]]:
+    """Return the columns that are known, the lines before the rows, the delimiter, and the titles of all columns."""
     number, header = first_row(document)
     delimiter = delimiter_of(header)
     titles = cells_of(header, delimiter)
@@ -202,18 +206,19 @@ def _columns(document: Document) -> tuple[dict[str, _Column], int, str, int]:
             shown = Shown(f"{found[quantity].title} and {title}")
             raise document.error("ambiguous_columns", f"have one column of {quantity}", shown, line=number + 1)
         found[quantity] = _Column(place, title, scale)
-    return found, skip, delimiter, len(titles)
+    return found, skip, delimiter, titles
 
 
 def _meaning(title: str) -> tuple[str, float | None]:
-    """Return the quantity of a column and the size of its unit; strain alone needs none."""
+    """Return the quantity of a column and the size of its unit, ``None`` without one."""
+    title = re.sub(r"\s*[\[(]\s*-\s*[\])]", "_1", title)
     plain = re.sub(r"[\s\[\]()/.\-^*]+", "_", title.lower().replace("²", "2")).strip("_").replace("_in_", "_")
     plain = re.sub(r"_(mm|cm)_2$", r"_\g<1>2", plain)
-    for quantity, words in _WORDS.items():
-        for word in words:
-            if plain == word:
-                return quantity, 1.0 if quantity == "strain" else None
-            unit = plain.removeprefix(f"{word}_")
+    for quantity, names in _WORDS.items():
+        for name in names:
+            if plain == name:
+                return quantity, None
+            unit = plain.removeprefix(f"{name}_")
             if unit != plain and unit in _UNITS[quantity]:
                 return quantity, _UNITS[quantity][unit]
     return "", None

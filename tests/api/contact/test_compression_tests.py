@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 from hrsafety import contact, standards
 from hrsafety.errors import HrsafetyError
-from hrsafety.plausibility import HrsafetyWarning
 
 THICKNESS, AREA = 0.025, 0.01
 SIZES = {"thickness": THICKNESS, "area": AREA}
@@ -33,7 +32,9 @@ def written(folder: Path, header: str, *columns: np.ndarray, delimiter: str = ",
 
 
 FORMS = {
-    "strain and stress": ("strain,stress_Pa", 1.0, 1.0, {}),
+    "strain and stress": ("strain_1,stress_Pa", 1.0, 1.0, {}),
+    "strain without a dimension": ("Strain [-],Stress / Pa", 1.0, 1.0, {}),
+    "crosshead": ("Crosshead [mm],Load [N]", 1e3 * THICKNESS, AREA, SIZES),
     "percent and kPa": ("Strain [%],Stress [kPa]", 100.0, 1e-3, {}),
     "N/mm^2": ("strain_percent,stress (N/mm^2)", 100.0, 1e-6, {}),
     "way and force": ("displacement_mm,force_N", 1e3 * THICKNESS, AREA, SIZES),
@@ -60,7 +61,7 @@ def test_every_form_is_the_same_material(tmp_path: Path, form: str) -> None:
 
 
 def test_loads_with_it_are_those_of_the_whole_curve(tmp_path: Path) -> None:
-    read = contact.load_compression_test(written(tmp_path, "strain,stress_Pa", STRAIN, stress_of(STRAIN)))
+    read = contact.load_compression_test(written(tmp_path, "strain_1,stress_Pa", STRAIN, stress_of(STRAIN)))
     whole = contact.StressTable(strain=STRAIN, stress=stress_of(STRAIN))
     limit = standards.limits().contact("chest", "transient")
     speeds = [
@@ -72,14 +73,37 @@ def test_loads_with_it_are_those_of_the_whole_curve(tmp_path: Path) -> None:
     assert speeds[0] == pytest.approx(speeds[1], rel=5e-3)
 
 
-def test_the_last_of_several_loadings_is_read_and_told(tmp_path: Path) -> None:
-    cycle = np.concatenate([STRAIN, STRAIN[::-1]])
-    strain = np.tile(cycle, 3)
-    stress = np.concatenate([factor * stress_of(cycle) for factor in (1.3, 1.05, 1.0)])
-    strain[4 * len(STRAIN) :] *= 1.0001  # the last one goes furthest
-    with pytest.warns(HrsafetyWarning, match="was pressed before"):
-        found = contact.load_compression_test(written(tmp_path, "strain,stress_Pa", strain, stress))
-    np.testing.assert_allclose(found.stress, stress_of(np.asarray(found.strain)), rtol=0.02, atol=40.0)
+def cycles(peaks: list[float], factors: list[float], rest: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    """Return strain and stress of loadings up to peaks, each released to rest."""
+    parts = []
+    for peak in peaks:
+        up = np.linspace(rest if parts else 0.0, peak, 800)
+        parts.append(np.concatenate([up, np.linspace(peak, rest, 800)]))
+    stress = [factor * stress_of(np.clip(part - rest, 0.0, None)) for factor, part in zip(factors, parts, strict=True)]
+    return np.concatenate(parts), np.concatenate(stress)
+
+
+@pytest.mark.parametrize("peaks", [[0.7, 0.7, 0.7], [0.7, 0.7001, 0.6999], [0.6, 0.7, 0.5]])
+@pytest.mark.parametrize("which", ["first", "last"])
+def test_a_loading_of_several_has_to_be_chosen(tmp_path: Path, peaks: list[float], which: str) -> None:
+    press = written(tmp_path, "strain_1,stress_Pa", *cycles(peaks, [1.3, 1.05, 1.0]))
+    with pytest.raises(HrsafetyError, match=r"must hold one loading, got 3; give loading"):
+        contact.load_compression_test(press)
+    found = contact.load_compression_test(press, loading=which)
+    factor, peak = (1.3, peaks[0]) if which == "first" else (1.0, peaks[-1])
+    assert found.strain[-1] == pytest.approx(peak, rel=0.02)
+    np.testing.assert_allclose(found.stress, factor * stress_of(np.asarray(found.strain)), rtol=0.02, atol=60.0)
+    with pytest.raises(HrsafetyError, match="loading must be one of"):
+        contact.load_compression_test(press, loading="second")
+
+
+def test_one_loading_may_be_asked_for_by_either_name(tmp_path: Path) -> None:
+    press = written(tmp_path, "strain_1,stress_Pa", *cycles([0.7], [1.0]))
+    assert (
+        contact.load_compression_test(press)
+        == contact.load_compression_test(press, loading="first")
+        == contact.load_compression_test(press, loading="last")
+    )
 
 
 @settings(max_examples=40, deadline=None)
@@ -91,7 +115,7 @@ def test_noise_is_averaged(tmp_path_factory: pytest.TempPathFactory, seed: int, 
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         found = contact.load_compression_test(
-            written(tmp_path_factory.mktemp("press"), "strain,stress_Pa", STRAIN, stress)
+            written(tmp_path_factory.mktemp("press"), "strain_1,stress_Pa", STRAIN, stress)
         )
     assert (np.diff(found.stress) >= 0.0).all()
     np.testing.assert_allclose(found.stress[5:], stress_of(np.asarray(found.strain[5:])), atol=40.0 + noise * 2e4)
@@ -100,19 +124,22 @@ def test_noise_is_averaged(tmp_path_factory: pytest.TempPathFactory, seed: int, 
 @pytest.mark.parametrize(
     ("header", "columns", "sizes", "words"),
     [
-        ("strain,stress", (STRAIN, stress_of(STRAIN)), {}, "name the unit of each column, got 'stress'"),
-        ("strain,temperature", (STRAIN, STRAIN), {}, "have a column of stress, or of force"),
-        ("time_s,force_N", (STRAIN, STRAIN), {"area": AREA}, "have a column of strain, or of displacement"),
+        ("strain_1,stress", (STRAIN, stress_of(STRAIN)), {}, "name the unit of each column, got 'stress'"),
+        ("strain,stress_Pa", (STRAIN, stress_of(STRAIN)), {}, "name the unit of each column, got 'strain'"),
+        ("strain_1,temperature", (STRAIN, STRAIN), {}, "a column with its unit that is called stress, .*, force, load"),
+        ("time_s,force_N", (STRAIN, STRAIN), {"area": AREA}, "is called strain, .*, displacement, .*, crosshead"),
+        ("strain_%,stress_Pa", (STRAIN, stress_of(STRAIN)), {}, "largest strain of at least 0.02 and below 1"),
+        ("displacement_mm,stress_Pa", (10.0 * STRAIN, stress_of(STRAIN)), {"thickness": 25.0}, "largest strain of at"),
         ("displacement_mm,stress_Pa", (STRAIN, STRAIN), {}, "come with the thickness of the specimen"),
-        ("strain,force_N", (STRAIN, STRAIN), {}, "come with the area of the specimen"),
-        ("strain,force_N", (STRAIN, STRAIN), {"area": -1.0}, "area must be"),
-        ("strain,stress_Pa", (100.0 * STRAIN, stress_of(STRAIN)), {}, "largest strain above 0 and below 1"),
-        ("strain,stress_Pa", (STRAIN + 0.1, stress_of(STRAIN)), {}, "begin unloaded"),
-        ("strain,stress_Pa", (STRAIN, stress_of(STRAIN) + 5e3), {}, "begin unloaded"),
-        ("strain,stress_Pa", (STRAIN, STRAIN * (0.5 - STRAIN) + 0.14), {}, "begin unloaded"),
-        ("strain,stress_Pa", (STRAIN, 1e4 * STRAIN * (0.8 - STRAIN)), {}, "does not fall"),
-        ("strain,stress_Pa", (STRAIN[:1], STRAIN[:1]), {}, "at least two rows"),
-        ("strain,strain_%,stress_Pa", (STRAIN, STRAIN, STRAIN), {}, "one column of strain"),
+        ("strain_1,force_N", (STRAIN, STRAIN), {}, "come with the area of the specimen"),
+        ("strain_1,force_N", (STRAIN, STRAIN), {"area": -1.0}, "area must be"),
+        ("strain_1,stress_Pa", (100.0 * STRAIN, stress_of(STRAIN)), {}, "largest strain of at least 0.02 and below 1"),
+        ("strain_1,stress_Pa", (STRAIN + 0.1, stress_of(STRAIN)), {}, "begin unloaded"),
+        ("strain_1,stress_Pa", (STRAIN, stress_of(STRAIN) + 5e3), {}, "begin unloaded"),
+        ("strain_1,stress_Pa", (STRAIN, STRAIN * (0.5 - STRAIN) + 0.14), {}, "begin unloaded"),
+        ("strain_1,stress_Pa", (STRAIN, 1e4 * STRAIN * (0.8 - STRAIN)), {}, "does not fall"),
+        ("strain_1,stress_Pa", (STRAIN[:1], STRAIN[:1]), {}, "at least two rows"),
+        ("strain_1,strain_%,stress_Pa", (STRAIN, STRAIN, STRAIN), {}, "one column of strain"),
     ],
 )
 def test_what_is_no_test_is_refused(
