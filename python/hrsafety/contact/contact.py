@@ -23,7 +23,7 @@ from hrsafety.contact.speed import AllowedSpeed, AllowedSpeeds, allowed_of, spee
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import telling
 from hrsafety.standards.contact_limits import ContactLimit
-from hrsafety.standards.sets import above_published
+from hrsafety.standards.sets import looser_than_published
 
 __all__ = ["Contact", "Support"]
 
@@ -176,7 +176,7 @@ class Contact:
         shared, values = self._row(spring_of(body.region, arrays), body.mass, tolerance, **more)
         doubts = self.robot.warnings if isinstance(self.robot, ContactRobot) else ()
         if isinstance(limits, ContactLimit):
-            doubts = (*doubts, *above_published(limits))
+            doubts = (*doubts, *looser_than_published(limits))
         return Prepared(shared, values | limits_of(limits), covering_of(self.covering), source, doubts)
 
     def _at_rest(self, what: str) -> None:

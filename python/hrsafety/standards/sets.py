@@ -9,11 +9,11 @@ from hrsafety._arguments import meant
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
 from hrsafety.standards.contact_limits import ContactLimit
-from hrsafety.standards.limit_sets import SQUARE_CENTIMETER, LimitSet
+from hrsafety.standards.limit_sets import LimitSet
 from hrsafety.standards.shipped import SETS, shipped
 from hrsafety.standards.user_sets import SUFFIXES, load_limits
 
-__all__ = ["SETS", "above_published", "limits"]
+__all__ = ["SETS", "limits", "looser_than_published"]
 
 
 def limits(name_or_path: str | os.PathLike[str] = SETS[0]) -> LimitSet:
@@ -48,8 +48,8 @@ def limits(name_or_path: str | os.PathLike[str] = SETS[0]) -> LimitSet:
     return load_limits(name_or_path)
 
 
-def above_published(limit: ContactLimit) -> tuple[ResultWarning, ...]:
-    """Return the doubts about limits of the user that are higher than those that ship with the package.
+def looser_than_published(limit: ContactLimit) -> tuple[ResultWarning, ...]:
+    """Return the doubts about numbers of the user that allow more than those that ship with the package.
 
     Parameters
     ----------
@@ -59,26 +59,26 @@ def above_published(limit: ContactLimit) -> tuple[ResultWarning, ...]:
     Returns
     -------
     tuple of ResultWarning
-        One for a force and one for a pressure, none where the package knows no such region.
+        One for each number, none where the package knows no such region. An area that it does not know is compared with
+        the weakest one of the region.
     """
-    published = shipped(SETS[0])
-    if limit.set_id in SETS or limit.region not in published.regions or not limit.permitted:
+    base = shipped(SETS[0])
+    if limit.set_id in SETS or limit.region not in base.regions or not limit.permitted:
         return ()
-    rows = [row for row in published.rows if (row.region, row.contact) == (limit.region, limit.contact)]
+    names = {name for each in base.areas(limit.region) for name in (each, each.partition(", ")[0])}
+    published = base.contact(limit.region, limit.contact, area=limit.area if limit.area in names else None)
+    where = f"{limit.region}, {limit.contact}: {published.title} has"
+    if not published.permitted:
+        message = f"contact is permitted for {where} no such contact; a speed for it is on the user's account"
+        return (ResultWarning("looser_than_published", "limits", message),)
     found = []
-    for name, own, unit, scale in (
-        ("force", limit.force, "N", 1.0),
-        ("pressure", limit.pressure, "N/cm2", SQUARE_CENTIMETER),
+    for name, own, theirs, unit, looser in (
+        ("force", limit.force, published.force, "N", "higher"),
+        ("pressure", limit.pressure, published.pressure, "Pa", "higher"),
+        ("spring_constant", limit.spring_constant, published.spring_constant, "N/m", "lower"),
+        ("effective_mass", limit.body_mass, published.body_mass, "kg", "lower"),
     ):
-        # Names of areas are the user's: the one that bears most counts.
-        known = [getattr(row, name).value for row in rows if getattr(row, name) is not None and row.permitted]
-        if own is None or (known and own <= max(known)):
-            continue
-        says = f"at most {max(known) * scale:g} {unit}" if known else "that no such contact is permitted"
-        if known or any(not row.permitted for row in rows):
-            message = (
-                f"{name} is {own * scale:g} {unit} for {limit.region}, {limit.contact}: {published.title} says {says}; "
-                "with numbers that are too high every speed is"
-            )
-            found.append(ResultWarning("above_published", f"limits.{name}", message))
+        if own is not None and theirs is not None and (own > theirs if looser == "higher" else own < theirs):
+            message = f"{name} is {own:g} {unit} for {where} {theirs:g} {unit}; a {looser} number allows higher speeds"
+            found.append(ResultWarning("looser_than_published", f"limits.{name}", message))
     return tuple(found)

@@ -130,11 +130,8 @@ def template(kind: str = "csv") -> str:
         f'# force_N = "{NOT_PERMITTED}" says that this contact is not permitted at all.',
         f"# certainty is one of {', '.join(CERTAINTIES)}.",
         *('id = ""', 'title = ""', 'edition = ""'),
-        *(
-            f'# base = "{SETS[0]}"  # rows below stand over its rows; other ones are those of the base',
-            "",
-            "# [[limits]]",
-        ),
+        f'# base = "{SETS[0]}"  # rows below stand over its rows; other ones are those of the base',
+        *("", "# [[limits]]"),
         *(f"# {column} =" for column in COLUMNS),
     ]
     return "\n".join(lines) + "\n"
@@ -236,11 +233,11 @@ def _checked(rows: Rows) -> Iterator[LimitRow]:
         found[key] = (place, row)
         of_both = [found.get((row.region, row.area, kind)) for kind in ("quasi_static", "transient")]
         if of_both[0] is not None and of_both[1] is not None:
-            _ordered(place, of_both[0][1], of_both[1][1])
+            _ordered(place, of_both[0][1], of_both[1][1], "exchange both if they are mixed up")
         yield row
 
 
-def _ordered(place: str, clamped: LimitRow, free: LimitRow) -> None:
+def _ordered(place: str, clamped: LimitRow, free: LimitRow, remedy: str) -> None:
     """Refuse limits of a clamped part of the body above those of one that is free to give way."""
     for name in ("force", "pressure"):
         given, most = getattr(clamped, name), getattr(free, name)
@@ -248,7 +245,7 @@ def _ordered(place: str, clamped: LimitRow, free: LimitRow) -> None:
             unit = "N" if name == "force" else "Pa"
             rule = f"be at most as high for quasi_static as for transient ({most.value:g} {unit})"
             shown = Shown(f"{given.value:g} {unit}")
-            raise InvalidParameterError(f"{place}: {name}", rule, shown, "exchange both if they are mixed up")
+            raise InvalidParameterError(f"{place}: {name}", rule, shown, remedy)
 
 
 def _over(base: LimitSet, own: Mapping[str, LimitRow]) -> Iterator[LimitRow]:
@@ -273,8 +270,9 @@ def _over(base: LimitSet, own: Mapping[str, LimitRow]) -> Iterator[LimitRow]:
             found = replace(found, permitted=mine.permitted, **(loads if mine.permitted else dict.fromkeys(loads)))
         other = merged.setdefault((row.region, row.area), found)
         if other is not found:
-            of_file = where or places.get((other.region, other.area, other.contact)) or "base"
-            _ordered(of_file, *sorted((other, found), key=lambda each: each.contact))
+            place = where or places.get((other.region, other.area, other.contact), base.id)
+            clamped, free = sorted((other, found), key=lambda each: each.contact)
+            _ordered(place, clamped, free, f"one of both is that of {base.id}: give the other row, too")
         yield found
 
 

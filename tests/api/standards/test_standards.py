@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from hrsafety import contact, standards
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ImplausibleWarning
+from hrsafety.standards.sets import looser_than_published
 
 ISO = standards.limits("iso_ts_15066_2016")
 
@@ -271,15 +272,22 @@ def test_a_clamped_part_bears_no_more_than_a_free_one(tmp_path: Path, place: str
         ("chest,,transient,281,,,,tests,", ["limits.force"]),
         ("chest,,transient,,400,,,tests,", ["limits.pressure"]),
         ("chest,,transient,500,400,,,tests,", ["limits.force", "limits.pressure"]),
-        ("face,,transient,50,,,,tests,", ["limits.force"]),  # no such contact is permitted
+        ("face,,transient,50,,,,tests,", ["limits"]),  # no such contact is permitted
+        ("hand_finger,,transient,100,,75,0.6,tests,", []),
+        ("hand_finger,,transient,100,,74.9,0.6,tests,", ["limits.spring_constant"]),
+        ("hand_finger,,transient,100,,7.5,0.5,tests,", ["limits.spring_constant", "limits.effective_mass"]),
+        ("hand_finger,,transient,100,,750,6,tests,", []),  # stiffer and heavier allow less
         ("tail,,transient,5000,,,,tests,", []),  # nothing to compare with
     ],
 )
-def test_limits_above_the_published_ones_are_doubted(tmp_path: Path, row: str, found: list[str]) -> None:
+def test_numbers_that_allow_more_than_the_published_ones_are_doubted(
+    tmp_path: Path, row: str, found: list[str]
+) -> None:
     region, _, kind = row.split(",")[:3]
     limit = own(tmp_path, row).contact(region, kind)
-    hit = contact.Contact(robot=8.0, body=40.0, region=25e3, area=1e-4)
-    doubts = [each for each in hit.allowed_speed(limit).warnings if each.code == "above_published"]
+    more = {} if limit.spring is not None else {"body": 40.0, "region": 25e3}
+    hit = contact.Contact(robot=8.0, area=1e-4, **({"body": limit} | more))
+    doubts = [each for each in hit.allowed_speed(limit).warnings if each.code == "looser_than_published"]
     assert [each.subject for each in doubts] == found
     assert not any(each.safe_side for each in doubts)
 
@@ -340,6 +348,19 @@ def test_rows_over_a_base_change_what_they_say(tmp_path: Path) -> None:
 def test_rows_that_do_not_fit_a_base_are_refused(tmp_path: Path, row: str, head: str, words: str) -> None:
     with pytest.raises(InvalidParameterError, match=words):
         over_base(tmp_path, row + '\nsource = "own tests"', head=head)
+
+
+def test_an_area_is_compared_with_itself(tmp_path: Path) -> None:
+    areas = {
+        name: ISO.contact("hand_finger", "transient", area=name).pressure or 0.0 for name in ISO.areas("hand_finger")
+    }
+    weak, strong = min(areas, key=areas.__getitem__), max(areas, key=areas.__getitem__)
+    between = 0.5e-4 * (areas[weak] + areas[strong])
+    row = f'region = "hand_finger"\narea = "{weak}"\ncontact = "transient"\nsource = "own"\n'
+    row += f"pressure_N_per_cm2 = {between}"
+    (doubt,) = looser_than_published(over_base(tmp_path, row).contact("hand_finger", "transient", area=weak))
+    assert doubt.subject == "limits.pressure"
+    assert looser_than_published(over_base(tmp_path, row).contact("hand_finger", "transient", area=strong)) == ()
 
 
 @pytest.mark.parametrize("kind", ["csv", "toml"])
