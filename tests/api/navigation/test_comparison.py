@@ -388,10 +388,13 @@ def test_runs_that_are_the_same_with_every_seed_are_told() -> None:
     noisy = replace(SCENES["c4"], measurement=nav.Measurement())
     field, tree = nav.VirtualForceField(), LAWS["tree"]
     (words,) = same(nav.simulate_many({"c1": C1, "noisy": noisy}, {"field": field}, seeds=5))
-    assert words.startswith("the 5 runs of field in c1 are the same with every seed")
+    assert words.startswith("of the 5 runs of field in c1 some are the same run")
     assert "more of this kind" not in words
     (words,) = same(nav.compare(SCENES, {"field": field, "masoud": nav.Masoud()}, seeds=2).runs)
     assert f"({2 * len(SCENES) - 1} more of this kind" in words
+    # Seeds that are given twice, among others.
+    assert len(same(nav.simulate_many(noisy, field, seeds=[1, 2, 1]))) == 1
+    assert len(same(nav.simulate_many(noisy, field, seeds=[1] * 4))) == 1
     # One run of each, gains that differ, noise, and a planner that draws.
     for table in (
         nav.simulate_many(SCENES, [field, nav.Masoud()]),

@@ -200,7 +200,7 @@ class RunTable(RunRows):
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why rows may not mean what they seem to: the first warning of each kind, and how many follow."""
         about = self._of_scenes() if self.doubts is None else self.doubts
-        return (*about, *self._repeated())
+        return (*about, *run_warnings.of_repeats(self))
 
     def _of_scenes(self) -> tuple[ResultWarning, ...]:
         if isinstance(self.scenarios, Scenarios):
@@ -213,35 +213,6 @@ class RunTable(RunRows):
         numbered = tuple(self.scenario_names) == tuple(map(str, range(len(self.scenarios))))
         names = [f"scenarios[{name if numbered else repr(name)}]" for name in self.scenario_names]
         return run_warnings.of_runs(self.scenarios, names, self.laws, self.built, self.motion_step)
-
-    def _repeated(self) -> tuple[ResultWarning, ...]:
-        """Doubt runs that are the same with every seed: intervals count each of them."""
-        keys = np.stack([self.law_index, self.scenario_index, self.gain_index])
-        if self.robot is not None:
-            keys = np.vstack([keys, self.robot])
-        order = np.lexsort(keys)
-        other = (np.diff(keys[:, order], axis=1) != 0).any(axis=0)
-        if other.all():
-            return ()  # one run of each: nothing is repeated
-        numbers = np.array([getattr(self, name)[order] for name in ("end_time", "path_length", "min_clearance")])
-        alike = ((numbers[:, 1:] == numbers[:, :-1]) | np.isnan(numbers[:, 1:]) & np.isnan(numbers[:, :-1])).all(axis=0)
-        alike &= self.outcome[order][1:] == self.outcome[order][:-1]
-        seeds = self.seed[order]
-        starts = np.flatnonzero(np.append(True, other))
-        differing = np.add.reduceat(np.append(False, ~alike & ~other), starts)
-        drawn = np.add.reduceat(np.append(False, (seeds[1:] != seeds[:-1]) & ~other), starts)
-        same = np.flatnonzero((differing == 0) & (drawn > 0))
-        if not len(same):
-            return ()
-        first, runs = order[starts[same[0]]], np.diff(np.append(starts, len(order)))[same[0]]
-        law, scene = self.law_names[self.law_index[first]], self.scenario_names[self.scenario_index[first]]
-        more = f" ({len(same) - 1} more of this kind in these runs)" if len(same) > 1 else ""
-        message = (
-            f"the {runs} runs of {law} in {scene} are the same with every seed: nothing there draws, and shares and "
-            "intervals count one run as many; a measurement with noise, or a scene that is drawn for each seed, makes "
-            f"them differ{more}"
-        )
-        return (ResultWarning("same_runs", "seeds", message),)
 
     @property
     def success(self) -> Share:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -23,7 +24,7 @@ from hrsafety.navigation.warnings.shields import ASSUMES_LESS, maps_of, of_hidde
 from hrsafety.navigation.warnings.walls import unknown_walls
 from hrsafety.plausibility import ResultWarning, gathered
 
-__all__ = ["of_commands", "of_run", "of_runs", "of_scenes", "of_way"]
+__all__ = ["of_commands", "of_repeats", "of_run", "of_runs", "of_scenes", "of_way"]
 
 UNKNOWN_MAP = "unknown_map"
 """Code of a law that does not know the walls of the laws that it is compared with."""
@@ -176,3 +177,43 @@ def of_scenes(
 ) -> tuple[ResultWarning, ...]:
     """Return the warnings of many runs in scenarios that have numbers for names, see `of_runs`."""
     return of_runs(scenarios, [f"scenarios[{index}]" for index in range(len(scenarios))], laws, None, motion_step)
+
+
+def of_repeats(table: Any) -> Iterator[ResultWarning]:
+    """Warn of runs that a `RunTable` holds more than once: shares and intervals count each of them.
+
+    Parameters
+    ----------
+    table : RunTable
+        Its runs.
+
+    Yields
+    ------
+    ResultWarning
+        With the code ``"same_runs"``: for seeds that change nothing, or that are given twice.
+    """
+    keys = [table.law_index, table.scenario_index, table.gain_index, *([] if table.robot is None else [table.robot])]
+    group = np.ravel_multi_index(keys, [int(each.max(initial=0)) + 1 for each in keys])
+    _, first, group, counts = np.unique(group, return_index=True, return_inverse=True, return_counts=True)
+    if not len(counts) or counts.max() == 1:
+        return
+    differs = table.outcome != table.outcome[first][group]
+    for name in ("end_time", "path_length", "min_clearance"):
+        own = getattr(table, name)
+        there = own[first][group]
+        differs |= (own != there) & ~(np.isnan(own) & np.isnan(there))
+    alike = (np.bincount(group, weights=differs) == 0) & (counts > 1)
+    order = np.lexsort((table.seed, group))
+    again = (np.diff(group[order]) == 0) & (table.seed[order][1:] == table.seed[order][:-1])
+    alike[group[order][1:][again]] = True
+    if not alike.any():
+        return
+    row = first[alike][0]
+    law, scene = table.law_names[table.law_index[row]], table.scenario_names[table.scenario_index[row]]
+    more = f" ({alike.sum() - 1} more of this kind in these runs)" if alike.sum() > 1 else ""
+    message = (
+        f"of the {counts[alike][0]} runs of {law} in {scene} some are the same run: seeds are repeated, or nothing "
+        "there draws from them, and shares and intervals count one run as many; a measurement with noise, or a scene "
+        f"that is drawn for each seed, makes them differ{more}"
+    )
+    yield ResultWarning("same_runs", "seeds", message)
