@@ -82,15 +82,19 @@ def _of_file(path: str) -> tuple[dict[str, Any], tuple[ResultWarning, ...]]:
         settings = io.read_nav2(path)
     except InvalidParameterError:
         return {}, ()
-    holonomic = settings.drive == "holonomic"
-    found = {
+    found: dict[str, Any] = {
         "footprint": settings.robot_radius if settings.footprint is None else settings.padded,
         "max_speed": settings.max_speed,
-        "min_speed": None if holonomic or settings.min_speed is None else min(settings.min_speed, 0.0),
         "max_turn_rate": settings.max_turn_rate,
-        "holonomic": holonomic or None,
     }
-    return {name: value for name, value in found.items() if value is not None}, settings.warnings
+    if settings.drive == "holonomic":
+        speeds = [each for each in (settings.max_speed, settings.max_lateral_speed) if each is not None]
+        found |= {"holonomic": True, "max_speed": max(speeds, default=None)}
+    elif settings.min_speed is not None:
+        found["min_speed"] = min(settings.min_speed, 0.0)
+    # How a planner inflates obstacles is nothing to a zone that stops.
+    doubts = tuple(each for each in settings.warnings if each.code != "inflation_below_circumscribed")
+    return {name: value for name, value in found.items() if value is not None}, doubts
 
 
 # ---- zones that hold -----------------------------------------------------------------------------
@@ -242,9 +246,12 @@ def _check(options: argparse.Namespace) -> None:
     mend = None if options.mend is None else output.target("--mend", options.mend, (".yaml", ".yml"))
     output.check_json(options)
     of_file, doubts = _of_file(options.file)
+    given = _given(options)
     if options.holonomic:
         of_file.pop("min_speed", None)
-    given = of_file | _given(options)
+    if not of_file.keys() - given.keys():
+        doubts = ()  # nothing of them is used
+    given = of_file | given
     conditions, _ = zones.Conditions.assumed(**given)
     with output.located(options.file):
         monitor = zones.load_monitor(options.file, footprint=conditions.footprint)

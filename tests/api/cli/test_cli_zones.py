@@ -113,6 +113,15 @@ def test_a_check_knows_the_robot_that_stands_in_the_same_file(
     assert "not told, taken from the default robot of Nav2: deceleration" in told
     assert "max_speed" not in told
     assert conditions("--max-speed", "0.3")["max_speed"] == 0.3
+    assert conditions("--holonomic")["holonomic"] is True
+    # A robot that drives sideways is as fast as its fastest direction, and inflation is nothing to a zone.
+    sideways = DEFAULT + SETTINGS.replace("[0.4, 0.0, 0.5]", "[0.4, 0.6, 0.5]").replace(
+        "max_vel_y: 0.0", "max_vel_y: 0.6"
+    )
+    file.write_text(sideways.replace("max_speed_xy: 0.4", "max_speed_xy: 0.8"))
+    found = conditions()
+    assert (found["holonomic"], found["max_speed"], found["min_speed"]) == (True, 0.6, 0.0)
+    assert "inflation" not in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
