@@ -363,6 +363,9 @@ RANGES: dict[str, Range] = {
     "effective_mass": Range(0.3, 10000.0, "kg", "the lightest arms to a heavy industrial truck", "g or t given for kg"),
     "body_mass": Range(0.05, 300.0, "kg", "a finger to a heavy person; ISO/TS 15066 has 0.6 to 75", "g given for kg"),
     "region_stiffness": Range(500.0, 1e7, "N/m", "ISO/TS 15066 has 10,000 to 150,000", "N/mm or kN/m given for N/m"),
+    "drive_stiffness": Range(
+        500.0, 1e9, "N/m", "soft impedance control to a rigid frame", "N/mm or kN/m given for N/m"
+    ),
     # A body region is smaller than a back; 1 cm^2, the area of many tests, must not pass as 1 m^2.
     "contact_area": Range(1e-6, 0.3, "m^2", "1 mm^2 to the back of a person", "mm^2 or cm^2 given for m^2"),
     "contact_radius": Range(1e-4, 100.0, "m", "an edge to nearly flat", "mm or cm given for m"),

@@ -259,8 +259,8 @@ class Drive:
         if self.model == "none":
             return (ResultWarning("drive_not_given", "drive.model", "nothing is known of the drive"),)
         slow = None if self.deceleration is None or math.isinf(self.deceleration) else self.deceleration
-        given = {"reaction_time": self.reaction_time, "deceleration": slow}
-        found = implausible(given, {"deceleration": "robot_deceleration"})
+        given = {"reaction_time": self.reaction_time, "deceleration": slow, "stiffness": self.stiffness}
+        found = implausible(given, {"deceleration": "robot_deceleration", "stiffness": "drive_stiffness"})
         return tuple(replace(each, subject=f"drive.{each.subject}") for each in found)
 
 

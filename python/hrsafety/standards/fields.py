@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterator
 from typing import Annotated
 
 from hrsafety._arguments import not_negative, positive
@@ -11,7 +12,13 @@ from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import HrsafetyWarning, ResultWarning
 from hrsafety.standards.guards import LEAST_INTRUSION, minimum_distance
-from hrsafety.standards.separation import WALKING_SPEED, StoppingData, separation_distance, speed_over_distance
+from hrsafety.standards.separation import (
+    STANDING,
+    WALKING_SPEED,
+    StoppingData,
+    separation_distance,
+    speed_over_distance,
+)
 
 __all__ = ["FieldDistances", "field_distances"]
 
@@ -82,7 +89,8 @@ def field_distances(
     Returns
     -------
     FieldDistances
-        Both distances with their terms; with a doubt where the intrusion distance is shorter than that of any field.
+        Both distances with their terms; with doubts where the intrusion distance is shorter than that of any field, or
+        people are slower than ISO 13855 has them.
 
     Raises
     ------
@@ -145,7 +153,7 @@ def field_distances(
         stop_terms=stops,
         slow_down_terms={} if contact_speed is None else slows,
         said=", ".join(f"no {name}" for name in zero) + (" given" if zero else ""),
-        warnings=(*told.warnings, *_doubts(intrusion)),
+        warnings=(*told.warnings, *_doubts(intrusion, human_speed)),
     )
 
 
@@ -176,12 +184,17 @@ def intrusion_of_field(intrusion: float | None, height: float | None, capability
     return minimum_distance(1.0, capability=capability, height=height).intrusion
 
 
-def _doubts(intrusion: float | None) -> tuple[ResultWarning, ...]:
-    """Return the doubt about an intrusion distance that no field of a scanner has."""
-    if intrusion is None or intrusion >= LEAST_INTRUSION:
-        return ()
-    words = (
-        f"intrusion is {intrusion:g} m: somebody reaches over a scanner field by {LEAST_INTRUSION:g} m and more, and "
-        "its distances are too short; give the height of the field in its place"
-    )
-    return (ResultWarning("intrusion_too_short", "intrusion", words),)
+def _doubts(intrusion: float | None, human_speed: float) -> Iterator[ResultWarning]:
+    """Yield doubts about numbers that make a field too short: nobody reaches over it, or people who are slow."""
+    if intrusion is not None and intrusion < LEAST_INTRUSION:
+        words = (
+            f"intrusion is {intrusion:g} m: somebody reaches over a scanner field by {LEAST_INTRUSION:g} m and more, "
+            "and its distances are too short; give the height of the field in its place"
+        )
+        yield ResultWarning("intrusion_too_short", "intrusion", words)
+    if STANDING <= human_speed < WALKING_SPEED:
+        words = (
+            f"human_speed is {human_speed:g} m/s: distances hold for people who are no faster, and ISO 13855 has "
+            f"{WALKING_SPEED:g} m/s"
+        )
+        yield ResultWarning("slow_person", "human_speed", words)

@@ -208,3 +208,19 @@ def test_a_field_that_is_reached_over_is_told(rules: dict[str, float], doubts: l
     # A cell that is made of another one keeps what was given.
     again = made(**more | {"separation": made(**more).separation})
     assert contact.study(again).fields["distances"] == found.fields["distances"]
+
+
+def test_a_robot_that_is_slower_than_its_contacts_is_refused() -> None:
+    values = {"max_speed": 0.19, "reaction_time": 0.1, "deceleration": 3.0, "height": 0.3, "uncertainty": 0.1}
+    with pytest.raises(
+        InvalidParameterError, match=r"separation.max_speed must be at least the speed of every contact"
+    ):
+        made(separation=values)
+
+
+@pytest.mark.parametrize(("stiffness", "told"), [(100.0, True), (1e3, False), (1e5, False)])
+def test_a_drive_in_another_unit_is_doubted(stiffness: float, told: bool) -> None:
+    drive = contact.Drive(model="elastic", stiffness=stiffness, reaction_time=0.06, deceleration=8.0)
+    assert any("drive.stiffness" in each.subject for each in drive.doubts) == told
+    clamped = contact.study(made(contacts=[planned("chest", "quasi_static", area=1e-4)], drive=drive, uncertain={}))
+    assert ("implausible" in clamped.fields["doubts"]) == told

@@ -255,6 +255,12 @@ def test_an_intrusion_that_no_field_has_is_doubted(intrusion: float) -> None:
     assert (doubt.code, doubt.safe_side) == ("intrusion_too_short", False)
 
 
+@pytest.mark.parametrize(("speed", "codes"), [(0.0, ["taken_as_zero"]), (0.25, ["slow_person"]), (1.6, []), (2.0, [])])
+def test_people_who_are_slower_than_the_standard_has_them_are_told(speed: float, codes: list[str]) -> None:
+    found = standards.field_distances(1.0, height=0.3, human_speed=speed, **FIELD)
+    assert [each.code for each in found.warnings] == codes
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -204,6 +204,10 @@ class Cell:
         count("seed", self.seed, least=0, most=2**63 - 1)
         made = {"contacts": contacts, "human_speed": human_speed, "allowed_chance": chance}
         made["separation"] = separation_of(self.separation)
+        fastest = max(each.speed for each in contacts)
+        if made["separation"] is not None and made["separation"]["max_speed"] < fastest:
+            rule = f"be at least the speed of every contact ({fastest:g})"
+            raise InvalidParameterError("separation.max_speed", rule, made["separation"]["max_speed"])
         if self.drive is not None:
             made["drive"] = _pushing(instance("drive", self.drive, Drive), self.robot)
         made["confirmed"] = confirmed_of(self.confirmed)

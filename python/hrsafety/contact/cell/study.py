@@ -477,12 +477,13 @@ def _over_distance(cell: Cell, least: float | None) -> SpeedCurve | None:
 
 
 def _speed_fields(cell: Cell, curve: SpeedCurve, doubts: tuple[ResultWarning, ...]) -> dict[str, Any]:
-    zero = [each.subject for each in doubts if each.code == "taken_as_zero"]
+    rules = dict(cell.separation or {})
+    known = {*rules, "intrusion"} if "height" in rules else {*rules}
     return {
-        "rules": dict(cell.separation or {}),
+        "rules": rules,
         "contact": curve.status,
         "doubts": [each.code for each in unsafe_doubts(doubts)],
-        "taken_as_zero": [name for name in ("intrusion", "uncertainty") if any(name in each for each in zero)],
+        "taken_as_zero": [name for name in ("intrusion", "uncertainty") if name not in known],
         "distance": curve.distance,
         "speed": curve.speed,
         "mode": curve.mode,
