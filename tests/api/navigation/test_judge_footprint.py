@@ -85,3 +85,25 @@ def test_a_player_of_a_judged_log_shows_the_outline() -> None:
     assert found.footprint == ROBOT.footprint
     assert tuple(found._replay().robots[0].footprint) == CORNERS
     assert nav.metrics.judge(log_of(person), robot=ROBOT, robot_radius=0.4).footprint is None
+
+
+@pytest.mark.parametrize(
+    ("spoil", "told"),
+    [
+        ("nothing", False),
+        ("backward", False),
+        ("columns exchanged", True),
+        ("degrees", True),
+        ("columns exchanged, holonomic", False),
+    ],
+)
+def test_two_wheels_that_move_sideways_are_doubted(spoil: str, told: bool) -> None:
+    angle = 0.3 + 0.02 * TIME
+    way = np.cumsum(np.stack([0.05 * np.cos(angle), 0.05 * np.sin(angle)], axis=1), axis=0)
+    heading = {"backward": angle + np.pi, "degrees": np.degrees(angle)}.get(spoil, angle)
+    place = way[:, ::-1] if "exchanged" in spoil else way
+    walk = datasets.Recording(time_s=TIME, person=[7] * len(TIME), position=np.full((len(TIME), 2), 9.0))
+    log = SimpleNamespace(time=TIME, position=place, heading=heading, people=walk)
+    robot = nav.HolonomicRobot(footprint=CORNERS) if "holonomic" in spoil else ROBOT
+    found = nav.metrics.judge(log, robot=robot, person_radius=0.2)
+    assert ("sideways" in [each.code for each in found.warnings]) == told

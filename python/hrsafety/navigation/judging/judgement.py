@@ -42,6 +42,10 @@ NEAR = 3.6
 """Beyond the worst one only moments nearer than this are told, in m: the social distance."""
 APART = 2.0
 """Worst moments are so far from each other in s."""
+MOVING = 0.1
+"""Speed in m/s above which the direction of a way is known."""
+SIDEWAYS = 0.35
+"""Angle in rad between way and heading that two wheels do not have most of the time."""
 ENOUGH = 0.95
 """Share of a log that must be judged."""
 
@@ -312,6 +316,7 @@ def judge(
         *metrics.warnings,
         *_doubts(parts, share, possible),
         *_circled(outline),
+        *_sideways(both, robot),
     )
     return Judgement(
         time=both.time,
@@ -463,6 +468,21 @@ def _circled(outline: Outlined | None) -> Iterator[ResultWarning]:
             "those of the footprint itself",
             safe_side=True,  # the circle is nearer to everybody
         )
+
+
+def _sideways(both: Synchronized, robot: object) -> Iterator[ResultWarning]:
+    """Yield where a robot on two wheels seems to move sideways most of the time: places or headings are others."""
+    speed = np.hypot(*both.velocity.T)
+    moves = speed > MOVING
+    if isinstance(robot, DifferentialDriveRobot) and moves.sum() * both.step >= 1.0:
+        way = np.arctan2(both.velocity[moves, 1], both.velocity[moves, 0]) - both.heading[moves]
+        off = float(np.median(np.abs(np.arcsin(np.clip(np.sin(way), -1.0, 1.0)))))
+        if off > SIDEWAYS:
+            message = (
+                f"two wheels move {np.degrees(off):.0f} degrees beside their heading half of the time: x and y "
+                "exchanged, degrees given for radians, or another frame?"
+            )
+            yield ResultWarning("sideways", "log.heading", message)
 
 
 def _some(number: int, one: str, many: str = "") -> str:
