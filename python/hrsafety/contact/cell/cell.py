@@ -203,11 +203,11 @@ class Cell:
         count("draws", self.draws, most=MOST_DRAWS)
         count("seed", self.seed, least=0, most=2**63 - 1)
         made = {"contacts": contacts, "human_speed": human_speed, "allowed_chance": chance}
-        made["separation"] = separation_of(self.separation)
+        made["separation"] = rules = separation_of(self.separation)
         fastest = max(each.speed for each in contacts)
-        if made["separation"] is not None and made["separation"]["max_speed"] < fastest:
+        if rules is not None and rules["max_speed"] < fastest:
             rule = f"be at least the speed of every contact ({fastest:g})"
-            raise InvalidParameterError("separation.max_speed", rule, made["separation"]["max_speed"])
+            raise InvalidParameterError("separation.max_speed", rule, rules["max_speed"])
         if self.drive is not None:
             made["drive"] = _pushing(instance("drive", self.drive, Drive), self.robot)
         made["confirmed"] = confirmed_of(self.confirmed)
