@@ -73,8 +73,8 @@ def add_warnings(figure: Figure, *results: object) -> None:
     figure : Figure
         Finished but for this note.
     *results : object
-        What is drawn. Each warning of their attribute ``warnings`` is written once; of more than
-        two the others are counted.
+        What is drawn. Each warning of their attribute ``warnings`` is written once, those that may be on the unsafe
+        side first; of more than two the codes of the others are.
     """
     _noted.add(figure)
     words = warning_lines(results, float(figure.get_figwidth()))
@@ -106,9 +106,13 @@ def _legend_height(figure: Figure) -> float:
 
 def warning_lines(results: Iterable[object], width: float) -> list[str]:
     """Return the lines of a note that is so many inch wide; none without warnings."""
-    found = list(dict.fromkeys(str(each) for result in results for each in getattr(result, "warnings", ())))
-    shown = found[:MOST_WARNINGS]
-    if len(found) > len(shown):
-        shown.append(f"and {len(found) - len(shown)} more warnings: see .warnings of the result")
+    every = (each for result in results for each in getattr(result, "warnings", ()))
+    # A plain text is what a page or a table holds of a warning.
+    found = sorted(dict.fromkeys(every), key=lambda each: bool(getattr(each, "safe_side", False)))
+    shown = list(dict.fromkeys(map(str, found)))
+    kinds = dict.fromkeys(str(getattr(each, "code", "")) for each in found if str(each) not in shown[:MOST_WARNINGS])
+    if len(shown) > MOST_WARNINGS:
+        named = ", ".join(filter(None, kinds)) or "warnings"
+        shown[MOST_WARNINGS:] = [f"and {len(shown) - MOST_WARNINGS} more ({named}): see .warnings of the result"]
     limit = max(int(_CHARACTERS_PER_INCH * width), 20)
     return [line for each in shown for line in textwrap.wrap(each.replace("$", r"\$"), limit)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from hrsafety.plausibility import ResultWarning
 from hrsafety.plotting import notes, style
 
 PLOTTING = Path(plotting.__file__).parent
+
 DOUBT = ResultWarning("edge", "x", "a doubt that nobody may overlook")
 
 
@@ -82,3 +84,14 @@ def test_a_robot_run_shows_the_doubts_of_its_scenario() -> None:
     assert run.warnings
     for draw in (plotting.paths, plotting.distances, plotting.energy):
         assert "critical_radius of obstacles[0] (Human) is 0.8 m" in note(draw([run]))
+
+
+def test_a_note_begins_with_what_may_be_unsafe_and_names_the_others() -> None:
+    careful = [ResultWarning("closed_in", "goal", f"careful {index}", safe_side=True) for index in range(2)]
+    found = [*careful, ResultWarning("unknown_wall", "law", "unsafe"), ResultWarning("implausible", "goal", "unit")]
+    lines = notes.warning_lines([SimpleNamespace(warnings=found)], 20.0)
+    assert lines == ["warning: unsafe", "warning: unit", "and 2 more (closed_in): see .warnings of the result"]
+    assert notes.warning_lines([SimpleNamespace(warnings=careful)], 20.0) == [
+        "warning: careful 0",
+        "warning: careful 1",
+    ]
