@@ -296,6 +296,9 @@ RANGES: dict[str, Range] = {
     ),
     "obstacle_speed": Range(0.0, 40.0, "m/s", "standing to road vehicles", "mm/s or km/h given for m/s"),
     "measurement_scale": Range(0.0, 1.0, "m", "exact to coarse radio positioning", "mm or cm given for m"),
+    "lidar_range": Range(0.0, 500.0, "m", "touching to the farthest scanners", "mm or cm given for m"),
+    "lidar_noise": Range(0.0, 0.5, "m", "exact to coarse sonars", "mm or cm given for m"),
+    "mounting_offset": Range(-10.0, 10.0, "m", "within the largest trucks", "mm or cm given for m"),
     "latency": Range(0.0, 5.0, "s", "immediate to very slow networks", "ms given for s"),
     # ---- impact -----------------------------------------------------------------------------
     "manipulator_mass": Range(

@@ -28,11 +28,14 @@ from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.warnings.filters import of_filter
 from hrsafety.navigation.warnings.shields import maps_of, of_controller, of_order, shield_of
+from hrsafety.navigation.warnings.units import of_lidar
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Command", "Controller", "Sighting"]
 
 MOST_PEOPLE = 10_000
+UNMEASURED_AFTER = 1.0
+"""After so many seconds without people and scans somebody may have come, in s."""
 FAR = 1e6
 """Where the scenario has those who were not seen yet, in m."""
 
@@ -46,6 +49,10 @@ class Controller:
     can be as old as the ``latency`` of the shield when it is told. A person is forgotten when ``gone`` names
     him, or after 2 s if a scan sees his place to be empty, or after ``age_limit``. Measurements older than what is
     known of a person count for nothing.
+
+    Who was not measured is not away: give ``people={}`` where somebody looked and nobody was there. Without ``people``,
+    ``gone`` or a scan from the start, or for more than 1 s, nothing is guaranteed (``unmeasured``), but by a shield
+    with `Unseen` people, and with ``people=0``, which says that nobody can be there.
 
     Names are those of a tracker that keeps them. A new name is one more person. Where three updates in a row have no
     name in common, or there is no room, who is new counts as the nearest of those who were not measured and can have
@@ -71,7 +78,7 @@ class Controller:
     obstacles : sequence of Obstacle
         What stands, beside the map; who moves is told in updates.
     people : int
-        How many can be there at once.
+        How many can be there at once; 0: nobody, ever.
     person_radius, person_speed : float
         Their radius in m, and the speed in m/s that their regions are sized for.
     lidar : Lidar or None
@@ -104,7 +111,18 @@ class Controller:
     'lost'
     """
 
-    __slots__ = ("_capacity", "_last", "_law", "_lidar", "_measured", "_names", "_native", "_person_speed", "_rules")
+    __slots__ = (
+        "_capacity",
+        "_last",
+        "_law",
+        "_lidar",
+        "_looked",
+        "_measured",
+        "_names",
+        "_native",
+        "_person_speed",
+        "_rules",
+    )
 
     def __init__(
         self,
@@ -148,20 +166,21 @@ class Controller:
         self._names = NamedPeople(self._capacity, most, _latency(self._law), error, limit)
         self._measured = None if shield is None else MeasuredPeople(shield, most)
         self._last: Command | None = None
+        self._looked = -math.inf
         self._native: _hrsafety.Controller | None = None
         if start is not None:
             self._native = self._made(pair("start", start))
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """Gaps in the cover of the law's shield, and what its filter assumes; empty without either."""
-        shield = _shield(self._law)
+        """Gaps in the cover of the law's shield, what its filter assumes, and units of the lidar."""
+        shield, lidar, speed = _shield(self._law), self._lidar is not None, self._person_speed
+        units = () if self._lidar is None else of_lidar("lidar", self._lidar)
         if shield is None:
             stands = len(self._rules["obstacles"]) > self._capacity or any(maps_of(self._law))
-            return tuple(of_filter(self._law, measured=True, walls=stands or self._lidar is not None))
-        lidar, speed = self._lidar is not None, self._person_speed
+            return (*units, *of_filter(self._law, measured=True, walls=stands or lidar))
         found = of_controller(shield, self._rules["robot"], person_speed=speed, lidar=lidar)
-        return (*of_order(self._law), *found)
+        return (*units, *of_order(self._law), *found)
 
     def _made(self, start: Pair) -> _hrsafety.Controller:
         scenario = Scenario(start=start, **self._rules)
@@ -211,7 +230,7 @@ class Controller:
         people : mapping, array_like of shape (n, 4) or None
             Who was measured: by names of your own, `Sighting` or ``(x, y, vx, vy)`` with the instant of the
             measurement as a fifth number if it is older than ``time``; or rows of these numbers, named by
-            their index. Who is not in it was not measured.
+            their index. Who is not in it was not measured. ``None``: nobody looked; ``{}``: nobody was seen.
         gone : iterable
             Names of those who are known to have left.
         scan : array_like of shape (beams,), or None
@@ -243,7 +262,7 @@ class Controller:
         angle = 0.0 if heading is None else number("heading", heading)
         if self._native is None:
             if robot is None:
-                return self._told(_NOTHING, dict.fromkeys((*_OF_PEOPLE, "renamed"), ()))
+                return self._told(now, _NOTHING, dict.fromkeys((*_OF_PEOPLE, "renamed"), ()))
             self._native = self._made(robot[0])
         told = {} if people is None else self._seen(people)
         ranges = None if scan is None else _ranges(scan)
@@ -266,6 +285,8 @@ class Controller:
             self._names = before
             found = {field: getattr(last, field) for field in (*_OF_PEOPLE, "renamed")}
         else:
+            if people is not None or scan is not None or names:
+                self._looked = now
             if self._measured is not None:
                 self._measured.forget(names)
                 for name, former in renamed.items():
@@ -274,13 +295,14 @@ class Controller:
             if fields["timing"] != "lost":
                 surprises = set(self._native.unexpected())
                 found["unexpected"] = tuple(name for name in told if places[name] in surprises)
-        self._last = self._told(fields, found)
+        self._last = self._told(now, fields, found)
         return self._last
 
-    def _told(self, fields: Mapping[str, Any], found: Mapping[str, tuple[Hashable, ...]]) -> Command:
+    def _told(self, now: float, fields: Mapping[str, Any], found: Mapping[str, tuple[Hashable, ...]]) -> Command:
         rules, robot = self._rules, self._rules["robot"]
         limits = {"period": rules["control_period"], "max_acceleration": robot.guaranteed_acceleration}
         told = {**fields, **found, "lost": tuple(self._names.lost)}
+        told["unmeasured"] = self._unmeasured(now)
         told["plan"] = tuple((time, (rates[0], rates[1])) for time, rates in told["plan"])
         if isinstance(robot, DifferentialDriveRobot) and told["speed"] is None:
             # Two wheels that were never told where they are stand.
@@ -288,9 +310,17 @@ class Controller:
         shield = _shield(self._law)
         told["refuted"] = tuple(name for name in _assumed(shield) if told[name])
         command = Command(**limits, **told)
-        if shield is not None and command.doubts and command.status in ("kept", "changed"):
+        assumes = shield is not None or (isinstance(self._law, SafeNavigation) and self._law.filter is not None)
+        if assumes and command.doubts and command.status in ("kept", "changed"):
             return replace(command, status="not_guaranteed")
         return command
+
+    def _unmeasured(self, now: float) -> bool:
+        """Return whether people may be there for whom nobody looked."""
+        shield = _shield(self._law)
+        if self._capacity == 0 or (shield is not None and shield.unseen is not None):
+            return False
+        return now - self._looked > UNMEASURED_AFTER
 
     def _seen(self, people: Mapping[Hashable, Sequence[float | None]] | npt.ArrayLike) -> dict[Hashable, Told]:
         """Return who was measured."""

@@ -22,6 +22,7 @@ from hrsafety.navigation.sensing.odometry import Odometry
 from hrsafety.navigation.sensing.robot_sensor import RobotSensor
 from hrsafety.navigation.sensing.vision import Vision
 from hrsafety.navigation.warnings.scenarios import BELOW_SAFE, ROUNDING, own_speed
+from hrsafety.navigation.warnings.units import of_lidar
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["EchoRegions", "Sensing", "echo_regions", "sensing_of"]
@@ -165,6 +166,8 @@ def warnings_of(scenario: Scenario, built: AsBuilt) -> Iterator[ResultWarning]:
             "tell of walls alone, in place of all that is known otherwise, and the robot may drive into them",
         )
     for index, sensor in enumerate(built.sensors):
+        if isinstance(sensor, Lidar):
+            yield from of_lidar(f"sensors[{index}]", sensor)
         if isinstance(sensor, Odometry) and sensor.drifts:
             yield ResultWarning(
                 POSE_DRIFTS,

@@ -104,6 +104,9 @@ class Command:
     unknown_beams : int
         How many beams of the last scan read NaN: there may be something in their directions. What was seen there
         before counts on, ever older.
+    unmeasured : bool
+        Whether nobody looked for people: neither ``people`` (be it ``{}``), ``gone`` nor a scan was told for more than
+        1 s, or ever. Whoever came meanwhile is not known. Never with room for nobody, or a shield with `Unseen` people.
     refuted : tuple of str
         Names of the fields that tell of an assumption of the shield that the measurements of this update refute:
         ``"faster"``, ``"accelerated"``, ``"velocity_off"`` (if the shield assumes anything of velocities),
@@ -134,6 +137,7 @@ class Command:
     lost: tuple[Hashable, ...]
     renamed: tuple[Hashable, ...]
     unknown_beams: int
+    unmeasured: bool
     refuted: tuple[str, ...]
     before: Pair
     period: float
@@ -142,7 +146,7 @@ class Command:
     @property
     def doubts(self) -> tuple[str, ...]:
         """Names of all fields for which the shield guarantees nothing: `refuted`, and what is not known."""
-        return (*self.refuted, *(name for name in ("lost", "renamed", "unknown_beams") if getattr(self, name)))
+        return (*self.refuted, *(name for name in _UNKNOWN if getattr(self, name)))
 
     def velocity_after(self, seconds: float) -> Pair:
         """Return the velocity to have some time after the update if no other update comes.
@@ -211,6 +215,10 @@ class Command:
                 share = (since - start) / (end - start)
                 return first[0] + (last[0] - first[0]) * share, first[1] + (last[1] - first[1]) * share
         return 0.0, 0.0
+
+
+_UNKNOWN = ("lost", "renamed", "unknown_beams", "unmeasured")
+"""Fields of a command that tell of what is not known."""
 
 
 def _seconds(value: float) -> float:

@@ -16,6 +16,7 @@ from hrsafety.errors import InvalidParameterError, ShapeError, SimulationError
 from hrsafety.navigation.laws.arc_rollouts import ArcRollouts
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot
 from hrsafety.navigation.sensing.lidar import Lidar
+from hrsafety.navigation.warnings.units import of_lidar
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["KnownCells", "LidarScan", "ScanCommand", "ScanController"]
@@ -220,6 +221,7 @@ class ScanController:
                 ResultWarning("not_verified", "verify", "plans are not verified: nothing keeps the robot from contact")
             )
         for index, lidar in enumerate(self._lidars):
+            found += of_lidar(f"lidars[{index}]", lidar)
             outline, place = self._body.footprint, lidar.mounting[:2]
             inside = self._body.radius - math.hypot(*place) if outline is None else -float(outline.distance([place])[0])
             covered = max(0.0, inside)

@@ -35,7 +35,7 @@ class Driven:
 
     def told(self, seconds: float = PERIOD, **told: Any) -> nav.Command:
         """Tell what is seen, and execute the command for so long."""
-        command = self.controller.update(self.time, self.place, self.velocity, **told)
+        command = self.controller.update(self.time, self.place, self.velocity, **({"people": {}} | told))
         for part in range(60):
             vx, vy = command.velocity_after((part + 0.5) * seconds / 60.0)
             self.place = self.place[0] + vx * seconds / 60.0, self.place[1] + vy * seconds / 60.0
@@ -71,7 +71,7 @@ def test_a_robot_that_does_late_what_it_is_told_is_off_its_plan(lag: float) -> N
     robot, orders = Driven(), list[tuple[float, float]]()
     words = []
     for k in range(20):
-        command = robot.controller.update(PERIOD * k, robot.place, robot.velocity)
+        command = robot.controller.update(PERIOD * k, robot.place, robot.velocity, people={})
         words.append((command.robot_off_plan is not None, command.status))
         orders.append(command.velocity)
         late = k - round(lag / PERIOD)
@@ -302,3 +302,35 @@ def test_a_beam_that_fails_never_makes_the_robot_faster(ranges: list[float], bli
         robot.place, robot.velocity = (0.0, 0.0), (0.0, 0.0)
         speeds.append(math.hypot(*robot.told(scan=later).velocity))
     assert speeds[1] <= speeds[0] + 0.01
+
+
+def test_people_for_whom_nobody_looked_are_not_away() -> None:
+    blind, alone = Driven(), Driven(people=0)
+    for _ in range(3):
+        command = blind.told(people=None)
+        assert (command.unmeasured, command.status, command.doubts) == (True, "not_guaranteed", ("unmeasured",))
+        assert alone.told(people=None).status == "kept"
+    assert blind.told(people={}).status == "kept"
+    for step in range(20):
+        # 1 s is 16 periods of 0.06 s and a part of one.
+        assert blind.told(people=None).unmeasured == (step >= 16)
+    assert blind.told(people={"a": (60.0, 0.0, 0.0, 0.0)}).status == "kept"
+
+
+def test_scans_are_measurements_and_unseen_people_need_none() -> None:
+    lidar = nav.Lidar(beams=90, range_max=12.0)
+    robot = Driven(lidar=lidar)
+    assert robot.told(people=None).unmeasured
+    assert not robot.told(people=None, scan=np.full(90, np.inf)).unmeasured
+    law = nav.SafeNavigation(
+        Ahead(), map=nav.StaticMap.from_polylines([[(0, 5), (90, 5)]]), shield=nav.Shield(unseen=nav.Unseen())
+    )
+    unseen = nav.Controller(law, nav.HolonomicRobot(), (90.0, 0.0), start=(0.0, 0.0), lidar=lidar)
+    assert not unseen.update(0.0, (0.0, 0.0), (0.0, 0.0)).unmeasured
+
+
+def test_a_filter_keeps_nobody_who_was_not_measured() -> None:
+    law = nav.SafeNavigation(Ahead(), filter=nav.laws.Barrier())
+    controller = nav.Controller(law, nav.HolonomicRobot(), (90.0, 0.0), start=(0.0, 0.0))
+    assert controller.update(0.0, (0.0, 0.0), (0.6, 0.0)).status == "not_guaranteed"
+    assert controller.update(0.06, (0.036, 0.0), (0.6, 0.0), people={}).status == "kept"

@@ -298,3 +298,11 @@ def test_regions_of_what_speeds_up_are_too_small() -> None:
     for sized in (replace(faster, max_speed=12.1), replace(faster, acceleration=(0.0, 0.0))):
         found = replace(scene, obstacles=[sized]).warnings
         assert "region_below_safe" not in {each.code for each in found}
+
+
+@pytest.mark.parametrize(("goal", "doubted"), [((4.0, 0.0), False), ((4.6, 0.0), False), ((4.8, 0.0), True)])
+def test_a_goal_in_the_walls_is_doubted(goal: tuple[float, float], doubted: bool) -> None:
+    # The robot of 0.2 m touches the wall at x = 5 before it is within 0.12 m of what lies beyond 4.92 m.
+    walls = nav.StaticMap.from_polylines([[(5.0, -2.0), (5.0, 2.0)]])
+    there = nav.Scenario(start=(0.0, 0.0), goal=(goal[0] + 0.15, 0.0), walls=walls)
+    assert ("goal_in_wall" in codes(there)) == doubted

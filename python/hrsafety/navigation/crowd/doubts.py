@@ -74,7 +74,7 @@ def of_numbers(
         found.append((f"people[{index}]", implausible(values, _QUANTITIES)))
     found += [(f"sources[{index}]", implausible(_body(each), _QUANTITIES)) for index, each in enumerate(sources)]
     for index, robot in enumerate(robots):
-        values = {"start": robot.start, "goal": robot.goal}
+        values = {"start": robot.start, "goal": robot.goal, "heading": robot.heading}
         values |= {f"robot_{name}": getattr(robot.body, name, None) for name in NUMBERS}
         if robot.measurement is not None:
             values |= {"measurement_scale": robot.measurement.scale, "latency": robot.measurement.latency}

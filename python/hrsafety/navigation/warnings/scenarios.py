@@ -9,6 +9,7 @@ from typing import Protocol
 
 from hrsafety._arguments import Pair
 from hrsafety.navigation import free_space
+from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles.base import Obstacle
 from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.obstacles.moving_rectangle import Box, Mobile
@@ -50,6 +51,8 @@ class Described(Protocol):
     @property
     def heading(self) -> float: ...
     @property
+    def walls(self) -> StaticMap | None: ...
+    @property
     def measurement(self) -> Measurement | None: ...
     @property
     def doubts(self) -> Sequence[ResultWarning]: ...
@@ -67,8 +70,8 @@ def found(scenario: Described) -> tuple[ResultWarning, ...]:
     -------
     tuple of ResultWarning
         Codes ``"region_below_safe"``, ``"start_in_critical_region"``, ``"goal_in_active_region"``,
-        ``"implausible"``, ``"goal_out_of_reach"``, ``"closed_in"`` and ``"circle_around_footprint"``, and those of its
-        ``doubts``.
+        ``"implausible"``, ``"goal_out_of_reach"``, ``"closed_in"``, ``"goal_in_wall"`` and
+        ``"circle_around_footprint"``, and those of its ``doubts``.
     """
     about_ends = (*_starts(scenario), *_goals(scenario))
     own = (*_regions(scenario), *about_ends, *of_units(scenario), *_reach(scenario), *_closed(scenario))
@@ -295,6 +298,16 @@ def _reach(scenario: Described) -> Iterator[ResultWarning]:
 def _closed(scenario: Described) -> Iterator[ResultWarning]:
     """Yield stationary obstacles that leave no way for the robot, or no place near the goal."""
     radius = least_reach(scenario.robot)
+    if scenario.walls is not None:
+        within = radius - float(scenario.walls.clearance(scenario.goal))
+        if within > scenario.arrival_tolerance:
+            yield ResultWarning(
+                "goal_in_wall",
+                "goal",
+                f"goal lies {within:.4g} m within walls, grown by the radius of the robot, {radius:g} m: the robot "
+                f"touches them before it is within arrival_tolerance = {scenario.arrival_tolerance:g} m",
+            )
+            return
     for index, obstacle in enumerate(scenario.obstacles):
         if not free_space.stands(obstacle):
             continue
