@@ -119,7 +119,7 @@ def _robot(options: argparse.Namespace) -> tuple[dict[str, Any], tuple[ResultWar
     if options.params is not None:
         with output.located(options.params):
             settings = io.read_nav2(options.params)
-        told = settings.warnings
+        told = settings.body_warnings
         with suppress(InvalidParameterError):  # it may not give all limits; the radius is enough
             given["robot"] = settings.robot()
         outlined = "robot" in given and given["robot"].footprint is not None and options.robot is None

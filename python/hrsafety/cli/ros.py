@@ -89,7 +89,7 @@ def _with_body(world: nav.World, path: str) -> nav.World:
     with output.located(path):
         body = found.robot()
     robots = [replace(robot, body=body) for robot in world.robots]
-    return replace(world, robots=robots, doubts=(*world.doubts, *found.warnings))
+    return replace(world, robots=robots, doubts=(*world.doubts, *found.body_warnings))
 
 
 def _sent(settings: Settings) -> str:

@@ -92,9 +92,7 @@ def _of_file(path: str) -> tuple[dict[str, Any], tuple[ResultWarning, ...]]:
         found |= {"holonomic": True, "max_speed": max(speeds, default=None)}
     elif settings.min_speed is not None:
         found["min_speed"] = min(settings.min_speed, 0.0)
-    # How a planner inflates obstacles is nothing to a zone that stops.
-    doubts = tuple(each for each in settings.warnings if each.code != "inflation_below_circumscribed")
-    return {name: value for name, value in found.items() if value is not None}, doubts
+    return {name: value for name, value in found.items() if value is not None}, settings.body_warnings
 
 
 # ---- zones that hold -----------------------------------------------------------------------------

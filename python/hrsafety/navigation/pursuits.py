@@ -123,6 +123,8 @@ class Falsification:
         Numbers of first contacts of each episode, as those of a `Pursuit`.
     episodes : int
         Episodes in all.
+    person_radius : float
+        Of the person, in m.
     worst : Pursuit
         The episode of the least margin.
     warnings : tuple of ResultWarning
@@ -139,6 +141,7 @@ class Falsification:
     contacts_standing: npt.NDArray[np.int64]
     wall_contacts: npt.NDArray[np.int64]
     episodes: int
+    person_radius: Annotated[float, "m"]
     worst: Pursuit
     warnings: tuple[ResultWarning, ...]
 
@@ -280,6 +283,7 @@ def falsify(
         **found,
         episodes=len(found["margin"]) if how == "hidden" else runs,
         worst=worst,
+        person_radius=size,
         warnings=(
             *implausible({"person_radius": size, "person_speed": fastest}, {"person_speed": "pursuer_speed"}),
             *run_warnings.of_run(pursued, drives, robot, step),
@@ -412,6 +416,7 @@ def _in_world(
         **{name: np.array(values) for name, values in rows.items()},
         episodes=episodes,
         worst=worst,
+        person_radius=size,
         warnings=(
             *implausible({"person_radius": size, "person_speed": pace}, {"person_speed": "pursuer_speed"}),
             *told,

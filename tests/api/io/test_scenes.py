@@ -278,6 +278,8 @@ def test_both_costmaps_are_doubted_once(tmp_path: Path) -> None:
     assert doubt.code == "inflation_below_circumscribed"
     assert "local_costmap" in doubt.message
     assert "global_costmap" in doubt.message
+    # How a planner inflates is nothing to a judge of recorded ways or a zone that stops.
+    assert params(tmp_path, one).body_warnings == ()
 
 
 def test_namespaces_and_files_without_costmaps(tmp_path: Path) -> None:

@@ -60,6 +60,8 @@ _SPEED_UP = ("acc_lim_x", "ax_max")
 _BRAKE = ("decel_lim_x", "ax_min")
 _TURN_UP = ("acc_lim_theta", "az_max", "max_angular_accel")
 
+_INFLATION_CODE = "inflation_below_circumscribed"
+
 
 @displayed
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -135,6 +137,11 @@ class Nav2Settings:
     source: Provenance
     _controllers: tuple[Nav2Controller, ...] | FileError = field(default=(), repr=False, compare=False)
     _document: YamlDocument | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def body_warnings(self) -> tuple[ResultWarning, ...]:
+        """The `warnings` but those about how a planner inflates obstacles."""
+        return tuple(each for each in self.warnings if each.code != _INFLATION_CODE)
 
     @property
     def laws(self) -> Mapping[str, LocalPlanner]:
@@ -440,7 +447,7 @@ def _doubts_of_shapes(shapes: dict[str, dict[str, Any]], shape: dict[str, Any] |
             f"inflation_radius is less than the circumscribed radius: {told}; costs do not tell where a turning robot "
             "touches"
         )
-        yield ResultWarning("inflation_below_circumscribed", "inflation_radius", message)
+        yield ResultWarning(_INFLATION_CODE, "inflation_radius", message)
 
 
 def _same(one: Sequence[Pair], other: Sequence[Pair]) -> bool:

@@ -9,6 +9,7 @@ from hrsafety.plotting.runs.judgements import judged_way, worst_moments
 from hrsafety.plotting.runs.known_places import animate_known_cells, known_cells
 from hrsafety.plotting.runs.layouts import layout
 from hrsafety.plotting.runs.plans import guide_plan
+from hrsafety.plotting.runs.pursuits import worst_pursuit
 from hrsafety.plotting.runs.scenes import paths
 from hrsafety.plotting.runs.sequences import time_sequence
 
@@ -29,4 +30,5 @@ __all__ = [
     "safety_decision",
     "time_sequence",
     "worst_moments",
+    "worst_pursuit",
 ]
