@@ -312,7 +312,7 @@ class LawNode:
                 None if blind else known.pose[:2],
                 None if blind else known.velocity,
                 heading=known.pose.yaw,
-                people=told,
+                people=told if due else None,
                 gone=self._gone - set(told),
                 scan=self._scan[1] if self._scan is not None and self._scan[0] == now and not blind else None,
             )
@@ -321,6 +321,11 @@ class LawNode:
             self._tell(now, STANDING)
             return
         self._gone.clear()
+        for name in self.last.doubts:
+            told_of = f"{name} is {getattr(self.last, name)}"
+            self._count(
+                f"doubt_{name}", f"{told_of}: as long as it is, the shield guarantees nothing, see Command.{name}"
+            )
         self._tell(now, _twist(self.last, known.pose.yaw))
 
     def _tell(self, time: float, twist: PlanarTwist) -> None:

@@ -183,3 +183,15 @@ def test_a_clock_that_stands_stops_the_robot_for_good() -> None:
     for _ in range(40):
         again = driven.update(1.0, end, (0.0, 0.0), people=FAR)
         assert (again.timing, again.velocity, again.clock_set_back) == ("out_of_order", (0.0, 0.0), None)
+
+
+@pytest.mark.parametrize("tracking", [(0.0, 0.02), (0.1, 0.05)])
+def test_a_robot_that_was_held_back_from_its_plan_goes_on_as_well(tracking: tuple[float, float]) -> None:
+    law = nav.SafeNavigation(Told(), shield=nav.Shield(velocity_tracking=tracking))
+    driven = nav.Controller(law, nav.HolonomicRobot(), (90.0, 0.0), start=(0.0, 0.0), control_period=PERIOD)
+    driven.update(100.0, (0.0, 0.0), (0.2, 0.0), people={})
+    # Somebody holds it where the plan began, where it could still be within the tracking error.
+    answers = [driven.update(PERIOD * k, (0.0, 0.0), (0.0, 0.0), people={}) for k in range(20)]
+    assert answers[0].timing == "out_of_order"
+    assert answers[-1].timing == "regular"
+    assert answers[-1].velocity[0] > 0.0

@@ -177,6 +177,16 @@ def test_a_clock_that_is_set_back_does_not_stop_it_for_good() -> None:
     assert sent(bus)[-1][0] > 0.0
 
 
+def test_what_refutes_the_shield_is_told_once_and_counted() -> None:
+    bus = FakeBus()
+    drive = LawNode(hall(), bus)
+    for step in range(5):
+        told_of(bus, 0.05 * step, Seen("a", 6.0, 1.0, 3.0, 0.0, 0.25), speed=0.0)
+    assert drive.counts["doubt_faster"] == 5
+    (line,) = [text for _, text in bus.logs if text.startswith("faster is ('a',)")]
+    assert "guarantees nothing" in line
+
+
 def test_a_world_needs_a_law() -> None:
     world = nav.World(robots=[nav.Robot(start=(0, 0), goal=(1, 0))])
     with pytest.raises(InvalidParameterError, match="one robot with a law"):

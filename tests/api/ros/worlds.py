@@ -22,7 +22,9 @@ def hall(**given: Any) -> nav.World:
         nav.Person(start=(9.0, -0.8), route=[(-1.0, -0.8)], desired_speed=1.0),
     ]
     source = nav.Source(low=(8.5, -2.0), high=(9.5, 2.0), rate=0.5, route=[(-1.5, 0.0)])
-    law = nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield(person_speed=2.2), yielding=nav.Yielding())
+    # The base turns as fast as it can within a control period, in which a plan changes evenly.
+    shield = nav.Shield(person_speed=2.2, velocity_tracking=(0.1, 0.05))
+    law = nav.SafeNavigation(nav.VirtualForceField(), shield=shield, yielding=nav.Yielding())
     robot = nav.Robot(start=(0.0, 0.0), goal=(8.0, 0.0), body=ROBOT, law=law)
     beside = {"people": people, "sources": [source], "walls": WALLS, "time_limit": 10.0, "seed": 3}
     return nav.World(robots=[robot], **{**beside, **given})

@@ -20,6 +20,9 @@ pub(super) const LATE: f64 = 1.5;
 /// An update earlier than this share of the usual time after the last one is not regular.
 const EARLY: f64 = 0.9;
 
+/// Who is measured to be no faster rests, in m/s.
+const RESTING: f64 = 1e-3;
+
 /// A clock that comes on by less than this share of a period stands.
 pub(super) const STANDS: f64 = 0.01;
 
@@ -91,7 +94,11 @@ impl Controller {
             let latest = reading.map(|reading| reading.latest);
             let running = now - last.restarted;
             let ended = verified.is_some_and(|(_, course)| running >= course.end());
-            if ended && latest == Some(f64::INFINITY) {
+            // Who rests has come to the end of the plan, or was held back from it.
+            let rests = verified.zip(robot).is_some_and(|((shield, _), robot)| {
+                robot.velocity.norm() <= shield.velocity_tracking.velocity(0.0).max(RESTING)
+            });
+            if ended && (rests || latest == Some(f64::INFINITY)) {
                 return Reckoned::Restarts(last.time - last.restarted);
             }
             return Reckoned::Held(Held {
