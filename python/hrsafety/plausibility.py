@@ -291,6 +291,11 @@ RANGES: dict[str, Range] = {
     "person_speed": Range(
         0.0, 12.5, "m/s", "standing to the fastest sprinter ever timed", "mm/s or km/h given for m/s"
     ),
+    "expected_speed": Range(
+        0.5, 12.5, "m/s", "a slow walk to the fastest sprinter ever timed", "another unit, or people at rest expected"
+    ),
+    "shield_latency": Range(0.0, 2.0, "s", "immediate to slow networks", "ms given for s"),
+    "shield_margin": Range(0.0, 1.0, "m", "none to a whole step", "mm or cm given for m"),
     "pursuer_speed": Range(
         0.01, 12.5, "m/s", "hardly moving to the fastest sprinter ever timed", "mm/s or km/h given for m/s"
     ),

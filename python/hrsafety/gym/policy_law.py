@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,7 +13,10 @@ from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.gym.environments import _BOUND, _MOST_SEEN, _OWN, _PERSON, _RANGE
 from hrsafety.navigation.laws.situation import Situation
 from hrsafety.navigation.maps.static_map import StaticMap
+from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.sensing.lidar import Lidar
+from hrsafety.navigation.sensing.robot_sensor import RobotSensor
+from hrsafety.plausibility import ResultWarning
 
 __all__ = ["PolicyLaw"]
 
@@ -48,7 +51,10 @@ class PolicyLaw:
 
     Notes
     -----
-    A law is told of people within the sight of its robot, an environment shows the nearest ones at any distance.
+    A law is told of people within the sight of its robot, an environment shows the nearest ones at any distance. What
+    differs from the environment otherwise is doubted in results: sensors of the robot that tell of points in place of
+    people (``"policy_sees_nobody"``), another time limit and another largest speed (``"other_environment"``); walls
+    that no ray shows are ``"unknown_wall"``.
 
     Examples
     --------
@@ -81,6 +87,54 @@ class PolicyLaw:
             raise InvalidParameterError("walls", "be a StaticMap or None", self.walls)
         if self.lidar:
             object.__setattr__(self, "_lidar", Lidar(map=self.walls, beams=self.lidar, range_max=_RANGE))
+
+    without_regions = True
+    """Whether the regions of obstacles are nothing to it."""
+
+    @property
+    def known_map(self) -> StaticMap | None:
+        """The walls that rays show."""
+        return self.walls if self.lidar else None
+
+    def doubts_of(
+        self, robot: HolonomicRobot | DifferentialDriveRobot, sensors: Sequence[RobotSensor], time_limit: float
+    ) -> Iterator[ResultWarning]:
+        """Yield what a run shows the policy otherwise than its environment did.
+
+        Parameters
+        ----------
+        robot : HolonomicRobot or DifferentialDriveRobot
+            What it drives.
+        sensors : sequence of RobotSensor
+            Of the robot.
+        time_limit : float
+            Of the run, in s.
+
+        Yields
+        ------
+        ResultWarning
+            With the codes ``"policy_sees_nobody"`` and ``"other_environment"``.
+        """
+        telling = [index for index, sensor in enumerate(sensors) if sensor.TELLS]
+        if telling and (self.people or self.lidar):
+            message = (
+                f"sensors[{telling[0]}] of the robot tells the law of points in place of people: the policy is shown "
+                "nobody, neither in its list of people nor by rays; give the robot no sensors that tell of obstacles"
+            )
+            yield ResultWarning("policy_sees_nobody", "law.policy", message)
+        if self.time_limit != time_limit:
+            message = (
+                f"time_limit of the policy is {self.time_limit:g} s, that of the run {time_limit:g} s: the share of "
+                "the time that the policy is shown is not that of its environment"
+            )
+            yield ResultWarning("other_environment", "law.time_limit", message)
+        share = getattr(robot, "reference_speed_share", 1.0)
+        if share != 1.0:
+            message = (
+                f"the policy drives the point mass that the wheels follow, at up to reference_speed_share = {share:g} "
+                "of their speed, and is shown that speed; in an environment it is the whole"
+            )
+            yield ResultWarning("other_environment", "robot.reference_speed_share", message)
 
     def velocity(self, situation: Situation) -> Array:
         """Return the velocity that the policy wants, in m/s.

@@ -23,13 +23,13 @@ from hrsafety.navigation.named_people import NamedPeople, Told
 from hrsafety.navigation.obstacles.base import Obstacle
 from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.robot_command import Command, Sighting
-from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
+from hrsafety.navigation.robots.bodies import NUMBERS, DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.warnings.filters import of_filter
 from hrsafety.navigation.warnings.shields import maps_of, of_controller, of_order, shield_of
 from hrsafety.navigation.warnings.units import of_lidar
-from hrsafety.plausibility import ResultWarning
+from hrsafety.plausibility import ResultWarning, implausible
 
 __all__ = ["Command", "Controller", "Sighting"]
 
@@ -120,6 +120,7 @@ class Controller:
         "_measured",
         "_names",
         "_native",
+        "_person_radius",
         "_person_speed",
         "_rules",
     )
@@ -150,7 +151,7 @@ class Controller:
             Human(start=(FAR + 10.0 * index, FAR), velocity=(speed, 0.0), radius=size, max_speed=speed)
             for index in range(self._capacity)
         ]
-        self._person_speed = speed
+        self._person_radius, self._person_speed = size, speed
         self._rules: dict[str, Any] = {
             "robot": instance("robot", robot, HolonomicRobot, DifferentialDriveRobot),
             "goal": pair("goal", goal),
@@ -173,14 +174,24 @@ class Controller:
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """Gaps in the cover of the law's shield, what its filter assumes, and units of the lidar."""
+        """Gaps in the cover of the law's shield, what its filter assumes, and numbers hardly meant in their units."""
         shield, lidar, speed = _shield(self._law), self._lidar is not None, self._person_speed
-        units = () if self._lidar is None else of_lidar("lidar", self._lidar)
+        units = (*self._units(), *(() if self._lidar is None else of_lidar("lidar", self._lidar)))
         if shield is None:
             stands = len(self._rules["obstacles"]) > self._capacity or any(maps_of(self._law))
             return (*units, *of_filter(self._law, measured=True, walls=stands or lidar))
         found = of_controller(shield, self._rules["robot"], person_speed=speed, lidar=lidar)
         return (*units, *of_order(self._law), *found)
+
+    def _units(self) -> tuple[ResultWarning, ...]:
+        """Return doubts about the units of numbers."""
+        rules, robot = self._rules, self._rules["robot"]
+        values: dict[str, object] = {name: rules[name] for name in ("control_period", "arrival_tolerance")}
+        values |= {"goal": rules["goal"], "person_radius": self._person_radius, "person_speed": self._person_speed}
+        values |= {f"robot.{name}": getattr(robot, name, None) for name in NUMBERS}
+        quantities = {"goal": "floor_position", "person_speed": "expected_speed"}
+        quantities |= {f"robot.{name}": f"robot_{name}" for name in NUMBERS}
+        return implausible(values, quantities)
 
     def _made(self, start: Pair) -> _hrsafety.Controller:
         scenario = Scenario(start=start, **self._rules)

@@ -67,3 +67,44 @@ def test_what_no_environment_shows_is_refused() -> None:
         nav.simulate(scenarios.circle_crossing(0, law=bad))
     with pytest.raises(InvalidParameterError, match="policy must be callable"):
         gym.PolicyLaw(policy="best", time_limit=10.0)  # type: ignore[arg-type]  # on purpose
+
+
+def to_goal(observation: np.ndarray) -> np.ndarray:
+    return observation[:2]
+
+
+def doubts(law: gym.PolicyLaw, *, walls: Any = None, time_limit: float = 25.0, **robot: Any) -> set[tuple[str, str]]:
+    body = robot.pop("body", nav.HolonomicRobot())
+    one = nav.Robot(body=body, start=(0.0, 0.0), goal=(4.0, 0.0), law=law, **robot)
+    person = nav.Person(start=(3.0, 2.0), route=[(3.0, -2.0)])
+    world = nav.World(people=[person], robots=[one], walls=walls, time_limit=time_limit)
+    return {(each.code, each.subject) for each in world.warnings if each.code != "circle_around_footprint"}
+
+
+def test_what_a_run_shows_otherwise_than_the_environment_is_doubted() -> None:
+    room = nav.StaticMap.from_polylines(ROOM)
+    elsewhere = nav.StaticMap.from_polylines(np.array(ROOM) + 50.0)
+    policy: dict[str, Any] = {"policy": to_goal, "time_limit": 25.0}
+    seeing = gym.PolicyLaw(**policy, lidar=24, walls=room)
+    assert doubts(seeing, walls=room) == set()
+    assert {code for code, _ in doubts(gym.PolicyLaw(**policy, lidar=24), walls=room)} == {"unknown_wall"}
+    assert {code for code, _ in doubts(gym.PolicyLaw(**policy, lidar=24, walls=elsewhere), walls=room)} == {
+        "unknown_wall"
+    }
+    assert {code for code, _ in doubts(gym.PolicyLaw(**policy, walls=room), walls=room)} == {"unknown_wall"}
+    blind = doubts(seeing, walls=room, sensors=[nav.Lidar()])
+    assert ("policy_sees_nobody", "robots[0].law.policy") in blind
+    assert not {"unknown_wall", "region_below_safe"} & {code for code, _ in blind}
+    assert {code for code, _ in doubts(seeing, walls=room, time_limit=30.0)} == {"other_environment"}
+    wheels = nav.DifferentialDriveRobot()
+    assert {code for code, _ in doubts(seeing, walls=room, body=wheels)} == {"other_environment"}
+
+
+def test_a_scenario_doubts_the_sensors_of_a_policy_and_shields_keep_the_doubt() -> None:
+    law = gym.PolicyLaw(policy=to_goal, time_limit=60.0)
+    scene = nav.Scenario(start=(0.0, 0.0), goal=(1.0, 0.0), obstacles=[nav.Human(start=(0.5, 3.0), velocity=(0, 0))])
+    built = nav.robots.AsBuilt(sensors=[nav.Lidar(map=nav.StaticMap.from_polylines(ROOM))])
+    assert scene.time_limit == 60.0
+    for driven in (law, nav.SafeNavigation(law, shield=nav.Shield())):
+        assert "policy_sees_nobody" in {each.code for each in nav.simulate(scene, driven, built=built).warnings}
+        assert "policy_sees_nobody" not in {each.code for each in nav.simulate(scene, driven).warnings}

@@ -405,6 +405,24 @@ def test_runs_that_are_the_same_with_every_seed_are_told() -> None:
         assert same(table) == []
 
 
+def test_copies_of_a_scene_are_told_whatever_their_names_and_seeds() -> None:
+    field = nav.VirtualForceField()
+    for copies in (
+        [C1] * 4,
+        [scenarios.random_traffic(3, seed=0) for _ in range(4)],
+        [replace(C1, seed=seed) for seed in range(4)],
+        {str(index): scenarios.circle_crossing(4) for index in range(4)},
+        [replace(C1, measurement=nav.Measurement())] * 4,
+    ):
+        (words,) = same(nav.compare(copies, [field, nav.Masoud()]).runs)
+        assert "copies of one scene" in words
+        assert "(6 such pairs of 8 runs)" in words
+    mirrored = replace(C1, start=(C1.start[0], -C1.start[1]), goal=(C1.goal[0], -C1.goal[1]))
+    noisy = [replace(C1, measurement=nav.Measurement(of="both"), seed=seed) for seed in range(4)]
+    for different in ([C1, mirrored], noisy, [scenarios.random_traffic(3, seed=seed) for seed in range(20)]):
+        assert same(nav.compare(different, [field]).runs) == []
+
+
 def test_worlds_that_draw_nothing_are_told() -> None:
     def world(seed: int) -> nav.World:
         return scenarios.circle_crossing(seed, law=nav.VirtualForceField())

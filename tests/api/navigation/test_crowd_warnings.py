@@ -137,7 +137,7 @@ def test_runs_and_tables_carry_the_doubts() -> None:
     assert run.warnings == place.warnings
     assert place.warnings[0].message in repr(run)
     table = nav.simulate_many([place, place])
-    assert [each.code for each in table.warnings] == ["shield_assumes_less"]
+    assert [each.code for each in table.warnings] == ["shield_assumes_less", "same_runs"]
     assert "1 more of this kind in these scenarios" in repr(table)
     assert pickle.loads(pickle.dumps(table)).warnings == table.warnings
 

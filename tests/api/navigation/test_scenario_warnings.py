@@ -124,7 +124,8 @@ def test_every_result_carries_the_warnings_that_matter_for_its_law() -> None:
     # A law that knows no critical region does not depend on its size.
     assert nav.simulate(noisy, nav.Khatib()).warnings == ()
     batch = nav.simulate_batch([scenarios.configuration("c1"), noisy, noisy], LAW)
-    (one,) = batch.warnings
+    one, copies = batch.warnings
+    assert copies.code == "same_runs"
     assert one.subject == "scenarios[1].obstacles[0].critical_radius"
     assert "1 more of this kind" in one.message
     assert set(batch.columns()) >= {"outcome", "energy_J"}
@@ -278,7 +279,8 @@ def test_many_runs_carry_what_their_sensors_do_not_see() -> None:
     for paths in (False, True):
         runs = nav.simulate_many({"c1": place, "again": place}, LAW, built=short, paths=paths)
         assert runs.built is short
-        (found,) = runs.warnings
+        found, copies = runs.warnings
+        assert copies.code == "same_runs"
         assert (found.code, found.subject) == (alone.code, f"scenarios['c1'].{alone.subject}")
         assert found.message == f"scenarios['c1']: {alone.message} (1 more of this kind in these scenarios)"
         assert runs.select(scenario="again").warnings[0].message == f"scenarios['again']: {alone.message}"

@@ -40,3 +40,24 @@ def test_a_heading_in_degrees_is_doubted_in_a_world() -> None:
 
     assert doubts(math.tau) == []
     assert "degrees given for radians" in doubts(90.0)[0]
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{"person_radius": 0.025}, {"person_speed": 0.16}, {"control_period": 60.0}, {"arrival_tolerance": 120.0}],
+    ids=lambda given: next(iter(given)),
+)
+def test_numbers_of_a_controller_are_doubted(given: dict[str, float]) -> None:
+    law = nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield())
+    made = nav.Controller(law, nav.HolonomicRobot(), (3.0, 0.0), **given)  # type: ignore[arg-type]  # options by name
+    assert [each.subject for each in made.warnings if each.code == "implausible"] == list(given)
+
+
+@pytest.mark.parametrize("name", ["latency", "position_error", "margin", "wall_margin", "position_tracking"])
+def test_numbers_of_a_shield_in_other_units_are_doubted_on_the_safe_side(name: str) -> None:
+    for value, doubted in ((0.05, False), (35.0, True)):
+        law = nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield(**{name: value}))  # type: ignore[arg-type]
+        run = nav.simulate(nav.Scenario(start=(0.0, 0.0), goal=(3.0, 0.0), time_limit=0.2), law)
+        found = [each for each in run.warnings if each.code == "implausible"]
+        assert [each.subject for each in found] == ([f"shield.{name}"] if doubted else [])
+        assert all(each.safe_side for each in found)

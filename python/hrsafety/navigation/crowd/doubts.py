@@ -19,7 +19,7 @@ from hrsafety.navigation.robots.bodies import NUMBERS
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.warnings.filters import of_filter
-from hrsafety.navigation.warnings.scans import of_robot, unwatched
+from hrsafety.navigation.warnings.scans import of_object, of_robot, unwatched
 from hrsafety.navigation.warnings.scenarios import circled, own_speed
 from hrsafety.navigation.warnings.shields import (
     ASSUMES_LESS,
@@ -182,21 +182,28 @@ def of_walls(
     return (*gathered(inside, "starts"), *gathered(behind, "goals"), *gathered(through, "recordings"))
 
 
-def of_scans(people: Sequence[Person], sources: Sequence[Source], robots: Sequence[Robot]) -> tuple[ResultWarning, ...]:
-    """Return the doubts of laws that make their own map of scans, the first of each kind with how many follow.
+def of_scans(
+    people: Sequence[Person], sources: Sequence[Source], robots: Sequence[Robot], time_limit: float
+) -> tuple[ResultWarning, ...]:
+    """Return the doubts of laws with a map or an observation of their own, the first of each kind with how many follow.
 
     Parameters
     ----------
     people, sources, robots : sequence of Person, Source, Robot
         Who is in the world.
+    time_limit : float
+        In s.
 
     Returns
     -------
     tuple of ResultWarning
-        With the codes of `hrsafety.navigation.warnings.scans.unwatched`.
+        With the codes of `hrsafety.navigation.warnings.scans.unwatched` and ``of_object``.
     """
     movers = len(people) + len(sources) + len(robots) - 1
-    found = [(f"robots[{index}]", tuple(unwatched(robot.law, movers))) for index, robot in enumerate(robots)]
+    found = []
+    for index, robot in enumerate(robots):
+        own = of_object(robot.law, robot.body, robot.as_built(), time_limit)
+        found.append((f"robots[{index}]", (*unwatched(robot.law, movers), *own)))
     return gathered(found, "robots")
 
 

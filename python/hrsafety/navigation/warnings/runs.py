@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.warnings.filters import of_filter
-from hrsafety.navigation.warnings.scans import of_robot, unwatched
+from hrsafety.navigation.warnings.scans import of_object, of_robot, unwatched
 from hrsafety.navigation.warnings.scenarios import BELOW_SAFE, GOAL_IN_REGION, IN_CRITICAL_REGION
 from hrsafety.navigation.warnings.shields import ASSUMES_LESS, maps_of, of_hidden_ways, of_order, of_shield, shield_of
 from hrsafety.navigation.warnings.walls import unknown_walls
@@ -28,6 +29,8 @@ __all__ = ["of_commands", "of_repeats", "of_run", "of_runs", "of_scenes", "of_wa
 
 UNKNOWN_MAP = "unknown_map"
 """Code of a law that does not know the walls of the laws that it is compared with."""
+MOST_TWINS = 100
+"""So many pairs of scenes with runs of the same bits are compared."""
 
 
 def of_run(
@@ -67,6 +70,7 @@ def of_run(
     things = scenario.obstacles
     stands = any(isinstance(each, Disc | Rectangle) for each in things)
     of_map = itertools.chain(of_map, unwatched(law, sum(not isinstance(each, Disc | Rectangle) for each in things)))
+    of_map = itertools.chain(of_map, of_object(law, scenario.robot, built, scenario.time_limit))
     of_rule = of_filter(law, measured=measured, walls=stands or scenario.walls is not None or any(maps_of(law)))
     if shield is None:
         return (*of_scene, *of_sensors, *of_map, *of_rule)
@@ -190,8 +194,9 @@ def of_repeats(table: Any) -> Iterator[ResultWarning]:
     Yields
     ------
     ResultWarning
-        With the code ``"same_runs"``: for seeds that change nothing, or that are given twice.
+        With the code ``"same_runs"``: for seeds that change nothing, or that are given twice, and for scenes that are.
     """
+    yield from _of_copies(table)
     keys = [table.law_index, table.scenario_index, table.gain_index, *([] if table.robot is None else [table.robot])]
     group = np.ravel_multi_index(keys, [int(each.max(initial=0)) + 1 for each in keys])
     _, first, group, counts = np.unique(group, return_index=True, return_inverse=True, return_counts=True)
@@ -217,3 +222,26 @@ def of_repeats(table: Any) -> Iterator[ResultWarning]:
         f"that is drawn for each seed, makes them differ{more}"
     )
     yield ResultWarning("same_runs", "seeds", message)
+
+
+def _of_copies(table: Any) -> Iterator[ResultWarning]:
+    """Warn of scenes that are copies of others, by the runs in them that have the same bits."""
+    if len(table.scenarios) < 2:
+        return
+    values = [table.end_time, table.path_length, table.min_clearance, table.law_index, table.gain_index]
+    values += [] if table.robot is None else [table.robot]
+    rows = np.column_stack([np.asarray(each, dtype=np.float64) for each in values]).view(np.uint64)
+    order = np.lexsort(rows.T)
+    scene = table.scenario_index[order]
+    twins = np.flatnonzero((rows[order][1:] == rows[order][:-1]).all(axis=1) & (scene[1:] != scene[:-1]))
+    # Mirrored scenes have such runs, too: whether scenes are copies, but for a seed that changes nothing, they tell.
+    pairs = [(row, table.scenarios[scene[row]], table.scenarios[scene[row + 1]]) for row in twins[:MOST_TWINS].tolist()]
+    copies = [row for row, one, other in pairs if replace(one, seed=other.seed) == other]
+    if copies:
+        count = len(twins) if len(copies) == MOST_TWINS else len(copies)
+        one, other = (table.scenario_names[scene[copies[0] + step]] for step in (0, 1))
+        message = (
+            f"scenarios {one} and {other} are copies of one scene with the same runs ({count} such pairs of "
+            f"{len(table)} runs): shares and intervals count one run as many; draw each scene with a seed of its own"
+        )
+        yield ResultWarning("same_runs", "scenarios", message)

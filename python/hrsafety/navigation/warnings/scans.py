@@ -7,12 +7,14 @@ from collections.abc import Iterator
 from hrsafety.navigation.knowledge import OF_REGIONS, told_by, warnings_of
 from hrsafety.navigation.laws.arc_rollouts import ArcRollouts
 from hrsafety.navigation.robots.as_built import AsBuilt
+from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.scan_controller import POSITION_TRACKING, SCAN_TIMEOUT
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
+from hrsafety.navigation.warnings.shields import object_of
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["MOVERS_UNWATCHED", "of_robot", "unwatched"]
+__all__ = ["MOVERS_UNWATCHED", "of_object", "of_robot", "unwatched"]
 
 ROUNDING = 1e-9
 MOVERS_UNWATCHED = "movers_unwatched"
@@ -47,6 +49,32 @@ def unwatched(law: object, movers: int) -> Iterator[ResultWarning]:
         yield ResultWarning("not_verified", "law.verify", message)
 
 
+def of_object(
+    law: object, robot: HolonomicRobot | DifferentialDriveRobot, built: AsBuilt | None, time_limit: float
+) -> Iterator[ResultWarning]:
+    """Yield what the object in Python within a law doubts about its robot, if it has a method ``doubts_of``.
+
+    Parameters
+    ----------
+    law : Law or None
+        What drives the robot.
+    robot : HolonomicRobot or DifferentialDriveRobot
+        The robot.
+    built : AsBuilt or None
+        Its sensors.
+    time_limit : float
+        Of the run, in s.
+
+    Yields
+    ------
+    ResultWarning
+        With codes of the object.
+    """
+    ask = getattr(object_of(law), "doubts_of", None)
+    if callable(ask):
+        yield from ask(robot, () if built is None else built.sensors, time_limit)
+
+
 def of_robot(scenario: Scenario, law: object, built: AsBuilt) -> Iterator[ResultWarning]:
     """Yield the doubts about the sensors and wheels of a robot that matter for its law.
 
@@ -65,8 +93,8 @@ def of_robot(scenario: Scenario, law: object, built: AsBuilt) -> Iterator[Result
         Those of `hrsafety.navigation.knowledge.warnings_of`; for a law with a map of its own ``"scans_too_late"`` and
         ``"pose_off_plan"``, both on the safe side, ``"scans_too_noisy"`` and ``"wheels_lag"``, too.
     """
-    own_map = isinstance(law, ArcRollouts)
-    yield from (each for each in warnings_of(scenario, built) if not (own_map and each.code in OF_REGIONS))
+    no_regions = isinstance(law, ArcRollouts) or getattr(object_of(law), "without_regions", False)
+    yield from (each for each in warnings_of(scenario, built) if not (no_regions and each.code in OF_REGIONS))
     if isinstance(law, ArcRollouts):
         yield from _of_rollouts(law, scenario, built)
 

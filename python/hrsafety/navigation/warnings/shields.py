@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hrsafety._arguments import Array
 from hrsafety._records import dataclass
+from hrsafety.navigation.laws.python_law import PythonLaw
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation
 from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.obstacles.base import Obstacle
@@ -21,7 +23,7 @@ from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicR
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.measurement import Measurement
 from hrsafety.navigation.warnings.scenarios import own_speed, pieces
-from hrsafety.plausibility import ResultWarning
+from hrsafety.plausibility import ResultWarning, implausible
 
 if TYPE_CHECKING:
     from hrsafety.navigation.maps.static_map import StaticMap
@@ -32,6 +34,7 @@ __all__ = [
     "Motion",
     "Mover",
     "maps_of",
+    "object_of",
     "of_built",
     "of_hidden_ways",
     "of_order",
@@ -140,11 +143,20 @@ def shield_of(law: object) -> tuple[Shield | None, bool]:
 def maps_of(law: object) -> list[StaticMap]:
     """Return the maps that a law and the laws within it know."""
     found: list[StaticMap] = []
+    inner = law
+    while isinstance(inner, SafeNavigation):
+        if inner.map is not None:
+            found.append(inner.map)
+        inner = inner.law
+    own = getattr(object_of(law), "known_map", None)
+    return found if own is None else [*found, own]
+
+
+def object_of(law: object) -> object:
+    """Return the object in Python that decides within a law, or ``None``."""
     while isinstance(law, SafeNavigation):
-        if law.map is not None:
-            found.append(law.map)
         law = law.law
-    return found
+    return law.function if isinstance(law, PythonLaw) else None
 
 
 def of_order(law: object, owner: str = "law") -> Iterator[ResultWarning]:
@@ -326,6 +338,7 @@ def of_surroundings(
         With the code ``"shield_assumes_less"``.
     """
     yield from _of_unseen(shield, owner)
+    yield from _of_units(shield, owner)
     needed = [*_of_motions(shield, others, measurement, motion), *_of_measurement(shield, measurement)]
     for name, assumed, least, why in needed:
         if assumed < least * (1.0 - ROUNDING):
@@ -336,6 +349,15 @@ def of_surroundings(
                 f"{name} of the shield is {assumed:.4g}, but {why}: it may let the robot move into somebody; {mended}",
             )
     yield from _of_own_motion(shield, measurement, motion, walls=walls, owner=owner)
+
+
+def _of_units(shield: Shield, owner: str) -> Iterator[ResultWarning]:
+    """Warn of errors and margins that are hardly meant: with large ones the robot stands."""
+    lengths = ("position_error", "margin", "wall_margin", "position_tracking")
+    quantities = {f"{owner}.{name}": "shield_margin" for name in lengths} | {f"{owner}.latency": "shield_latency"}
+    values = {name: getattr(shield, name.removeprefix(f"{owner}.")) for name in quantities}
+    for doubt in implausible(values, quantities):
+        yield replace(doubt, safe_side=True)
 
 
 def _of_unseen(shield: Shield, owner: str) -> Iterator[ResultWarning]:
