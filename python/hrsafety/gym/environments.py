@@ -12,11 +12,13 @@ from gymnasium import spaces
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import count, flag, number, numbers, positive, thread_count, word
+from hrsafety._calls import suggesting
 from hrsafety.errors import InvalidParameterError, ShapeError, SimulationError
 from hrsafety.gym.worlds import Task, task_of
 from hrsafety.navigation.metrics.declared import METRICS
 from hrsafety.navigation.place import Place
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
+from hrsafety.plausibility import warn_implausible
 
 __all__ = ["Environments", "Frame"]
 
@@ -40,6 +42,7 @@ def turn_rate_of(robot: HolonomicRobot | DifferentialDriveRobot, given: float | 
     if given is None:
         return math.pi if own is None else min(math.pi, own)
     rate = positive("max_turn_rate", given)
+    warn_implausible({"max_turn_rate": rate}, {"max_turn_rate": "robot_max_turn_rate"}, stacklevel=5)
     if own is not None and rate > own:
         remedy = "give the robot a larger max_turn_rate, or none here"
         raise InvalidParameterError("max_turn_rate", f"be at most that of the robot, {own:g} rad/s", given, remedy)
@@ -49,6 +52,7 @@ def turn_rate_of(robot: HolonomicRobot | DifferentialDriveRobot, given: float | 
 class Environments:
     """A number of native environments with their arrays and spaces."""
 
+    @suggesting  # both faces hand options on
     def __init__(
         self,
         task: Task | Place,

@@ -17,9 +17,10 @@ from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
 from api.trees import same
-from hrsafety import gym
+from hrsafety import gym, scenarios
 from hrsafety import navigation as nav
 from hrsafety.errors import InvalidParameterError, ShapeError, SimulationError
+from hrsafety.plausibility import ImplausibleWarning
 
 CIRCLE = "hrsafety/CircleCrossing-v0"
 OPTIONS: list[dict[str, Any]] = [
@@ -390,3 +391,12 @@ def test_a_robot_with_a_law_is_driven_as_one_without() -> None:
         free, bound = (driven(law, action) for law in (None, nav.VirtualForceField()))
         assert free == bound
         assert free[0] > 0.1
+
+
+def test_options_that_there_are_not_and_turn_rates_in_degrees_are_told() -> None:
+    world = scenarios.circle_crossing(3)
+    for make in (gym.CrowdEnv, gym.CrowdVectorEnv, gym.parallel_env):
+        with pytest.raises(TypeError, match=r'did you mean "lidar"\?'):
+            make(world, lidr=3)
+    with pytest.warns(ImplausibleWarning, match="degrees given for radians"):
+        gym.CrowdEnv(world, max_turn_rate=180.0)
