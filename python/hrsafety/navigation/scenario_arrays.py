@@ -173,7 +173,12 @@ class Scenarios(Sequence[Scenario]):
     ) -> Self:
         """Return scenes that the core draws, one for each seed; `row` draws one of them by itself."""
         draw: Callable[..., _hrsafety.Scenarios] = getattr(_hrsafety.Scenarios, kind)
-        return cls(draw(count, robot._native, seeds), again, row)
+
+        def doubt() -> npt.NDArray[np.bool_]:
+            # What is drawn is plausible, moves and leaves ways: doubts are those of robot and regions, the same in all.
+            return np.full(len(seeds), len(seeds) > 0 and len(row(0).warnings) > 0)
+
+        return cls(draw(count, robot._native, seeds), again, row, doubt)
 
     def __len__(self) -> int:
         """Return the number of scenarios."""
