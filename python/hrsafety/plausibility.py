@@ -272,6 +272,18 @@ RANGES: dict[str, Range] = {
     "robot_max_deceleration": Range(
         0.01, 50.0, "m/s^2", "heavy trucks to what rubber tires hold several times over", "g or mm/s^2 given for m/s^2"
     ),
+    "base_deceleration": Range(
+        0.01, 10.0, "m/s^2", "heavy trucks to locked wheels of rubber, about 1 g", "g or mm/s^2 given for m/s^2"
+    ),
+    "base_turn_deceleration": Range(
+        0.01, 50.0, "rad/s^2", "heavy trucks to small robots that spin", "degrees given for radians"
+    ),
+    "base_rim_deceleration": Range(
+        0.0, 20.0, "m/s^2", "wheels nearer to the center hold about 1 g", "degrees given for radians"
+    ),
+    "beam_step": Range(
+        2e-4, np.pi / 4.0, "rad", "0.0115 degrees, finer than any scanner of floors", "radians given for degrees"
+    ),
     "robot_max_turn_rate": Range(
         0.01, 20.0, "rad/s", "heavy trucks to small robots that spin", "degrees given for radians"
     ),

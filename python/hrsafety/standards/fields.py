@@ -17,6 +17,7 @@ from hrsafety.standards.separation import (
     WALKING_SPEED,
     StoppingData,
     separation_distance,
+    slow_person,
     speed_over_distance,
 )
 
@@ -192,9 +193,5 @@ def _doubts(intrusion: float | None, human_speed: float) -> Iterator[ResultWarni
             "and its distances are too short; give the height of the field in its place"
         )
         yield ResultWarning("intrusion_too_short", "intrusion", words)
-    if STANDING <= human_speed < WALKING_SPEED:
-        words = (
-            f"human_speed is {human_speed:g} m/s: distances hold for people who are no faster, and ISO 13855 has "
-            f"{WALKING_SPEED:g} m/s"
-        )
-        yield ResultWarning("slow_person", "human_speed", words)
+    if human_speed >= STANDING:  # people who stand are doubted where the distance is computed
+        yield from slow_person("human_speed", human_speed, "distances")

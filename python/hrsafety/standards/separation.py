@@ -400,6 +400,31 @@ def _taken_as_none(intrusion: Any, uncertainty: Any, human_speed: object) -> tup
     return tuple(found), 0.0 if intrusion is None else intrusion, 0.0 if uncertainty is None else uncertainty
 
 
+def slow_person(name: str, speed: float, what: str) -> tuple[ResultWarning, ...]:
+    """Return the doubt about people who are taken to be slower than ISO 13855 takes them.
+
+    Parameters
+    ----------
+    name : str
+        Of the speed.
+    speed : float
+        Of people in m/s.
+    what : str
+        What holds for them alone, in the plural.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        ``slow_person``, or nothing.
+    """
+    if not speed < WALKING_SPEED:
+        return ()
+    words = (
+        f"{name} is {speed:g} m/s: {what} hold for people who are no faster, and ISO 13855 has {WALKING_SPEED:g} m/s"
+    )
+    return (ResultWarning("slow_person", name, words),)
+
+
 def _warn(taken: tuple[ResultWarning, ...]) -> None:
     """Issue the doubts of a plain number, which carries none, at the caller of the function that returns it."""
     for doubt in taken:

@@ -11,7 +11,8 @@ import numpy.typing as npt
 from hrsafety._arguments import Array, numbers
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
-from hrsafety.errors import ShapeError
+from hrsafety.errors import InvalidParameterError, ShapeError
+from hrsafety.plausibility import RANGES
 from hrsafety.zones.conditions import Conditions
 from hrsafety.zones.monitor import CollisionMonitor, MonitorPolygon, MonitorState
 from hrsafety.zones.reach import TOWARD
@@ -27,6 +28,9 @@ BEAMS = 48
 NEAR = 0.3
 """Gap in m from the disc about the robot within which the gap to its footprint is computed, but in a replay."""
 MOST_TIME = 20.0
+"""Of an attack in s."""
+LEAST_REACTION = RANGES["reaction_time"].least
+"""Of an attack in s: steps are a twelfth of the reaction at most, and a shorter one is hardly meant."""
 
 GENES = (
     *("speed", "turn_rate", "direction", "kind", "change", "second_speed", "second_turn_rate", "second_direction"),
@@ -207,6 +211,25 @@ def replay(monitor: CollisionMonitor, conditions: Conditions, genes: object) -> 
     )
 
 
+def refuse_reaction(conditions: Conditions) -> None:
+    """Refuse a reaction whose steps are too many for an attack, or that lasts longer than one.
+
+    Parameters
+    ----------
+    conditions : Conditions
+        Under which zones are attacked.
+
+    Raises
+    ------
+    InvalidParameterError
+        If it is too short or too long.
+    """
+    if not LEAST_REACTION <= conditions.reaction_time <= MOST_TIME:
+        rule = f"be {LEAST_REACTION:g} to {MOST_TIME:g} s where zones are attacked"
+        remedy = "it is in s: a slip of ms?"
+        raise InvalidParameterError("reaction_time", rule, conditions.reaction_time, remedy)
+
+
 def _genes(value: object) -> Array:
     given = numbers("genes", value)
     if given.ndim != 2 or given.shape[1] != len(GENES):
@@ -220,6 +243,7 @@ class _Plant:
     def __init__(self, monitor: CollisionMonitor, conditions: Conditions, genes: Array) -> None:
         self.monitor, self.conditions, self.body = monitor, conditions, conditions.body
         self.near = NEAR
+        refuse_reaction(conditions)
         steps = 12 * max(1, math.ceil(conditions.reaction_time / (12.0 * STEP)))
         self.step = conditions.reaction_time / steps
         self.scan = max(1, round(conditions.scan_time / self.step - 1e-6))

@@ -15,7 +15,7 @@ from hrsafety._records import dataclass
 from hrsafety._statistics import Share, wilson
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
-from hrsafety.zones.attacks import GENES, AttackRun, attack, replay
+from hrsafety.zones.attacks import GENES, AttackRun, attack, refuse_reaction, replay
 from hrsafety.zones.conditions import Conditions
 from hrsafety.zones.field_design import CommandRange, limits_of, needed_zone
 from hrsafety.zones.formulas import allowed_speed, blind_range
@@ -185,6 +185,7 @@ def check(
         conditions, assumed = Conditions.assumed(**given)
     elif not isinstance(conditions, Conditions) or given:
         raise InvalidParameterError("conditions", "be Conditions, or its parameters by name", conditions)
+    refuse_reaction(conditions)  # before any work
     if not isinstance(monitor, CollisionMonitor):
         monitor = load_monitor(monitor, footprint=conditions.footprint)
     drawn = count("attacks", attacks, most=MOST_ATTACKS)

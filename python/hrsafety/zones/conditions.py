@@ -11,7 +11,8 @@ import numpy as np
 from hrsafety._arguments import Pair, Parameters, finite, finite_pair, flag, not_negative, number, positive
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
-from hrsafety.plausibility import ResultWarning, implausible
+from hrsafety.plausibility import RANGES, ResultWarning, implausible
+from hrsafety.standards.separation import slow_person
 from hrsafety.zones.reach import RobotOutline, footprint_of
 
 __all__ = ["Conditions"]
@@ -30,13 +31,16 @@ ASSUMED = {
 _QUANTITIES = {
     "max_speed": "robot_max_speed",
     "max_turn_rate": "robot_max_turn_rate",
-    "deceleration": "robot_max_deceleration",
-    "turn_deceleration": "robot_max_turn_acceleration",
+    "deceleration": "base_deceleration",
+    "turn_deceleration": "base_turn_deceleration",
+    "deceleration of turns at the farthest point of the footprint": "base_rim_deceleration",
     "acceleration": "robot_max_acceleration",
     "reaction_time": "reaction_time",
     "person_speed": "person_speed",
     "error": "position_uncertainty",
     "supplement": "intrusion",
+    "beam_step": "beam_step",
+    "footprint": "robot_radius",
 }
 
 
@@ -196,11 +200,13 @@ class Conditions(Parameters):
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """Numbers that are hardly meant in their unit, and brakes of turns that were not told (``assumed``)."""
-        body = footprint_of(self.footprint)
+        """Numbers that are hardly meant in their unit, slow people, and brakes of turns that were not told."""
+        far = self.body.circumscribed
         # A robot that does not turn has a turn rate of 0.
-        values = {name: getattr(self, name) or None for name in _QUANTITIES}
-        found = implausible({**values, "footprint": body.circumscribed}, {**_QUANTITIES, "footprint": "robot_radius"})
+        values = {name: getattr(self, name, None) or None for name in _QUANTITIES} | {"footprint": far}
+        if self.turn_deceleration is not None and self.turn_deceleration <= RANGES["base_turn_deceleration"].most:
+            values["deceleration of turns at the farthest point of the footprint"] = self.turn_deceleration * far
+        found = (*implausible(values, _QUANTITIES), *slow_person("person_speed", self.person_speed, "zones"))
         if self.turn_deceleration is not None or self.max_turn_rate == 0.0:
             return found
         message = (

@@ -65,6 +65,27 @@ def test_a_broken_file_fails_is_mended_and_replayed(tmp_path: Path, capsys: pyte
     assert main(["zones", "check", str(mended), *ROBOT, *CHECKED, "--fail-on", "any"]) == 0
 
 
+def test_slow_people_keep_a_check_from_passing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "cm.yaml"
+    file.write_text(DEFAULT.replace("0.3", "2.0"))
+    given = ["zones", "check", str(file), *ROBOT, *CHECKED, "--fail-on", "any"]
+    assert main(given) == 0
+    capsys.readouterr()
+    assert main([*given, "--person-speed", "0.05"]) == 5
+    told = capsys.readouterr()
+    assert "NOT CHECKED  holds" in told.out
+    assert "person_speed is 0.05 m/s: zones hold for people who are no faster" in told.err
+
+
+def test_a_reaction_in_a_wrong_unit_is_refused_by_its_option(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "cm.yaml"
+    file.write_text(DEFAULT)
+    assert main(["zones", "check", str(file), *ROBOT, "--reaction", "0.0002"]) == 2
+    assert "--reaction must be 0.002 to 20 s" in capsys.readouterr().err
+
+
 def test_a_check_that_is_not_told_the_robot_is_not_checked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "cm.yaml"
     file.write_text(DEFAULT.replace("0.3", "2.0"))

@@ -157,7 +157,7 @@ def test_the_default_zone_holds_for_people_who_stand_up_to_its_speed() -> None:
     rules = {**DEFAULT, "person_speed": 0.0, "attacks": 60}
     slow = zones.check(circle(0.3), max_speed=0.285, generations=1, **rules)
     assert slow.shapes[0].standing_speed == pytest.approx(0.288796, abs=1e-6)
-    assert (slow.verdict, slow.warnings) == ("holds", ())
+    assert (slow.verdict, [each.code for each in slow.warnings]) == ("holds", ["slow_person"])
     assert zones.check(circle(0.3), max_speed=0.4, generations=3, **rules).verdict == "broken"
 
 
@@ -212,6 +212,55 @@ def test_brakes_of_turns_that_are_not_told_are_doubted() -> None:
         (doubt,) = unsafe_doubts(found.warnings)
         assert (doubt.code, doubt.subject) == ("assumed", "turn_deceleration")
     assert replace(untold, max_turn_rate=0.0).warnings == ()
+
+
+@pytest.mark.parametrize(
+    ("given", "subjects"),
+    [
+        ({"person_speed": 0.05}, ["person_speed"]),
+        ({"person_speed": 0.0}, ["person_speed"]),
+        ({"person_speed": 1.59}, ["person_speed"]),
+        ({"deceleration": 18.0}, ["deceleration"]),
+        ({"turn_deceleration": 143.0}, ["turn_deceleration"]),
+        (
+            {"turn_deceleration": 45.0, "footprint": 0.6},
+            ["deceleration of turns at the farthest point of the footprint"],
+        ),
+        ({"beam_step": math.radians(0.00436)}, ["beam_step"]),
+        # Brakes of good small robots, fast walkers, and the finest scanners of floors are what they are.
+        ({"person_speed": 2.5}, []),
+        ({"deceleration": 8.0}, []),
+        ({"turn_deceleration": 40.0}, []),
+        ({"turn_deceleration": 6.0, "footprint": 1.2}, []),
+        ({"beam_step": math.radians(0.014)}, []),
+        ({"beam_step": math.radians(1.0)}, []),
+    ],
+)
+def test_people_brakes_and_beams_that_are_hardly_meant_are_doubted(given: dict[str, Any], subjects: list[str]) -> None:
+    conditions = replace(SMALL, **given)
+    assert [each.subject for each in unsafe_doubts(conditions.warnings)] == subjects
+    if "footprint" not in given and "beam_step" not in given:
+        found = zones.check(circle(3.0), conditions, attacks=5, generations=0)
+        assert set(conditions.warnings) <= set(found.warnings)
+        assert set(conditions.warnings) <= set(zones.design(conditions, ranges=1).warnings)
+
+
+@pytest.mark.parametrize("reaction", [1e-9, 0.0002, 0.0019, 20.1, 150.0, 1e12])
+def test_reactions_that_no_attack_can_follow_are_refused_at_once(reaction: float) -> None:
+    given = replace(SMALL, reaction_time=reaction)
+    genes = np.full((1, len(zones.GENES)), 0.5)
+    for call in (
+        lambda: zones.check(circle(1.0), given),
+        lambda: zones.attack(circle(1.0), given, genes),
+        lambda: zones.replay(circle(1.0), given, genes[0]),
+    ):
+        with pytest.raises(InvalidParameterError, match=r"reaction_time must be 0\.002 to 20 s .*ms"):
+            call()
+
+
+@pytest.mark.parametrize("reaction", [0.002, 20.0])
+def test_reactions_at_the_ends_are_attacked(reaction: float) -> None:
+    zones.attack(circle(0.3), replace(SMALL, reaction_time=reaction), np.full((1, len(zones.GENES)), 0.5))
 
 
 def test_a_monitor_of_approach_alone_touches_who_walks() -> None:
