@@ -198,8 +198,8 @@ def _odometry(document: Document) -> PoseTable:
         yaw = yaw_of(rotations(unit_quaternions(quaternion, document.name, places)))
     heading, more = _heading(yaw, position, instants)
     nothing = np.full(len(position), np.nan)
-    stored = "v" in values and "yaw_rate" in values
-    twist = [values["v"], 0.0 * values["v"], values["yaw_rate"]] if stored else [nothing] * 3
+    ahead = values.get("v", nothing)
+    twist = [ahead, 0.0 * ahead, values.get("yaw_rate", nothing)]
     whole = np.isfinite(table[:, names.index("time")]) & np.isfinite(position).all(axis=1) & np.isfinite(heading)
     columns = (instants, position, heading, np.stack(twist, axis=1))
     return _kept(document, "odometry", columns, (lines_of, whole), time_column=found["time"][1], told=[*told, *more])

@@ -16,6 +16,7 @@ from hrsafety._replay.record import Replay
 from hrsafety._tracks import WINDOW
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.judging.assumptions import ShieldAssumption, assumptions
+from hrsafety.navigation.judging.doubts import other_twists, people_off_map
 from hrsafety.navigation.judging.permit import Passing, PermitRules, passings
 from hrsafety.navigation.judging.replay import replay_of
 from hrsafety.navigation.judging.synchronized import Logged, Synchronized, synchronized
@@ -317,6 +318,8 @@ def judge(
         *_doubts(parts, share, possible),
         *_circled(outline),
         *_sideways(both, robot),
+        *people_off_map(log.people, both, walls),
+        *other_twists(log, both),
     )
     return Judgement(
         time=both.time,
