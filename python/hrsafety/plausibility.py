@@ -263,6 +263,7 @@ RANGES: dict[str, Range] = {
     ),
     "robot_mass": Range(0.05, 10000.0, "kg", "palm-sized robots to heavy industrial trucks", "g or t given for kg"),
     "robot_radius": Range(0.01, 5.0, "m", "palm-sized robots to heavy industrial trucks", "mm or cm given for m"),
+    "nav2_radius": Range(0.08, 5.0, "m", "the smallest robots with Nav2 to heavy trucks", "mm or cm given for m"),
     "robot_max_acceleration": Range(
         0.01, 50.0, "m/s^2", "heavy trucks to what rubber tires hold several times over", "g or mm/s^2 given for m/s^2"
     ),

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +16,7 @@ from hrsafety import navigation as nav
 from hrsafety.cli import output, terminal, verdict
 from hrsafety.cli.output import decimal
 from hrsafety.errors import InvalidParameterError
+from hrsafety.io.places.nav2 import body_of
 from hrsafety.navigation.judging.unjudged import REASONS
 from hrsafety.navigation.metrics import METRICS, Judgement
 from hrsafety.pages.report import Report, ReportCell, ReportTable, Section
@@ -119,9 +119,8 @@ def _robot(options: argparse.Namespace) -> tuple[dict[str, Any], tuple[ResultWar
     if options.params is not None:
         with output.located(options.params):
             settings = io.read_nav2(options.params)
-        told = settings.body_warnings
-        with suppress(InvalidParameterError):  # it may not give all limits; the radius is enough
-            given["robot"] = settings.robot()
+            told = settings.body_warnings
+            given |= _robot_of(settings, options.radius)
         outlined = "robot" in given and given["robot"].footprint is not None and options.robot is None
         if settings.circumscribed_radius is not None and not outlined:
             given["robot_radius"] = settings.circumscribed_radius
@@ -138,6 +137,19 @@ def _robot(options: argparse.Namespace) -> tuple[dict[str, Any], tuple[ResultWar
         remedy = "give --radius M, or --robot or --params with a radius or footprint"
         raise InvalidParameterError("--radius", "be known", None, remedy)
     return given, told
+
+
+def _robot_of(settings: io.Nav2Settings, radius: float | None) -> dict[str, Any]:
+    """Return the robot of a file if it gives all limits; its outline is examined without them, too."""
+    if radius is None:
+        body_of(settings)
+        own = {}
+    else:
+        own = {"radius": radius}
+    limits = (settings.max_speed, settings.max_acceleration)
+    if settings.drive == "car" or None in limits or (settings.circumscribed_radius is None and radius is None):
+        return {}
+    return {"robot": settings.robot(**own)}
 
 
 # ---- report -------------------------------------------------------------------------------------------------

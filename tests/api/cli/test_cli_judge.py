@@ -107,3 +107,43 @@ def test_map_and_settings_of_nav2(passing: list[str], tmp_path: Path, capsys: py
     (outside,) = (each for each in found["not_judged"] if each["reason"] == "outside_map")
     assert outside["begin"] == pytest.approx(10.0, abs=0.11)
     assert "wall" in capsys.readouterr().out
+
+
+LIMITS = "\nvelocity_smoother: {ros__parameters: {max_velocity: [0.5, 0.0, 2.0], max_accel: [2.5, 0.0, 3.2]}}\n"
+
+
+@pytest.mark.parametrize("limits", ["", LIMITS], ids=["no limits", "limits"])
+@pytest.mark.parametrize(
+    "corners",
+    ["[[.2, .2], [.2, .2], [.2, .2]]", "[[.1, .1], [.3, .1], [.3, .3], [.1, .3]]"],
+    ids=["repeated", "origin"],
+)
+def test_a_footprint_of_settings_that_is_no_body_is_refused(
+    passing: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str], corners: str, limits: str
+) -> None:
+    settings = tmp_path / "nav2.yaml"
+    settings.write_text(
+        f'local_costmap: {{local_costmap: {{ros__parameters: {{footprint: "{corners}"}}}}}}' + (limits or "\n")
+    )
+    call = ["judge", *passing[:3], "--params", str(settings)]
+    assert main(call) == ERROR
+    told = capsys.readouterr().err
+    assert f"{settings}: footprint must" in told
+    assert main([*call, "--radius", "0.4"]) == 0  # the footprint is not used
+
+
+def test_only_limits_may_be_missing_in_settings(
+    passing: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    settings = tmp_path / "nav2.yaml"
+    shape = (
+        'local_costmap: {local_costmap: {ros__parameters: {footprint: "[[.3, .2], [.3, -.2], [-.3, -.2], [-.3, .2]]"}}}'
+    )
+    call = ["judge", *passing[:3], "--params", str(settings)]
+    for limits, said in (("\n", "radius 0.374"), (LIMITS, "footprint of 4 corners")):
+        settings.write_text(shape + limits)
+        assert main(call) == 0
+        assert said in capsys.readouterr().out
+    settings.write_text(shape + LIMITS.replace("2.5", "0.0"))
+    assert main(call) == ERROR
+    assert "max_acceleration" in capsys.readouterr().err

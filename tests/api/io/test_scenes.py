@@ -282,6 +282,41 @@ def test_both_costmaps_are_doubted_once(tmp_path: Path) -> None:
     assert params(tmp_path, one).body_warnings == ()
 
 
+@pytest.mark.parametrize(
+    ("shape", "found"),
+    [
+        ('footprint: "[[.03, .02], [.03, -.02], [-.03, -.02], [-.03, .02]]"', ["implausible"]),
+        ("robot_radius: 0.05", ["implausible"]),
+        ("robot_radius: 0.2, footprint_padding: 0.15", ["implausible"]),
+        ('footprint: "[[.3, .2], [.3, .2], [-.3, -.2], [-.3, .2]]"', ["repeated_corners"]),
+        ('footprint: "[[.3, .2], [.3, -.2], [-.3, -.2], [.3, .2], [-.3, .2]]"', ["repeated_corners"]),
+        # Small robots with the usual padding, and outlines that are closed by their first corner.
+        ("robot_radius: 0.105", []),
+        ("robot_radius: 0.09, footprint_padding: 0.03", []),
+        ('footprint: "[[.3, .2], [.3, -.2], [-.3, -.2], [-.3, .2], [.3, .2]]"', []),
+        ('footprint: "[[1.2, .6], [1.2, -.6], [-1.2, -.6], [-1.2, .6]]", footprint_padding: 0.1', []),
+    ],
+)
+def test_shapes_that_no_robot_has_are_doubted(tmp_path: Path, shape: str, found: list[str]) -> None:
+    settings = params(tmp_path, COSTMAP.format(shape))
+    assert codes(settings) == found
+    assert [each.code for each in unsafe_doubts(settings.body_warnings)] == found
+
+
+@pytest.mark.parametrize(
+    ("corners", "said"),
+    [
+        ("[[.2, .2], [.2, .2], [.2, .2], [.2, .2]]", "three corners or more that differ"),
+        ("[[.1, .1], [.3, .1], [.3, .3], [.1, .3]]", "hold the origin inside"),
+    ],
+)
+def test_a_footprint_that_is_no_body_is_named(tmp_path: Path, corners: str, said: str) -> None:
+    found = params(tmp_path, COSTMAP.format(f'footprint: "{corners}"'))
+    with pytest.raises(InvalidParameterError, match=f"^footprint must .*{said}"):
+        found.robot(max_speed=1.0, max_acceleration=1.0)
+    assert found.robot(max_speed=1.0, max_acceleration=1.0, radius=0.4).footprint is None
+
+
 def test_namespaces_and_files_without_costmaps(tmp_path: Path) -> None:
     inside = "robot1:\n" + "".join(f"  {line}\n" for line in SQUARE.splitlines())
     assert params(tmp_path, inside).footprint is not None

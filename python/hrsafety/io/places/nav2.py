@@ -42,7 +42,7 @@ SAME = 1e-6
 Parameters = dict[str, YamlSection]
 """Parameters of a node by their names with dots."""
 _QUANTITIES = {
-    "circumscribed_radius": "robot_radius",
+    "circumscribed_radius": "nav2_radius",
     "max_speed": "robot_max_speed",
     "max_turn_rate": "robot_max_turn_rate",
     "max_acceleration": "robot_max_acceleration",
@@ -211,7 +211,8 @@ class Nav2Settings:
         Raises
         ------
         InvalidParameterError
-            If the file gives no speed or acceleration and the call does not either, or the drive is that of a car.
+            If the file gives no speed or acceleration and the call does not either, the drive is that of a car, or the
+            footprint cannot be a body: it must hold the origin, and three corners that differ.
 
         Examples
         --------
@@ -239,8 +240,8 @@ class Nav2Settings:
         }
         if self.drive == "two wheels":
             named |= {"max_turn_rate": self.max_turn_rate, "max_turn_acceleration": self.max_turn_acceleration}
-        if self.footprint is not None and self.padded is not None and not {"radius", "footprint"} & set(given):
-            named["footprint"] = Footprint.around(self.padded)
+        if not {"radius", "footprint"} & set(given):
+            named["footprint"] = body_of(self)
         found = {name: value for name, value in named.items() if value is not None} | given
         if self.drive == "holonomic" and self.max_speed is not None:  # forward and sideways at once
             found.setdefault(
@@ -420,10 +421,37 @@ def _distance(first: Pair, last: Pair) -> float:
     return math.hypot(x + share * u, y + share * v)
 
 
+def body_of(settings: Nav2Settings) -> Footprint | None:
+    """Return the padded footprint of settings, ``None`` for a round robot; an error names the footprint.
+
+    Parameters
+    ----------
+    settings : Nav2Settings
+        Of `read_nav2`.
+
+    Returns
+    -------
+    Footprint or None
+        Its convex outline.
+
+    Raises
+    ------
+    InvalidParameterError
+        If it does not hold the origin, or three corners that differ.
+    """
+    if settings.footprint is None or settings.padded is None:
+        return None
+    try:
+        return Footprint.around(settings.padded)
+    except InvalidParameterError as error:
+        raise error.renamed("footprint") from None
+
+
 def _doubts_of_shapes(shapes: dict[str, dict[str, Any]], shape: dict[str, Any] | None) -> Iterator[ResultWarning]:
     """Yield doubts about footprints and inflation."""
     if shape is None:
         return
+    yield from _doubts_of_outline(shape)
     if not shape["given"]:
         message = f"no costmap gives a footprint or robot_radius: Nav2 takes a radius of {RADIUS} m"
         yield ResultWarning("assumed", "robot_radius", message)
@@ -448,6 +476,30 @@ def _doubts_of_shapes(shapes: dict[str, dict[str, Any]], shape: dict[str, Any] |
             "touches"
         )
         yield ResultWarning(_INFLATION_CODE, "inflation_radius", message)
+
+
+def _doubts_of_outline(shape: dict[str, Any]) -> Iterator[ResultWarning]:
+    """Yield doubts about padding that is large beside the robot, and about corners that stand twice."""
+    corners: tuple[Pair, ...] = shape["footprint"] or ()
+    padding: float = shape["footprint_padding"]
+    bare = max((math.hypot(x, y) for x, y in corners), default=shape["robot_radius"])
+    if padding > 0.5 * bare:
+        message = (
+            f"footprint_padding is {padding:g} m, more than half of the {bare:.3g} m that the robot reaches: mm or cm "
+            "given for m, of one of both?"
+        )
+        yield ResultWarning("implausible", "footprint_padding", message)
+    # The first corner may close the outline at its end.
+    places = corners[:-1] if len(corners) > 1 and math.dist(corners[0], corners[-1]) < SAME else corners
+    for last, place in enumerate(places):
+        for first in range(last):
+            if math.dist(places[first], place) < SAME:
+                message = (
+                    f"corners {first + 1} and {last + 1} of footprint are both ({place[0]:g}, {place[1]:g}) m: one is "
+                    "written twice, and another one may be missing"
+                )
+                yield ResultWarning("repeated_corners", "footprint", message)
+                return
 
 
 def _same(one: Sequence[Pair], other: Sequence[Pair]) -> bool:

@@ -124,7 +124,10 @@ class Footprint(Parameters):
         >>> len(nav.robots.Footprint.around(notched).corners)
         4
         """
-        return cls(_hull(_finite(points("corners", corners))))
+        given = _finite(points("corners", corners))
+        if len(np.unique(given, axis=0)) < 3:
+            raise InvalidParameterError("corners", "hold three corners or more that differ", Shown(given.tolist()))
+        return cls(_hull(given))
 
     @classmethod
     def parse(cls, text: str) -> Self:
