@@ -15,6 +15,8 @@ from hrsafety import io, scenarios
 from hrsafety import navigation as nav
 from hrsafety.cli import output, terminal, verdict
 from hrsafety.cli.output import decimal
+from hrsafety.cli.recordings import in_options, is_given, loaded, told_in_options
+from hrsafety.datasets import Recording
 from hrsafety.errors import InvalidParameterError
 from hrsafety.io.places.nav2 import body_of
 from hrsafety.navigation.judging.unjudged import REASONS
@@ -52,13 +54,15 @@ def judge_log(options: argparse.Namespace) -> None:
     """
     verdict.failures_of(options.fail_on, tuple(FAILURES))  # a wrong word is told before the work
     output.check_targets(options)
-    log = io.load_log(
-        options.log,
-        robot=options.robot_frame,
-        people=options.people,
-        frame=options.frame,
-        offset=_offsets(options.offset),
-    )
+    people = _people(options)
+    with told_in_options():
+        log = io.load_log(
+            options.log,
+            robot=options.robot_frame,
+            people=people,
+            frame=options.frame,
+            offset=_offsets(options.offset),
+        )
     if options.time is not None:
         log = log.part(*options.time)
     given, told = _robot(options)
@@ -74,7 +78,8 @@ def judge_log(options: argparse.Namespace) -> None:
         view=options.view,
         **given,
     )
-    found = replace(found, warnings=tuple(dict.fromkeys((*found.warnings, *told))))
+    doubts = (replace(each, message=in_options(each.message)) for each in (*found.warnings, *told))
+    found = replace(found, warnings=tuple(dict.fromkeys(doubts)))
     report = _report(options, log, found)
     print(terminal.told(report))
     written: list[Path] = []
@@ -87,6 +92,17 @@ def judge_log(options: argparse.Namespace) -> None:
     written += output.mcap(found, options)
     output.say_written(written, report, options)
     verdict.end(report.said, found.counts, found.warnings, options, 1, tuple(FAILURES))
+
+
+def _people(options: argparse.Namespace) -> Recording | str | None:
+    """Return the people of a file, read as the options say, or what says where they are."""
+    if not is_given(options):
+        people: str | None = options.people
+        return people
+    if options.people is None or not Path(options.people).exists():
+        rule = "be a file of recorded people, where options say how to read it"
+        raise InvalidParameterError("--people", rule, options.people)
+    return loaded(options.people, options)
 
 
 def _offsets(given: Sequence[str] | None) -> dict[str, float] | None:

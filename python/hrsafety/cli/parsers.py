@@ -514,8 +514,12 @@ def _add_judge(commands: Any) -> None:
     place.add_argument("--map", metavar="MAP.yaml", help="map of the map server")
     place.add_argument("--frame", default="map", metavar="NAME", help="frame of the result [%(default)s]")
     place.add_argument(
-        "--offset", metavar="TOPIC=S", action="append", help="seconds added to the stamps of a topic; can be repeated"
+        "--offset",
+        metavar="TOPIC=S",
+        action="append",
+        help="seconds added to the stamps of a topic, or of people from a file (people=S); can be repeated",
     )
+    _add_people_file(parser.add_argument_group("what a file of people may not say"))
 
 
 def _add_benchmark(commands: Any) -> None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import re
 import warnings
 from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -16,9 +18,14 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.pages.report import Report
 from hrsafety.plausibility import HrsafetyWarning, ResultWarning
 
-__all__ = ["convert", "loaded", "show"]
+__all__ = ["convert", "in_options", "is_given", "loaded", "show", "told_in_options"]
 
 ARGUMENTS = ("format", "fps", "step_s", "unit", "scale", "homography", "columns", "classes")
+_OPTIONS = {each: f"--{each.replace('_', '-')}" for each in (*ARGUMENTS, "people", "frame")} | {
+    "robot": "--robot-frame"
+}
+_ARGUMENT = re.compile(rf"(?<![\w-])({'|'.join(_OPTIONS)})=([\x22\x27]?\w?)")
+_TOPICS = {"people": "people", "topic": "TOPIC"}
 
 
 def loaded(path: str, options: argparse.Namespace) -> Recording:
@@ -31,11 +38,35 @@ def loaded(path: str, options: argparse.Namespace) -> Recording:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", HrsafetyWarning)  # all of them are printed
         try:
-            return io.load_people(path, relabel=options.relabel, **given)
+            with told_in_options():
+                return io.load_people(path, relabel=options.relabel, **given)
         except InvalidParameterError as error:
             if error.argument in ARGUMENTS:
                 raise error.renamed(f"--{error.argument.replace('_', '-')}") from None
             raise
+
+
+def is_given(options: argparse.Namespace) -> bool:
+    """Return whether an option says what a file of people does not say itself."""
+    return options.relabel or any(getattr(options, name) is not None for name in ARGUMENTS)
+
+
+def in_options(text: str) -> str:
+    """Return a message with the options of the command line in place of the arguments of Python."""
+    text = re.sub(r'columns=\{"([^"]*)": "([^"]*)"\}', r"--columns '\1=\2'", text)
+    text = _ARGUMENT.sub(lambda found: f"{_OPTIONS[found[1]]} {found[2]}".rstrip(), text)
+    return re.sub(r"offset=\{\"?(\w+)\"?: seconds\}", lambda found: f"--offset {_TOPICS[found[1]]}=S", text)
+
+
+@contextmanager
+def told_in_options() -> Iterator[None]:
+    """Name options in the remedies of errors where they name arguments of Python."""
+    try:
+        yield
+    except InvalidParameterError as error:
+        if error.remedy is not None:
+            error.remedy = in_options(error.remedy)
+        raise
 
 
 def _pair(text: str) -> tuple[str, str]:

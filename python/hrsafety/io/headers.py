@@ -48,7 +48,7 @@ _WORDS = {
     "fps": "fps",
 }
 _UNIT = re.compile(
-    r"^(?P<name>.*?)\s*(?:\[\s*(?P<a>[^\]]*)\s*\]|\(\s*(?:in\s+)?(?P<b>[^)]*)\s*\)|/\s*(?P<c>[^/\s]+)|\s+in\s+(?P<d>\S+)|_(?P<e>[^_]+))$"
+    r"^(?P<name>.*?)\s*(?:\[\s*(?P<a>[^\]]*)\s*\]|\(\s*(?:in\s+)?(?P<b>[^)]*)\s*\)|/\s*(?P<c>[^/\s]+)|\s+in\s+(?P<d>\S+)|_(?P<e>[^_\s\[\](/]+))$"
 )
 _SPEED = re.compile(r"^(?P<name>.*?)[\s_\[(]+(?P<unit>m|cm|mm|px)(?:/|_per_)s[\])]?$")
 Roles = Mapping[str, Sequence[str]]

@@ -147,3 +147,47 @@ def test_only_limits_may_be_missing_in_settings(
     settings.write_text(shape + LIMITS.replace("2.5", "0.0"))
     assert main(call) == ERROR
     assert "max_acceleration" in capsys.readouterr().err
+
+
+def test_columns_and_units_of_people_are_told_by_options(
+    passing: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    people = tmp_path / "people.csv"
+    rows = people.read_text().splitlines()[1:]
+    call = ["judge", *passing]
+    for header, given in (
+        ("moment,who,east_of,north_of", ["--columns", "moment=t_s,who=id,east_of=x,north_of=y", "--unit", "m"]),
+        ("t_s,ped_id,pos_x [m],pos_y [m]", []),
+        ("t_s,ped_id,pos_x_(m),pos_y_(m)", []),
+    ):
+        people.write_text("\n".join([header, *rows]))
+        assert main([*call, *given]) == 0
+        assert "1 passing" in capsys.readouterr().out
+    people.write_text("\n".join(["t_s,number,x_m,y_m", *rows]))
+    assert main(call) == ERROR
+    told = capsys.readouterr().err
+    assert "name them with --columns, as in --columns 'number=id'" in told
+    assert "columns=" not in told
+    assert main([*call, "--columns", "number=id"]) == 0
+    capsys.readouterr()
+    assert main([*call, "--columns", "number"]) == ERROR
+    assert "--columns must" in capsys.readouterr().err
+    assert main(["judge", passing[0], "--radius", "0.3", "--columns", "number=id"]) == ERROR
+    assert "--people must be a file of recorded people" in capsys.readouterr().err
+
+
+def test_an_offset_is_named_as_the_option(
+    passing: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    people = tmp_path / "people.csv"
+    header, *rows = people.read_text().splitlines()
+    people.write_text(
+        "\n".join([header, *(f"{1000.0 + float(t)},{rest}" for t, rest in (r.split(",", 1) for r in rows))])
+    )
+    assert main(["judge", *passing]) == ERROR
+    assert "give both the same clock, or --offset people=S" in capsys.readouterr().err
+    assert main(["judge", *passing, "--offset", "people=-1000"]) == 0
+    assert main(["judge", passing[0], "--radius", "0.3"]) == 0
+    told = capsys.readouterr().err
+    assert "name their topic or file: --people" in told
+    assert "people=" not in told

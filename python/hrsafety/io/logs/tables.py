@@ -207,7 +207,7 @@ def _odometry(document: Document) -> PoseTable:
 
 def _meaning(title: str) -> tuple[str, float | None]:
     """Return the quantity of a column and the size of its unit, None without one; empty words for what is not used."""
-    plain = re.sub(r"[\s\[\]()/.-]+", "_", title.lower()).strip("_").replace("_in_", "_")
+    plain = re.sub(r"[\s_\[\]()/.-]+", "_", title.lower()).strip("_").replace("_in_", "_")
     for quantity, words in _WORDS.items():
         units = _UNITS.get("x" if quantity == "y" else quantity, {})
         for word in words:
