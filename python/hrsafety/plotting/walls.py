@@ -7,7 +7,9 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
+from hrsafety.navigation.maps.parts import Cells
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.plotting import inputs, style
@@ -21,7 +23,9 @@ if TYPE_CHECKING:
 __all__ = ["add_maps", "handles", "maps_of", "points_of"]
 
 COLOR = "#3A3A3A"
+UNKNOWN = "#D2D2D2"
 ZORDER = 2.9  # below obstacles and paths
+BELOW = 0.4  # unknown floor, below all else
 THIN = 1.6  # pt, walls without thickness
 _ROUND = 17  # points of half a circle
 
@@ -54,10 +58,21 @@ def add_maps(axes: Axes, maps: Iterable[StaticMap]) -> None:
 
 
 def handles(maps: Iterable[StaticMap]) -> list[Artist]:
-    """Return the entry of the legend, if there is a map."""
+    """Return the entries of the legend: of the map if there is one, and of what is unknown in it."""
     from matplotlib.patches import Patch
 
-    return [Patch(facecolor=COLOR, label="map")] if any(each.bounds is not None for each in maps) else []
+    drawn = list(maps)
+    found: list[Artist] = []
+    if any(each.bounds is not None for each in drawn):
+        found.append(Patch(facecolor=COLOR, label="map"))
+    if any(_unknown(grid).any() for each in drawn for grid in each.grids):
+        found.append(Patch(facecolor=UNKNOWN, label="unknown"))
+    return found
+
+
+def _unknown(grid: Cells) -> npt.NDArray[np.bool_]:
+    """Return which cells were not observed and are no walls."""
+    return np.asarray(grid.unseen & ~grid.occupied)
 
 
 def _add_solids(axes: Axes, drawn: StaticMap) -> None:
@@ -97,11 +112,14 @@ def _add_cells(axes: Axes, drawn: StaticMap) -> None:
 
     for grid in drawn.grids:
         rows, columns = grid.shape
-        picture = np.zeros((rows, columns, 4))
-        picture[grid.occupied] = to_rgba(COLOR)
         width, height = columns * grid.resolution, rows * grid.resolution
-        look: style.Properties = {"origin": "lower", "interpolation": "nearest", "zorder": ZORDER, "aspect": "equal"}
+        look: style.Properties = {"origin": "lower", "interpolation": "nearest", "aspect": "equal"}
         limits = axes.get_xlim(), axes.get_ylim()
-        image = axes.imshow(picture, extent=(0.0, width, 0.0, height), **look)
-        image.set_transform(Affine2D().rotate(grid.yaw).translate(*grid.origin) + axes.transData)
+        for cells, color, order in ((grid.occupied, COLOR, ZORDER), (_unknown(grid), UNKNOWN, BELOW)):
+            if order == BELOW and not cells.any():
+                continue
+            picture = np.zeros((rows, columns, 4))
+            picture[cells] = to_rgba(color)
+            image = axes.imshow(picture, extent=(0.0, width, 0.0, height), zorder=order, **look)
+            image.set_transform(Affine2D().rotate(grid.yaw).translate(*grid.origin) + axes.transData)
         axes.set(xlim=limits[0], ylim=limits[1])

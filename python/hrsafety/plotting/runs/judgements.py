@@ -56,11 +56,14 @@ def judged_way(judgement: Judgement) -> Figure:
     known = judgement.position[np.isfinite(judgement.position[:, 0])]
     low, high = known.min(axis=0) - 2.0, known.max(axis=0) + 2.0
     limits = ((float(low[0]), float(high[0])), (float(low[1]), float(high[1])))
-    handles = _handles(judgement)
+    least = np.nanmin(np.where(np.isnan(judgement.clearance), np.inf, judgement.clearance), axis=0, initial=np.inf)
+    drawn = np.argsort(least, kind="stable")[:MOST_PEOPLE].tolist()
+    with np.errstate(invalid="ignore"):
+        within = ((judgement.obstacle_position >= low) & (judgement.obstacle_position <= high)).all(axis=2).any(axis=0)
+    handles = _handles(judgement, {column for column in drawn if within[column]})
     figure, (axes,) = floor.panels(limits, entries=len(handles))
     _add_walls(axes, judgement)
-    least = np.nanmin(np.where(np.isnan(judgement.clearance), np.inf, judgement.clearance), axis=0, initial=np.inf)
-    for column in np.argsort(least, kind="stable")[:MOST_PEOPLE].tolist():
+    for column in drawn:
         look: style.Properties = {"color": style.PERSON_COLORS[0], "linewidth": 0.8}
         floor.line(axes, judgement.obstacle_position[:, column], zorder=3.0, **look)
     floor.line(axes, judgement.position, zorder=5.0, color=style.RUN_COLORS[0], linewidth=1.8)
@@ -118,7 +121,8 @@ def worst_moments(judgement: Judgement) -> Figure:
         f"{number}: {each.time:.1f} s, person {each.person}\n{each.clearance:.2f} m, robot {each.robot_speed:.2f} m/s"
         for number, each in enumerate(moments, start=1)
     ]
-    handles = _handles(judgement)[:2]
+    shown = {column for each in moments for column in _near(judgement, _row(judgement, each), HALF)}
+    handles = _handles(judgement, shown)[:2]
     limits = ((-HALF, HALF), (-HALF, HALF))
     figure, grid = floor.panels(limits, titles=titles, columns=3, entries=len(handles), compressed=False)
     for axes, moment in zip(grid, moments, strict=True):
@@ -137,15 +141,21 @@ def _add_moment(axes: Axes, judgement: Judgement, moment: Moment) -> None:
         corners = shapes.turned(judgement.footprint.corners, float(judgement.heading[row]))
         axes.fill(*corners.T, facecolor=(style.RUN_COLORS[0], 0.4), edgecolor=style.RUN_COLORS[0], zorder=4.0)
     floor.velocity(axes, np.zeros(2), judgement.velocity[row])
-    for column in np.flatnonzero(np.isfinite(judgement.clearance[row])).tolist():
+    for column in _near(judgement, row, HALF + 1.0):
         place = judgement.obstacle_position[:, column] - origin
-        if np.abs(place[row]).max() > HALF + 1.0:
-            continue
         worst = judgement.people[column].item() == moment.person
         color = style.PERSON_COLORS[0] if worst else style.NEUTRAL
         floor.line(axes, place[rows], zorder=4.0, color=color, linewidth=1.2)
         floor.disc(axes, place[row], judgement.person_radius, color, face=0.4)
     axes.set(xlim=(-HALF, HALF), ylim=(-HALF, HALF))
+
+
+def _near(judgement: Judgement, row: int, half: float) -> list[int]:
+    """Return the people in a square about the robot at an instant."""
+    away = np.abs(judgement.obstacle_position[row] - judgement.position[row]).max(axis=1)
+    with np.errstate(invalid="ignore"):
+        found: list[int] = np.flatnonzero(away <= half).tolist()
+    return found
 
 
 def _row(judgement: Judgement, moment: Moment) -> int:
@@ -157,11 +167,14 @@ def _add_walls(axes: Axes, judgement: Judgement) -> None:
         walls.add_maps(axes, [judgement.walls])
 
 
-def _handles(judgement: Judgement) -> list[Artist]:
+def _handles(judgement: Judgement, shown: set[int]) -> list[Artist]:
+    """Return the legend; ``shown``: people who are in the picture, the others are counted."""
+    hidden = len(judgement.people) - len(shown)
+    people = f"people ({hidden} of {len(judgement.people)} are not shown)" if hidden else "people"
     look: dict[str, Any] = {"linestyle": "-", "linewidth": 1.8}
     found: list[Artist] = [
         floor.handle("robot", **(look | {"color": style.RUN_COLORS[0]})),
-        floor.handle("people", **(look | {"color": style.PERSON_COLORS[0]})),
+        floor.handle(people, **(look | {"color": style.PERSON_COLORS[0]})),
     ]
     if any(each.reason not in ("smoothing_edge", "outside_map", "clock") for each in judgement.not_judged):
         found.append(floor.handle("not judged", **(look | {"color": style.NEUTRAL, "linewidth": 5.0, "alpha": 0.4})))

@@ -188,7 +188,7 @@ def _handles(maps: list[StaticMap]) -> list[Artist]:
         floor.handle("way so far", color=style.RUN_COLORS[0], linestyle="-", linewidth=1.8),
         floor.handle("planned way", color=WAY_COLOR, linestyle="--", linewidth=1.6),
         floor.handle("goal", marker="*", color=style.GOAL_COLOR, markersize=12, linestyle="none"),
-        *walls.handles(maps),
+        *walls.handles(maps)[:1],  # what the map does not know lies below the cells
     ]
 
 
