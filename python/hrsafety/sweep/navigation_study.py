@@ -18,6 +18,7 @@ from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.batch import gain_sets
 from hrsafety.navigation.gains.worlds import doubts_of, runs_of_sets
+from hrsafety.navigation.laws.known import LAWS
 from hrsafety.navigation.laws.python_law import as_law
 from hrsafety.navigation.obstacles.moving_rectangle import Mobile
 from hrsafety.navigation.outcomes import OUTCOMES
@@ -239,9 +240,14 @@ class NavigationStudy(Study):
         return tuple(each for each in self._possible() if self.outputs is None or each.name in self.outputs)
 
     @property
+    def _law_within(self) -> nav.Law:
+        """The law without a shield and other parts around it."""
+        return self.law.law if isinstance(self.law, nav.SafeNavigation) else self.law
+
+    @property
     def _law_units(self) -> Mapping[str, str]:
         """Units of what else may vary of the law."""
-        return LAW_UNITS if isinstance(self.law, nav.VirtualForceField) else {}
+        return LAW_UNITS if isinstance(self._law_within, nav.VirtualForceField) else {}
 
     def units(self, names: Sequence[str]) -> dict[str, str]:
         """Return the units of axes with these names, see `Study.units`."""
@@ -249,10 +255,18 @@ class NavigationStudy(Study):
         if self.scenario is None:
             known |= {name: unit for name, unit in SCENE_UNITS.items() if not self._in_worlds or name not in _OF_SCENES}
             for name in names:
-                word("name of an axis", name, tuple(known))
+                self._check_axis(name, tuple(known))
         else:
             known |= {checked_name("axis_units", name): unit for name, unit in self.axis_units.items()}
         return {name: known[name] for name in names if name in known}
+
+    def _check_axis(self, name: str, known: tuple[str, ...]) -> None:
+        """Raise unless the axis is known; where another law has it, the error names the law of the study."""
+        if name not in known and any(name in (*law.GAIN_NAMES, *LAW_UNITS) for law in LAWS.values()):
+            own = ", ".join((*self.law.GAIN_NAMES, *self._law_units)) or "none"
+            rule = f"be an axis of the law {type(self._law_within).__name__}, whose axes are {own}"
+            raise InvalidParameterError("name of an axis", rule, name)
+        word("name of an axis", name, known)
 
     def compute(self, rows: dict[str, Array], threads: int | None = None) -> Found:
         """Return the columns for some rows, see `Study.compute`."""

@@ -295,6 +295,25 @@ def test_minimal_study_without_a_law_searches_without_stabilizing_force(tmp_path
     assert study.search == {"bounds": {}, "constraints": ()}
 
 
+def test_law_of_a_scenario_file_is_searched_and_none_is_left_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scene = NOISY[: NOISY.index("[measurement]")]
+    (tmp_path / "full.toml").write_text(scene + '[law]\ntype = "vff"\nstabilizing = "full"\ndetour_gain = 9.0\n')
+    (tmp_path / "safe.toml").write_text(scene + "[safe.shield]\n")
+    full, of_study = 'scenarios = ["full.toml"]\n', '[law]\ntype = "virtual_force_field"\nstabilizing = '
+    for text in (full, full + of_study + '"full"\n'):
+        law = load(written(tmp_path / "study.toml", text)).law
+        assert law is not None
+        assert law.stabilizing == "full"
+    for text, words in (
+        (full + of_study + '"off"\n', "law must be the law of the scenario file full.toml"),
+        ('scenarios = ["safe.toml"]\n', "with nothing around it, got safe.toml with virtual force field"),
+    ):
+        assert main(["optimize", written(tmp_path / "study.toml", text), "--out", str(tmp_path / "out")]) == 2
+        assert words in error_line(capsys)
+
+
 # ---- stopping and continuing --------------------------------------------------------------------------
 
 # Runs the command and tells on stdout how far the search is, and its best value, not finite at first.

@@ -15,7 +15,8 @@ import pytest
 from api.cli_answers import error_line, written
 from api.interrupting import LISTEN
 from api.read_pages import page_of
-from hrsafety import impact, sweep
+from hrsafety import impact, scenarios, sweep
+from hrsafety import navigation as nav
 from hrsafety.cli import main
 from hrsafety.cli.sweep.file import load
 
@@ -214,3 +215,73 @@ def test_folder_of_another_sweep_is_refused(tmp_path: Path, capsys: pytest.Captu
     capsys.readouterr()
     assert main(["sweep", written(tmp_path / "b.toml", FAST.replace("1.25", "1.5")), "--out", out]) == 2
     assert "holds another sweep: study.fixed.closing_speed is 1.25 there and 1.5 here" in error_line(capsys)
+
+
+# ---- laws of scenario files -----------------------------------------------------------------------------
+
+SCENE = """
+start = [4.0, 0.0]
+goal = [0.0, 0.0]
+obstacles = [{ type = "disc", center = [2.0, 0.1], radius = 0.2, critical_radius = 0.5, active_radius = 0.9 }]
+"""
+VELOCITIES = '[law]\ntype = "velocity_obstacle"\n'
+SHIELDED = SCENE + VELOCITIES + "[safe.shield]\n"
+SEEDS = 'axes = [{ name = "seed", values = [1.0] }]\n'
+
+
+def _study(folder: Path, scenes: list[str], text: str = "", axes: str = SEEDS) -> str:
+    names = [Path(written(folder / f"scene_{index}.toml", scene)).name for index, scene in enumerate(scenes)]
+    return written(folder / "study.toml", f"scenarios = {names}\n{axes}{text}")
+
+
+def test_law_and_safe_of_a_scenario_file_are_swept(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = _study(tmp_path, [SHIELDED, SHIELDED])
+    study = load(file).study
+    assert isinstance(study, sweep.NavigationStudy)
+    assert study.law == scenarios.load(tmp_path / "scene_0.toml").law
+    assert main(["sweep", file, "--out", str(tmp_path / "out")]) == 0
+    assert re.search("^law +velocity obstacle", capsys.readouterr().out, re.MULTILINE)
+    expected = nav.simulate(scenarios.load(tmp_path / "scene_0.toml").scenario, study.law).time[-1]
+    assert sweep.open(tmp_path / "out")["end_time"].tolist() == [expected, expected]
+
+
+@pytest.mark.parametrize(
+    ("scenes", "text"),
+    [
+        ([SCENE, SCENE], ""),
+        ([SCENE, SCENE + '[law]\ntype = "vff"\n'], ""),
+        ([SCENE], '[law]\ntype = "masoud"\n[safe.shield]\n'),
+        ([SCENE], "[safe.shield]\n"),
+        ([SHIELDED], VELOCITIES + "[safe.shield]\n"),
+    ],
+)
+def test_laws_that_agree_or_stand_in_one_place_are_taken(scenes: list[str], text: str, tmp_path: Path) -> None:
+    law = load(_study(tmp_path, scenes, text)).study.law  # type: ignore[attr-defined]  # of robots
+    assert isinstance(law, nav.SafeNavigation) == any("safe" in each for each in (*scenes, text))
+
+
+@pytest.mark.parametrize(
+    ("scenes", "text", "words"),
+    [
+        ([SHIELDED, SCENE], "", ("scene_0.toml", "scene_1.toml", "by default")),
+        ([SHIELDED, SCENE + VELOCITIES], "", ("scene_0.toml", "scene_1.toml", "shield", "into the study")),
+        ([SHIELDED], VELOCITIES, ("law must be", "scene_0.toml", "shield", "take [law] and [safe] out")),
+        ([SCENE, SHIELDED], '[law]\ntype = "vff"\n', ("law must be", "scene_1.toml", "velocity obstacle")),
+    ],
+)
+def test_no_law_of_a_file_is_left_out_in_silence(
+    scenes: list[str], text: str, words: tuple[str, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for command in ("sweep", "optimize"):
+        file = _study(tmp_path, scenes, text, SEEDS if command == "sweep" else "")
+        assert main([command, file, "--out", str(tmp_path / "out")]) == 2
+        line = error_line(capsys)
+        if command == "sweep":
+            assert all(each in line for each in words)
+        assert not (tmp_path / "out").exists()
+
+
+def test_gain_of_another_law_is_refused_naming_the_law(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = _study(tmp_path, [SHIELDED], axes='axes = [{ name = "detour_gain", values = [10.0] }]\n')
+    assert main(["sweep", file, "--out", str(tmp_path / "out")]) == 2
+    assert "be an axis of the law VelocityObstacle, whose axes are margin, horizon" in error_line(capsys)

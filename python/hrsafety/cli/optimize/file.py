@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import field
 from pathlib import Path
 from types import MappingProxyType
@@ -13,6 +14,8 @@ from hrsafety import scenarios
 from hrsafety._arguments import meant
 from hrsafety._keys import Keys, checked, located, parsed
 from hrsafety._records import dataclass
+from hrsafety.cli.output import law_words
+from hrsafety.cli.study_laws import law_of_study
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.gains.metrics import METRICS
 from hrsafety.scenarios import files, laws
@@ -92,7 +95,8 @@ class GainStudy:
     scenarios : tuple of Scenario
         Where.
     law : VirtualForceField or None
-        Mode and side rules; its gains are searched. ``None``: without stabilizing force.
+        Mode and side rules; its gains are searched. ``None``: without stabilizing force, where the scenario files have
+        no law either.
     search : dict
         Arguments of `hrsafety.navigation.optimize_gains` beyond scenarios and law.
     front : dict or None
@@ -141,7 +145,7 @@ def load(path: str) -> GainStudy:
     """
     place = Path(path)
     fields = checked("", parsed(place), _TOP, required=("scenarios",))
-    names, scenes = scenarios_of(fields["scenarios"], place.parent)
+    names, scenes, of_files = scenarios_of(fields["scenarios"], place.parent)
     search = checked("search", fields.get("search", {}), _SEARCH)
     search |= checked("run", fields.get("run", {}), _RUN) | checked("noise", fields.get("noise", {}), _NOISE)
     search |= _objective(fields.get("objective", {}))
@@ -155,7 +159,7 @@ def load(path: str) -> GainStudy:
         title=fields.get("title", "Gains"),
         names=names,
         scenarios=scenes,
-        law=_law(fields["law"]) if "law" in fields else None,
+        law=_law(fields, of_files),
         search=search,
         front=_front(fields["front"]) if "front" in fields else None,
         compare=_compare(fields.get("compare", [])),
@@ -163,19 +167,36 @@ def load(path: str) -> GainStudy:
     )
 
 
-def _law(table: dict[str, Any]) -> nav.VirtualForceField:
+def _law(fields: dict[str, Any], of_files: Mapping[str, nav.Law | None]) -> nav.VirtualForceField | None:
     """Return the law, whose gains a study does not name: they are what is searched."""
-    law = laws.law_of(checked("law", table, _LAW))
-    if not isinstance(law, nav.VirtualForceField):
-        raise InvalidParameterError("law.type", "be virtual_force_field", table["type"])
-    return law
+    own = laws.law_of(checked("law", fields["law"], _LAW)) if "law" in fields else None
+    if own is not None and not isinstance(own, nav.VirtualForceField):
+        raise InvalidParameterError("law.type", "be virtual_force_field", fields["law"]["type"])
+    for name, law in of_files.items():
+        if law is not None and not isinstance(law, nav.VirtualForceField):
+            rule = "have the virtual force field, whose gains are searched, with nothing around it"
+            remedy = "nav.optimize_gains searches gains of any law, [safe] included; hrsafety sweep takes it as it is"
+            raise InvalidParameterError("scenarios", rule, Shown(f"{name} with {law_words(law)}"), remedy)
+    found = law_of_study(own, of_files, _without_gains)
+    assert found is None or isinstance(found, nav.VirtualForceField)  # all are
+    return found
 
 
-def scenarios_of(given: list[str], folder: Path) -> tuple[tuple[str, ...], tuple[nav.Scenario, ...]]:
-    """Return the scenarios with short names: published configurations and scenario files."""
+def _without_gains(law: nav.Law) -> nav.Law:
+    return law.replaced(**dict.fromkeys(law.GAIN_NAMES, 1.0))
+
+
+def scenarios_of(
+    given: list[str], folder: Path
+) -> tuple[tuple[str, ...], tuple[nav.Scenario, ...], dict[str, nav.Law | None]]:
+    """Return the scenarios with short names, published configurations and scenario files, and the laws of the files.
+
+    A file without ``[law]`` and ``[safe]`` has the law ``None``.
+    """
     if not given:
         raise InvalidParameterError("scenarios", "name at least one scenario", Shown("an empty array"))
     found: dict[str, nav.Scenario] = {}
+    of_files: dict[str, nav.Law | None] = {}
     for index, word in enumerate(given):
         where = f"scenarios[{index}]"
         name = word if word in scenarios.CONFIGURATIONS else Path(word).stem
@@ -184,17 +205,18 @@ def scenarios_of(given: list[str], folder: Path) -> tuple[tuple[str, ...], tuple
         if word in scenarios.CONFIGURATIONS:
             found[name] = scenarios.configuration(word)
         else:
-            found[name] = _scenario_file(where, folder / word, word)
-    return tuple(found), tuple(found.values())
+            found[name], of_files[word] = _scenario_file(where, folder / word, word)
+    return tuple(found), tuple(found.values()), of_files
 
 
-def _scenario_file(where: str, path: Path, word: str) -> nav.Scenario:
+def _scenario_file(where: str, path: Path, word: str) -> tuple[nav.Scenario, nav.Law | None]:
     if not path.is_file():
         known = ", ".join(scenarios.CONFIGURATIONS)
         near = meant(word, scenarios.CONFIGURATIONS) or f"there is no file {path}"
         raise InvalidParameterError(where, f"be a scenario file or one of {known}", word, near)
     try:
-        return files.load(path).scenario
+        described = files.load(path)
+        return described.scenario, described.law if parsed(path).keys() & {"law", "safe"} else None
     except InvalidParameterError as error:
         raise error.renamed(f"{where}: {word}: {error.argument}") from None
 

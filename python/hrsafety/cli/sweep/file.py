@@ -9,18 +9,20 @@ from typing import Any
 
 from hrsafety import _keys as kind
 from hrsafety import impact, sweep
+from hrsafety import navigation as nav
 from hrsafety._arguments import meant
 from hrsafety._keys import Keys, checked, located, parsed
 from hrsafety._records import dataclass
 from hrsafety.cli.foam import file as foam_file
 from hrsafety.cli.optimize import file as optimize_file
+from hrsafety.cli.study_laws import law_of_study
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.scenarios import laws
 from hrsafety.sweep.impact_study import IMPACT_UNITS
 
 __all__ = ["SweepFile", "load"]
 
-_NAVIGATION = ("scenarios", "law", "run")
+_NAVIGATION = ("scenarios", "law", "safe", "run")
 _IMPACT = ("manipulator", "foam", "head", "impact")
 _TOP: Keys = MappingProxyType(
     {
@@ -32,6 +34,7 @@ _TOP: Keys = MappingProxyType(
         "axes": kind.tables,
         "scenarios": kind.words,
         "law": kind.table,
+        "safe": kind.table,
         "run": kind.table,
         "manipulator": kind.table,
         "foam": kind.table,
@@ -197,9 +200,12 @@ def _design(table: dict[str, Any], axes: list[sweep.Axis]) -> sweep.Design:
 
 
 def _navigation(fields: dict[str, Any], folder: Path) -> sweep.NavigationStudy:
-    names, scenes = optimize_file.scenarios_of(fields["scenarios"], folder)
+    names, scenes, of_files = optimize_file.scenarios_of(fields["scenarios"], folder)
     stepping = checked("run", fields.get("run", {}), _RUN)
-    law = laws.law_of(fields["law"]) if "law" in fields else None
+    own = laws.law_of(fields["law"]) if "law" in fields else None
+    if "safe" in fields:
+        own = laws.safe_of(own or nav.VirtualForceField(), fields["safe"])
+    law = law_of_study(own, of_files)
     options: dict[str, Any] = {"law": law, "outputs": fields.get("outputs"), **stepping}
     return sweep.NavigationStudy(scenarios=scenes, names=names, **options)
 

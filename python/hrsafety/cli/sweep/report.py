@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 
+from hrsafety.cli import output
 from hrsafety.cli.sweep.file import SweepFile
 from hrsafety.cli.sweep.summary import Summary, summarized
 from hrsafety.pages import sentence
 from hrsafety.pages.report import Report, ReportTable, Section
-from hrsafety.sweep import Axis, SweepResult
+from hrsafety.sweep import Axis, NavigationStudy, SweepResult
 
 __all__ = ["report_of"]
 
@@ -69,6 +70,7 @@ def report_of(study: str, described: SweepFile, result: SweepResult, seconds: fl
         title=described.title,
         facts=[
             ("study", study),
+            *_law_facts(described),
             ("design", f"{design_words(result)}{cases}"),
             *(("axis", f"{axis.label}: {axis_words(axis)}") for axis in result.axes),
             ("rows", f"{len(result):,} in {chunks}, {seconds:.1f} s"),
@@ -86,6 +88,12 @@ def report_of(study: str, described: SweepFile, result: SweepResult, seconds: fl
         files=["sweep.json", "the folder chunks, read with hrsafety.sweep.open"],
         source=study,
     )
+
+
+def _law_facts(described: SweepFile) -> list[tuple[str, str]]:
+    """Return which law drives the robots, of a study with robots."""
+    study = described.study
+    return [("law", output.law_words(study.law))] if isinstance(study, NavigationStudy) else []
 
 
 def _extremes(summary: Summary, show: Sequence[str]) -> ReportTable:
