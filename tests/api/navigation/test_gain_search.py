@@ -557,3 +557,42 @@ def test_callables_in_a_front_are_named_and_maximized() -> None:
     np.testing.assert_allclose(found.values * [1, -1], named.values, rtol=1e-14)
     np.testing.assert_allclose(found.reference * [1, -1], named.reference, rtol=1e-14)
     assert found.hypervolume == pytest.approx(named.hypervolume, rel=1e-12)
+
+
+# ---- doubts about the best gains ------------------------------------------------------------------------
+
+HELD = {"attractive_gain": (3.0, 3.0), "repulsive_gain": (10.0, 10.0), "gain_ratio": (0.5, 0.5)}
+LINE: dict[str, Any] = {"grid": (1, 1, 3, 1), "refinements": 0, "survivors": 1, "local_starts": 0}
+
+
+def codes(**options: Any) -> list[str]:
+    return [each.code for each in nav.optimize_gains(**options).warnings]
+
+
+@pytest.mark.parametrize(("low", "high", "on"), [(10.0, 300.0, ""), (10.0, 40.0, "largest"), (150.0, 300.0, "least")])
+def test_optimum_on_a_bound_names_gain_value_and_bound(low: float, high: float, on: str) -> None:
+    found = nav.optimize_gains(SCENES[1:2], bounds=HELD | {"detour_gain": (low, high)}, **LINE)
+    told = [each for each in found.warnings if each.code == "optimum_on_bound"]
+    assert len(told) == bool(on), found.nearest
+    if on:
+        assert told[0].safe_side
+        value = high if on == "largest" else low
+        assert f"detour_gain is {value:g} N/m^2, on its {on} value {value:g} N/m^2" in told[0].message
+
+
+def test_held_gains_and_gains_of_zero_lie_on_no_bound() -> None:
+    held = HELD | {"detour_gain": (40.0, 40.0)}
+    assert "optimum_on_bound" not in codes(scenarios=SCENES[1:2], bounds=held, **LINE | {"grid": (1, 1, 1, 1)})
+    zero = HELD | {"repulsive_gain": (0.0, 200.0), "detour_gain": (40.0, 40.0)}
+    search = nav.optimize_gains(
+        [nav.Scenario(start=(4.0, 0.0), goal=(0.0, 0.0))], bounds=zero, **LINE | {"grid": (1, 2, 1, 1)}
+    )
+    assert search.nearest.gains[1] == 0.0
+    assert "optimum_on_bound" not in [each.code for each in search.warnings]
+
+
+def test_one_draw_of_noise_is_told_and_fresh_seeds_are_enough() -> None:
+    line = {"bounds": HELD | {"detour_gain": (10.0, 300.0)}, "require_arrival": False} | LINE
+    assert "few_runs" in codes(scenarios=NOISY, **line)
+    assert "few_runs" not in codes(scenarios=NOISY, seeds=2, **line)
+    assert "few_runs" not in codes(scenarios=SCENES[:2], **line)

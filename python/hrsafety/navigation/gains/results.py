@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any, Literal
 
 import numpy as np
@@ -123,6 +124,32 @@ class Flatness:
     warnings: tuple[ResultWarning, ...] = ()
 
 
+# An optimum so near to a bound, as a share of the width between both, lies on it.
+_ON_BOUND = 1e-3
+
+
+def _on_bounds(law: Law, bounds: Array) -> Iterator[ResultWarning]:
+    """Warn of gains that lie on a bound of their search; no gain can be below 0."""
+    found = []
+    for name, gain, (low, high) in zip(law.GAIN_NAMES, law.gains, bounds.tolist(), strict=True):
+        near = _ON_BOUND * (high - low)
+        unit = f" {law.GAIN_UNITS[name]}" if law.GAIN_UNITS.get(name) else ""
+        if low < high and high - gain <= near:
+            found.append(f"{name} is {gain:.6g}{unit}, on its largest value {high:g}{unit}")
+        elif 0.0 < low < high and gain - low <= near:
+            found.append(f"{name} is {gain:.6g}{unit}, on its least value {low:g}{unit}")
+    if found:
+        words = "; ".join(found)
+        message = f"the best gains lie on bounds of the search: {words}; better ones may lie beyond, widen bounds"
+        yield ResultWarning("optimum_on_bound", "bounds", message, safe_side=True)
+
+
+def _is_measured(place: Any) -> bool:
+    """Return whether positions are noisy there."""
+    robots = place.robots if isinstance(place, World) else [place]
+    return any(each.measurement is not None and each.measurement.scale > 0.0 for each in robots)
+
+
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class _Search(Table):
     """Counts, end and doubts of a search with one objective or several."""
@@ -142,7 +169,12 @@ class _Search(Table):
     def warnings(self) -> tuple[ResultWarning, ...]:
         """Why the numbers may not mean what they seem to: the first warning of each kind, and how many follow."""
         worlds = isinstance(self.settings.scenarios[0], World)
-        return doubts_of(self.settings.scenarios, self.settings.law, *([] if worlds else [self.settings.step]))
+        of_scenes = doubts_of(self.settings.scenarios, self.settings.law, *([] if worlds else [self.settings.step]))
+        return (*of_scenes, *self._of_result())
+
+    def _of_result(self) -> Iterator[ResultWarning]:
+        """Yield doubts about what was found."""
+        yield from ()
 
     @property
     def status(self) -> Literal["found", "infeasible", "interrupted"]:
@@ -206,6 +238,19 @@ class GainSearch(_Search):
     top: Array
     top_values: Array
     confidence: Confidence | None
+
+    def _of_result(self) -> Iterator[ResultWarning]:
+        """Yield doubts about the best gains: on a bound of the search, or better than they are by luck."""
+        if not self.valid:
+            return
+        yield from _on_bounds(self.nearest, self.settings.bounds)
+        if not self.settings.seeds and any(map(_is_measured, self.settings.scenarios)):
+            message = (
+                "scenarios are measured with noise, and each was run with its own seed alone: the best value is that "
+                "of one draw, for which it was chosen, and the mean of fresh draws is worse; give seeds=, whose "
+                "confidence says by how much"
+            )
+            yield ResultWarning("few_runs", "seeds", message)
 
     @property
     def grids(self) -> tuple[SearchStage, ...]:
