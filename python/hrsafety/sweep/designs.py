@@ -130,6 +130,23 @@ class Design(ABC):
         rows = np.concatenate([design._block(place, place + 1) for place in places.tolist()])
         return design._by_axis(rows), len(design)
 
+    def sampled(self, most: int) -> dict[str, Array]:
+        """Return all rows, or of more than ``most`` those that stand for the others: a column for each axis.
+
+        The first rows of a sample are spread already.
+
+        Parameters
+        ----------
+        most : int
+            Most rows.
+
+        Returns
+        -------
+        dict of str to ndarray
+            A column for each axis.
+        """
+        return self._by_axis(self._block(0, min(most, len(self))))
+
     def _without(self, names: Collection[str]) -> Design:  # noqa: ARG002  # only a grid has rows without an axis
         return self
 
@@ -218,6 +235,17 @@ class Grid(Design):
         ends = [axis.levels()[[0, -1]] for axis in self.axes]
         few = 2 ** len(ends) <= MOST_LOOKED_AT
         return self._by_axis(np.array(list(itertools.product(*ends) if few else zip(*ends, strict=True))))
+
+    def sampled(self, most: int) -> dict[str, Array]:
+        """Return all rows, or of more than ``most`` a grid of fewer levels with the same ends, see `Design.sampled`."""
+        each = max(int(most ** (1.0 / len(self.axes))), 2)
+        if len(self) <= most or 2 ** len(self.axes) > most:
+            return Design.sampled(self, most)
+        axes = [axis.levels() for axis in self.axes]
+        few = [
+            values[np.unique(np.linspace(0, len(values) - 1, min(each, len(values))).astype(int))] for values in axes
+        ]
+        return self._by_axis(np.array(list(itertools.product(*few))))
 
     def _without(self, names: Collection[str]) -> Design:
         left = [axis for axis in self.axes if axis.name not in names]

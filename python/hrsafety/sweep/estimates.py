@@ -9,6 +9,7 @@ from typing import Literal, NamedTuple
 from hrsafety._arguments import thread_count, word
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
+from hrsafety.plausibility import ResultWarning, telling
 from hrsafety.sweep.chunk_files import STORES, chunk_files
 from hrsafety.sweep.chunk_ranges import checked_share
 from hrsafety.sweep.chunks import SweepPlan, computed, planned
@@ -52,6 +53,8 @@ class SweepEstimate:
         Time in one process.
     measured_rows : int
         Rows that were computed for the estimate.
+    warnings : tuple of ResultWarning
+        Doubts about design and study, which the result of the sweep will carry.
     """
 
     rows: int
@@ -61,6 +64,7 @@ class SweepEstimate:
     bytes: int
     seconds: float
     measured_rows: int
+    warnings: tuple[ResultWarning, ...] = ()
 
     @property
     def chunk_seconds(self) -> float:
@@ -99,6 +103,7 @@ def time_words(seconds: float) -> str:
     return f"{seconds:.2g} s"
 
 
+@telling()
 def estimate(
     design: Design,
     study: Study,
@@ -161,6 +166,7 @@ def estimate(
         threads=thread_count(threads),
     )
     wanted = range(len(plan)) if share is None else share.of(len(plan))
+    doubts = (*plan.task.design.warnings, *study.judged(plan.task.design))
     # Only the last chunk may have fewer rows.
     rows = len(wanted) * plan.chunk_rows
     if len(plan) - 1 in wanted:
@@ -176,6 +182,7 @@ def estimate(
         bytes=round(rows * each + len(wanted) * (one.size - one.rows * each)),
         seconds=rows * most.seconds / most.rows,
         measured_rows=min(sum(block.rows for block in blocks), plan.rows),
+        warnings=doubts,
     )
 
 

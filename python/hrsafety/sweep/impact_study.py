@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import field, replace
 from types import MappingProxyType
 from typing import Any, Literal
 
@@ -17,6 +17,7 @@ from hrsafety.impact.batch import STATUS_WORDS
 from hrsafety.impact.criteria.declared import CRITERIA
 from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Column
+from hrsafety.sweep.designs import Design
 from hrsafety.sweep.studies import Found, Study, chosen
 
 __all__ = ["IMPACT_UNITS", "ImpactStudy"]
@@ -37,6 +38,9 @@ IMPACT_UNITS: Mapping[str, str] = MappingProxyType(
 _PEAKS = tuple(Column(name=each.name, unit=each.unit) for each in CRITERIA.values() if each.is_peak)
 _OTHERS = tuple(Column(name=each.name, unit=each.unit) for each in CRITERIA.values() if not each.is_peak)
 _FLAGS = (Column(name="beyond_linear_range", kind="flag"), Column(name="status", kind="word", words=STATUS_WORDS))
+_INVALID, _NO_IMPACT = "invalid_", "no_impact"
+# Rows whose numbers are checked before a sweep runs: about a tenth of a second.
+MOST_CHECKED = 65536
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -144,14 +148,45 @@ class ImpactStudy(Study):
     def doubts(self, rows: dict[str, Array]) -> tuple[ResultWarning, ...]:
         """Return numbers that are hardly what was meant, and foams that are too thin, see `Study.doubts`."""
         found = self._batch({**self.fixed, **rows}, 1)
-        pressed = int(np.count_nonzero(found.bottomed))
-        if not pressed:
+        pressed = found.bottomed
+        if not pressed.any():
             return found.warnings
+        told = found.status[pressed] == "bottomed"
+        words = "" if not told.any() else ", which the status bottomed tells" + ("" if told.all() else " of some")
         message = (
-            f"{pressed} of the {len(found.bottomed)} rows that were looked at compress the foam by more than its "
-            "thickness: true loads are higher than computed; leave out rows whose status is bottomed"
+            f"{np.count_nonzero(pressed)} of the {len(pressed)} rows that were looked at compress the foam by more "
+            "than its thickness: true loads are higher than computed; leave out rows whose max_compression is above "
+            f"the thickness{words}"
         )
         return (*found.warnings, ResultWarning("bottomed", "status", message))
+
+    def judged(self, design: Design) -> tuple[ResultWarning, ...]:
+        """Return the doubts of a design before it runs, with rows that cannot be, see `Study.judged`."""
+        return (*self.doubts(design.looked_at()), *self._impossible(design))
+
+    def _impossible(self, design: Design) -> Iterator[ResultWarning]:
+        """Warn of rows with a number that no part can have: they have a status, and no loads."""
+        rows = design.sampled(MOST_CHECKED)
+        given: dict[str, Any] = {**self.fixed, **rows}
+        quick = replace(self, fields="peaks", outputs=("status",))
+        status = quick._batch(given, None).status
+        # Bodies that stand at a distance are a row of zero speed; those that part are hardly meant.
+        parting = (status == _NO_IMPACT) & (np.asarray(given["closing_speed"]) < 0.0)
+        bad = np.flatnonzero(np.char.startswith(status, _INVALID) | parting)
+        if not len(bad):
+            return
+        name = "closing_speed" if parting[bad[0]] else str(status[bad[0]]).removeprefix(_INVALID)
+        own = given.get(name)
+        value = "impossible"
+        if own is not None:
+            value = f"{float(np.broadcast_to(own, status.shape)[bad[0]]):g} {IMPACT_UNITS[name]}"
+        of = "the {} rows" if len(status) == len(design) else "{} rows that were looked at"
+        rule = "; it has to lie within the thickness" if name == "linear_range" else ""
+        message = (
+            f"{len(bad)} of {of.format(len(status))} cannot be and have no loads, only a status such as "
+            f"{status[bad[0]]}: {name} is {value} in the first of them{rule}; leave such values out"
+        )
+        yield ResultWarning("invalid_numbers", name, message)
 
     def _batch(self, given: dict[str, Any], threads: int | None) -> impact.ImpactMetricsBatch:
         return impact.metrics_batch(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
@@ -15,7 +14,7 @@ import numpy.typing as npt
 from hrsafety import navigation as nav
 from hrsafety._arguments import Array, flag, instance, positive, sequence, word
 from hrsafety._records import dataclass
-from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.errors import InvalidParameterError, Shown, SimulationError
 from hrsafety.navigation.batch import gain_sets
 from hrsafety.navigation.gains.worlds import doubts_of, runs_of_sets
 from hrsafety.navigation.laws.known import LAWS
@@ -28,7 +27,7 @@ from hrsafety.navigation.tables.runs import RunTable
 from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Column, checked_name
-from hrsafety.sweep.designs import MOST_LOOKED_AT, Design
+from hrsafety.sweep.designs import MOST_LOOKED_AT, Design, Grid
 from hrsafety.sweep.studies import Cases, Found, Study, chosen
 
 __all__ = ["NavigationStudy"]
@@ -74,6 +73,9 @@ _FIRST = (
     Column(name="path_length", unit="m"),
     Column(name="min_clearance", unit="m"),
 )
+_TELLING = ("outcome", "end_time", "path_length", "min_clearance")
+"""Columns that tell runs apart, as `run_warnings.of_repeats` compares."""
+SEEDS_LOOKED_AT, CASES_LOOKED_AT = 4, 16
 _LAST = (
     Column(name="entered_active", kind="integer"),
     Column(name="contacts_moving", kind="integer"),
@@ -300,20 +302,28 @@ class NavigationStudy(Study):
         others = [name for name in rows if name not in self.law.GAIN_UNITS]
         distinct = np.unique(np.stack([rows[name] for name in others], axis=1), axis=0) if others else np.empty((1, 0))
         scenes: list[Any] = []
+        refused: list[InvalidParameterError] = []
         for row in distinct.tolist():
             # A row that cannot be is an error of the chunk that computes it.
-            with contextlib.suppress(InvalidParameterError):
+            try:
                 scenes += self._scenes(dict(zip(others, row, strict=True)), len(self.names or [""]))
+            except InvalidParameterError as error:
+                refused.append(error)
+        impossible = _impossible(refused, len(distinct))
         if self._in_worlds:
-            return doubts_of(scenes, self.law)
+            return (*impossible, *(doubts_of(scenes, self.law) if scenes else ()))
         words = [f"scenarios[{name!r}]" for name in self.names] if self.names else ["scenario"]
-        return run_warnings.of_runs(scenes, words * (len(scenes) // len(words)), [self.law], None, self.step)
+        found = run_warnings.of_runs(scenes, words * (len(scenes) // len(words)), [self.law], None, self.step)
+        return (*impossible, *found)
 
     def judged(self, design: Design) -> tuple[ResultWarning, ...]:
         """Return the doubts of a design before it runs, see `Study.judged`.
 
         A function makes any scene of a row: of few rows all are examined, of more some, and a doubt says so.
         """
+        return (*self._of_scenes(design), *self._of_seeds(design))
+
+    def _of_scenes(self, design: Design) -> tuple[ResultWarning, ...]:
         if self.scenario is None:
             return self.doubts(design.looked_at())
         rows, total = design.spread(MOST_LOOKED_AT, without=self.law.GAIN_UNITS)
@@ -326,6 +336,37 @@ class NavigationStudy(Study):
             "looked at for doubts: what scenario.warnings says of the others nobody has read"
         )
         return (*found, ResultWarning(ROWS_NOT_LOOKED_AT, "scenario", message))
+
+    def _of_seeds(self, design: Design) -> Iterator[ResultWarning]:
+        """Warn of a grid over seeds that change nothing, from runs with some seeds at both ends of the other axes."""
+        if not isinstance(design, Grid) or "seed" not in design.names:
+            return
+        seeds = next(axis for axis in design.axes if axis.name == "seed").levels()
+        first = seeds[:SEEDS_LOOKED_AT]
+        words = self.names or ("the scenario",)
+        few = slice(None) if self.scenarios == () else slice(CASES_LOOKED_AT)
+        study = replace(
+            self, scenarios=self.scenarios[few], names=None if self.names is None else self.names[few], outputs=_TELLING
+        )
+        alike = np.full(len(words[few]), len(seeds) > 1)
+        for end in (0, -1):
+            rows = {name: np.full(len(first), values[end]) for name, values in design.looked_at().items()}
+            try:
+                found = study.compute(rows | {"seed": first})
+            except (InvalidParameterError, SimulationError):
+                return  # an error of the chunk that computes it
+            for values in found.values():
+                runs = values.reshape(len(first), -1)
+                alike &= ((runs == runs[0]) | ((runs != runs) & (runs[0] != runs[0]))).all(axis=0)
+        if alike.any():
+            where = words[few][int(np.argmax(alike))]
+            more = f" (so in {alike.sum() - 1} more of the scenarios)" if alike.sum() > 1 else ""
+            message = (
+                f"the {len(seeds)} rows over seed in {where} are the same run: nothing there draws from it, and shares "
+                "and intervals count one run as many; a measurement with noise (measurement_scale), or a scene that is "
+                f"drawn for each seed, makes them differ{more}"
+            )
+            yield ResultWarning("same_runs", "seed", message)
 
     def _batches(self, rows: dict[str, Array], each: int) -> Iterator[_Batch]:
         """Yield calls that cover all rows: those that share everything but the gains run together."""
@@ -367,6 +408,16 @@ class NavigationStudy(Study):
         if len(scenes) != each:
             raise InvalidParameterError("scenario", f"return {each} Scenario", Shown(f"{len(scenes)}"))
         return scenes
+
+
+def _impossible(refused: Sequence[InvalidParameterError], rows: int) -> Iterator[ResultWarning]:
+    """Warn of rows that cannot be run: the sweep ends with the error of the first."""
+    if refused:
+        message = (
+            f"{len(refused)} of the {rows} rows that were looked at cannot be run, and end the sweep there: "
+            f"{refused[0]}; leave such values out of the axes"
+        )
+        yield ResultWarning("invalid_numbers", refused[0].argument, message)
 
 
 def _no_scenario(given: object) -> tuple[object, str | None]:

@@ -381,6 +381,20 @@ def test_dry_run_shows_rows_size_and_time_and_writes_nothing(
     assert sorted(tmp_path.iterdir()) == before
 
 
+def test_dry_run_prints_the_doubts_of_the_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file, out = tmp_path / "study.toml", str(tmp_path / "out")
+    told: list[list[str]] = []
+    for speed, code in (("1250.0", 4), ("0.4", 0)):
+        text = FILE.replace("closing_speed = 1.25", f"closing_speed = {speed}")
+        file.write_text(text.replace("chunk_rows", "# chunk_rows"), encoding="utf-8")
+        for options in (["--dry-run"], []):
+            assert main(["sweep", str(file), "--out", out + speed, "--strict", *options]) == code
+            told.append([line for line in capsys.readouterr().err.splitlines() if "warning: " in line])
+    assert told[0] == told[1]
+    assert "closing_speed is 1250 m/s" in told[0][0]
+    assert told[2] == told[3] == []
+
+
 def test_commands_with_shares_fill_a_folder_and_one_without_writes_the_page(
     study: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

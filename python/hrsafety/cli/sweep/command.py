@@ -52,7 +52,9 @@ def sweep_file(options: argparse.Namespace) -> None:
     with output.located(options.study):
         described = _described(options)
         if options.dry_run:
-            print("\n".join(_expected(options, described)))
+            found = _estimated(options, described)
+            print("\n".join(_expected(options, described, found)))
+            output.report_warnings(output.warnings_of(found), options.strict)
             return
         begin = time.perf_counter()
         result = _run(options, described)
@@ -82,10 +84,10 @@ def _described(options: argparse.Namespace) -> SweepFile:
         raise error.renamed("--outputs") if error.argument == "outputs" else error from None
 
 
-def _expected(options: argparse.Namespace, described: SweepFile) -> Iterator[str]:
-    """Yield what the sweep will take."""
+def _estimated(options: argparse.Namespace, described: SweepFile) -> sweep.SweepEstimate:
+    """Return what the sweep will take."""
     try:
-        found = sweep.estimate(
+        return sweep.estimate(
             described.design,
             described.study,
             store=options.store or "npz",
@@ -95,6 +97,10 @@ def _expected(options: argparse.Namespace, described: SweepFile) -> Iterator[str
         )
     except InvalidParameterError as error:
         raise error.renamed(f"--{error.argument}") if error.argument in _OPTIONS else error from None
+
+
+def _expected(options: argparse.Namespace, described: SweepFile, found: sweep.SweepEstimate) -> Iterator[str]:
+    """Yield what the sweep will take, in lines."""
     cases = described.study.cases
     each = 1 if cases is None else len(cases.words)
     columns = described.study.columns()
