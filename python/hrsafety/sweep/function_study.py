@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from hrsafety._arguments import Array, sequence
 from hrsafety._records import dataclass
-from hrsafety.errors import InvalidParameterError, Shown
+from hrsafety.errors import HrsafetyError, InvalidParameterError, Shown
 from hrsafety.sweep.axes import Column, checked_name
-from hrsafety.sweep.studies import Found, Study
+from hrsafety.sweep.studies import Found, Study, raised
 
 __all__ = ["FunctionStudy"]
 
@@ -96,8 +96,15 @@ class FunctionStudy(Study):
 
     def compute(self, rows: dict[str, Array], threads: int | None = None) -> Found:  # noqa: ARG002  # a function knows no threads
         """Return the columns for some rows, see `Study.compute`."""
-        # Copies: what a function does to its arguments must not change the rows that are kept.
-        found = self.function(**{name: values.copy() for name, values in rows.items()}, **self.parameters)
+        try:
+            found = self._called(rows, slice(None))
+        except HrsafetyError:
+            raise
+        except Exception as error:
+            first, cause = self._first_failing(rows, error)
+            row = {name: values[first] for name, values in rows.items()}
+            more = f" and the parameters {', '.join(self.parameters)}" if self.parameters else ""
+            raise raised(self.function, row, f"it is called with the axes {', '.join(rows)}{more}", cause) from cause
         if not isinstance(found, Mapping):
             kind = type(found).__name__
             raise InvalidParameterError("result of the function", "be a mapping of names to arrays", kind)
@@ -108,3 +115,20 @@ class FunctionStudy(Study):
             return {name: np.asanyarray(found[name]) for name in names}
         except ValueError as error:
             raise InvalidParameterError("result of the function", "hold arrays", Shown(str(error))) from None
+
+    def _called(self, rows: dict[str, Array], part: slice) -> Any:
+        # Copies: what a function does to its arguments must not change the rows that are kept.
+        return self.function(**{name: values[part].copy() for name, values in rows.items()}, **self.parameters)
+
+    def _first_failing(self, rows: dict[str, Array], error: Exception) -> tuple[int, Exception]:
+        """Return the first row that fails, found by halves, and its error."""
+        low, high = 0, len(next(iter(rows.values())))
+        while high - low > 1:
+            middle = (low + high) // 2
+            try:
+                self._called(rows, slice(low, middle))
+            except Exception as of_part:  # whatever a function raises
+                high, error = middle, of_part
+            else:
+                low = middle
+        return low, error

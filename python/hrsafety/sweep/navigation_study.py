@@ -14,7 +14,7 @@ import numpy.typing as npt
 from hrsafety import navigation as nav
 from hrsafety._arguments import Array, flag, instance, positive, sequence, word
 from hrsafety._records import dataclass
-from hrsafety.errors import InvalidParameterError, Shown, SimulationError
+from hrsafety.errors import HrsafetyError, InvalidParameterError, Shown, SimulationError
 from hrsafety.navigation.batch import gain_sets
 from hrsafety.navigation.gains.worlds import doubts_of, runs_of_sets
 from hrsafety.navigation.laws.known import LAWS
@@ -28,7 +28,7 @@ from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Column, checked_name
 from hrsafety.sweep.designs import MOST_LOOKED_AT, Design, Grid
-from hrsafety.sweep.studies import Cases, Found, Study, chosen
+from hrsafety.sweep.studies import Cases, Found, Study, chosen, raised
 
 __all__ = ["NavigationStudy"]
 
@@ -400,7 +400,12 @@ class NavigationStudy(Study):
         if self.scenario is None:
             change: Callable[[Any, Mapping[str, float]], Place] = _world_changed if self._in_worlds else _changed
             return [change(scene, values) for scene in self.scenarios]
-        made = self.scenario(values)
+        try:
+            made = self.scenario(values)
+        except HrsafetyError:
+            raise
+        except Exception as error:
+            raise raised(self.scenario, row, f"its row has the axes {', '.join(values) or 'none'}", error) from error
         scenes: list[Any] = list(made) if isinstance(made, Sequence) else [made]
         strange = next((scene for scene in scenes if not isinstance(scene, nav.Scenario)), None)
         if strange is not None:

@@ -17,6 +17,7 @@ from hrsafety._arguments import count, flag, instance, thread_count, word
 from hrsafety._bounds import MOST_TASKS
 from hrsafety.errors import InvalidParameterError, MissingExtraError
 from hrsafety.plausibility import telling
+from hrsafety.sweep import room
 from hrsafety.sweep.chunk_files import STORES
 from hrsafety.sweep.chunk_ranges import checked_share
 from hrsafety.sweep.chunks import SweepPlan, WorkerTask, computed, planned
@@ -118,9 +119,11 @@ def run(
     Raises
     ------
     InvalidParameterError
-        If an argument is of the wrong kind, or the study does not know an axis.
+        If an argument is of the wrong kind, the study does not know an axis, or the results do not fit into the
+        memory, or with ``out`` on the disk.
     SweepError
-        If the folder holds another sweep, another process writes into it, or a pool broke.
+        If the folder holds another sweep, another process writes into it, a pool broke, or a function of the study
+        raised an error, which is the cause.
     SweepInterrupted
         After Ctrl-C; a `KeyboardInterrupt` whose message says how to resume.
     MissingExtraError
@@ -170,10 +173,16 @@ def run(
     least = ROUNDS * most if share is None else share.parts
     plan = planned(design, study, chunk_rows=chunk_rows, least_chunks=least, threads=own)
     wanted = range(len(plan)) if share is None else share.of(len(plan))
+    if path is None:
+        room.check_memory(plan)
+    elif not (path / MANIFEST).is_file():
+        room.check_disk(plan, wanted, path, store or "npz")
     manifest = new_manifest(plan.settings(__version__), study.judged(design), store)
     with contextlib.nullcontext() if path is None else locked(path, None if share is None else wanted):
         kept = Memory(manifest) if path is None else Folder.prepared(path, manifest, resume=resume, store=store)
         missing = _missing(wanted, kept)
+        if isinstance(kept, Folder):
+            room.check_disk(plan, missing, kept.path, kept.files.name)
         report = _Report(plan, wanted, missing, progress)
         if executor is not None:
             results = _pooled(plan, missing, executor, most)

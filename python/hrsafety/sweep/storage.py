@@ -36,7 +36,7 @@ MOST_NAMED = 4
 
 
 class SweepError(HrsafetyError):
-    """A sweep cannot be resumed: its folder belongs to another one, is damaged, or a worker died."""
+    """A sweep cannot go on: its folder is of another or damaged, a worker died, or a function of its study raised."""
 
 
 def new_manifest(

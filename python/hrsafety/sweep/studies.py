@@ -15,8 +15,9 @@ from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Column
 from hrsafety.sweep.designs import Design
 from hrsafety.sweep.identity import described
+from hrsafety.sweep.storage import SweepError
 
-__all__ = ["Cases", "Found", "Study", "checked_study", "chosen"]
+__all__ = ["Cases", "Found", "Study", "checked_study", "chosen", "raised"]
 
 Found = Mapping[str, npt.NDArray[Any]]
 
@@ -126,6 +127,26 @@ class Study(ABC):
         """Return everything that the result depends on, as plain data."""
         found: dict[str, Any] = described(self)
         return found
+
+
+def raised(function: object, row: Mapping[str, Any], given: str, error: Exception) -> SweepError:
+    """Return the error of a sweep for one of a function of its study.
+
+    Parameters
+    ----------
+    function : callable
+        Which raised it.
+    row : mapping of str to number
+        The axes of the first row that raised it.
+    given : str
+        What the function gets, in words.
+    error : Exception
+        What it raised.
+    """
+    values = ", ".join(f"{name} = {float(value):g}" for name, value in row.items())
+    name = getattr(function, "__qualname__", type(function).__name__)
+    kind = type(error).__name__
+    return SweepError(f"the function {name} of the study raised {kind}: {error} in the row {values}; {given}")
 
 
 def checked_study(study: object) -> Study:

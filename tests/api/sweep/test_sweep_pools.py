@@ -119,8 +119,11 @@ def test_error_of_a_function_comes_through_with_its_rows(pool: Executor, tmp_pat
     study = sweep.FunctionStudy(function=sweep_functions.fails_beyond, results=["y"], parameters={"limit": 0.5})
     grid = sweep.Grid([sweep.Axis(name="x", low=0.0, high=1.0, points=11)])
     for executor in (None, pool):
-        with pytest.raises(ArithmeticError, match=r"x beyond 0\.5") as caught:
+        with pytest.raises(sweep.SweepError, match=r"ArithmeticError: x beyond 0\.5 in the row x = 0\.6") as caught:
             sweep.run(grid, study, out=tmp_path, executor=executor, chunk_rows=2, in_flight=1)
+        assert "the axes x and the parameters limit" in str(caught.value)
+        # What comes from another process has its traceback as text.
+        assert isinstance(caught.value.__cause__, ArithmeticError) or "x beyond 0.5" in str(caught.value.__cause__)
         assert "in rows 6 to 7 of the sweep" in caught.value.__notes__
         assert sweep.open(tmp_path).finished == (0, 1, 2)
 
@@ -183,7 +186,7 @@ def test_worker_that_is_killed_costs_nothing_but_time(client: Any, tmp_path: Pat
 def test_error_on_a_cluster_is_tried_again_and_comes_through(client: Any, tmp_path: Path) -> None:
     study = sweep.FunctionStudy(function=sweep_functions.fails_beyond, results=["y"], parameters={"limit": 0.5})
     grid = sweep.Grid([sweep.Axis(name="x", low=0.0, high=1.0, points=11)])
-    with pytest.raises(ArithmeticError, match=r"x beyond 0\.5"):
+    with pytest.raises(sweep.SweepError, match=r"x beyond 0\.5 in the row x = 0\.6"):
         sweep.run(grid, study, out=tmp_path, client=client, chunk_rows=2, in_flight=1, retries=1)
     assert sweep.open(tmp_path).finished == (0, 1, 2)
 

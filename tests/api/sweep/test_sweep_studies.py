@@ -15,9 +15,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from hrsafety import InvalidParameterError, ShapeError, SimulationError, impact, scenarios, sweep
 from hrsafety import navigation as nav
+from hrsafety.sweep import room
 from reference import sweep_functions
 
 LAW = nav.VirtualForceField()
@@ -458,3 +461,68 @@ def test_a_function_changes_no_rows_and_masks_no_results() -> None:
 
     with pytest.raises(InvalidParameterError, match="y must have no masked values, got 2 masked of 5"):
         sweep.run(design, sweep.FunctionStudy(function=hiding, results=["y"]))
+
+
+# ---- functions that raise ------------------------------------------------------------------------------
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(1, 40), st.data())
+def test_error_of_a_function_names_the_first_row_that_raises_it(size: int, data: st.DataObject) -> None:
+    bad = data.draw(st.sets(st.integers(0, size - 1), min_size=1))
+
+    def picky(x: Any, scale: float) -> dict[str, Any]:
+        if bad & set(x.astype(int).tolist()):
+            raise KeyError("latency")
+        return {"y": scale * x}
+
+    study = sweep.FunctionStudy(function=picky, results=["y"], parameters={"scale": 2.0})
+    with pytest.raises(sweep.SweepError, match=f"KeyError: 'latency' in the row x = {min(bad)};") as caught:
+        sweep.run(sweep.Grid([sweep.Axis(name="x", values=np.arange(size))]), study)
+    assert isinstance(caught.value.__cause__, KeyError)
+
+
+def test_error_of_a_misspelt_axis_names_the_axes() -> None:
+    axis = sweep.Axis(name="latencyy", values=[0.1, 0.2])
+    row: Any = lambda values: replace(C2, control_period=values["latency"])  # noqa: E731  # a function of a row
+    with pytest.raises(
+        sweep.SweepError, match=r"KeyError: 'latency' in the row latencyy = 0\.1; .*axes latencyy"
+    ) as caught:
+        sweep.run(sweep.Grid([axis]), sweep.NavigationStudy(scenario=row))
+    assert isinstance(caught.value.__cause__, KeyError)
+    with pytest.raises(
+        sweep.SweepError, match=r"unexpected keyword argument 'latencyy'.*called with the axes latencyy"
+    ):
+        sweep.run(sweep.Grid([axis]), sweep.FunctionStudy(function=lambda latency: {"y": latency}, results=["y"]))
+    wrong: Any = lambda _values: replace(C2, control_period=-1.0)  # noqa: E731  # a function of a row
+    with pytest.raises(InvalidParameterError, match="control_period must be"):
+        sweep.run(sweep.Grid([axis]), sweep.NavigationStudy(scenario=wrong))
+
+
+# ---- room ----------------------------------------------------------------------------------------------
+
+MANY = [sweep.Axis(name=name, low=0.0, high=1.0, points=10**6) for name in "xz"]
+
+
+def test_rows_that_do_not_fit_are_refused_before_anything_is_taken_or_made(tmp_path: Path) -> None:
+    study = sweep.FunctionStudy(function=lambda x, z: {"y": x + z}, results=["y"])
+    with pytest.raises(
+        InvalidParameterError, match=r"results of about 24 TB: this machine has \S+ GB of memory.*give out="
+    ):
+        sweep.run(sweep.Grid(MANY), study)
+    with pytest.raises(InvalidParameterError, match=r"room for about 24 TB of results, got \S+ \SB free at .*chunks="):
+        sweep.run(sweep.Grid(MANY), study, out=tmp_path / "out")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("store", ["npz", "parquet"])
+def test_only_chunks_that_are_missing_need_room(store: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    study = sweep.FunctionStudy(function=lambda x: {"y": 0.0 * x}, results=["y"])
+    grid = sweep.Grid([sweep.Axis(name="x", low=0.0, high=1.0, points=100_000)])
+    half = sweep.run(grid, study, out=tmp_path / "out", chunk_rows=20_000, chunks="0:4", store=store)
+    assert not half.complete
+    monkeypatch.setattr(room, "free_space", lambda _path: 400_000)
+    if store == "npz":
+        with pytest.raises(InvalidParameterError, match=r"room for about 1\.6 MB of results, got 400 kB free"):
+            sweep.run(grid, study, out=tmp_path / "new", chunk_rows=20_000, store=store)
+    assert sweep.run(grid, study, out=tmp_path / "out").complete
