@@ -12,7 +12,7 @@ import dataclasses
 import importlib
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
     import pandas
     import polars
+
+    from hrsafety.plausibility import ResultWarning
 
 __all__ = ["SHOWN_ROWS", "Column", "Columns", "Table", "each", "plane", "unit_suffix", "with_units", "write_csv"]
 
@@ -173,21 +175,49 @@ class Table:
             If the path is none, its folder does not exist, or the place of the warnings is taken by a file
             of something else.
         """
-        place = _place(path)
-        beside = place.with_name(f"{place.name}.warnings.csv")
-        doubts = [dataclasses.astuple(each) for each in getattr(self, "warnings", ())]
-        ours = not beside.exists() or _first_line(beside) == ",".join(_WARNING)
-        if doubts and not ours:
-            rule = f"leave {beside.name} to the warnings, which is a file of something else"
-            raise InvalidParameterError("path", rule, str(place), "choose another name")
-        # Rows never stand without the warnings of theirs.
-        if doubts:
-            columns = (np.array(words) for words in zip(*doubts, strict=True))
-            write_csv(beside, dict(zip(_WARNING, columns, strict=True)))
-        write_csv(place, self.columns())
-        if not doubts and ours:
-            beside.unlink(missing_ok=True)
-        return place
+        return write_with_warnings(path, [self.columns()], getattr(self, "warnings", ()))
+
+
+def write_with_warnings(
+    path: str | os.PathLike[str], parts: Iterable[Columns], warnings: Iterable[ResultWarning]
+) -> Path:
+    """Write columns as a CSV file and the warnings of the result beside it, see `Table.to_csv`.
+
+    Parameters
+    ----------
+    path : path-like
+        The file; its folder must exist.
+    parts : iterable of dict of str to ndarray
+        The columns in pieces, one below the other, at least one.
+    warnings : iterable of ResultWarning
+        Of the result.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InvalidParameterError
+        If the path is none, its folder does not exist, or the place of the warnings is taken by a file
+        of something else.
+    """
+    place = _place(path)
+    beside = place.with_name(f"{place.name}.warnings.csv")
+    doubts = [dataclasses.astuple(each) for each in warnings]
+    ours = not beside.exists() or _first_line(beside) == ",".join(_WARNING)
+    if doubts and not ours:
+        rule = f"leave {beside.name} to the warnings, which is a file of something else"
+        raise InvalidParameterError("path", rule, str(place), "choose another name")
+    # Rows never stand without the warnings of theirs.
+    if doubts:
+        columns = (np.array(words) for words in zip(*doubts, strict=True))
+        write_csv(beside, dict(zip(_WARNING, columns, strict=True)))
+    _write_parts(place, parts)
+    if not doubts and ours:
+        beside.unlink(missing_ok=True)
+    return place
 
 
 def write_csv(path: str | os.PathLike[str], columns: Columns) -> Path:
@@ -218,22 +248,28 @@ def write_csv(path: str | os.PathLike[str], columns: Columns) -> Path:
     >>> path.read_text().splitlines()
     ['t_s,distance_m', '0.0,', '0.1,0.3']
     """
+    place = _place(path)
+    _write_parts(place, [columns])
+    return place
+
+
+def _write_parts(place: Path, parts: Iterable[Columns]) -> None:
+    """Write columns that come in pieces, the header once."""
     # Runs are tables, and few of them are written.
     import csv
     import io
 
     from hrsafety._atomic import replacing
 
-    place = _place(path)
-    cells = [_cells(values) for values in columns.values()]
     with replacing(place) as file:
         text = io.TextIOWrapper(file, encoding="utf-8", newline="")
         writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(columns)
-        writer.writerows(zip(*cells, strict=True))
+        for index, columns in enumerate(parts):
+            if index == 0:
+                writer.writerow(columns)
+            writer.writerows(zip(*map(_cells, columns.values()), strict=True))
         text.flush()
         text.detach()
-    return place
 
 
 def _first_line(place: Path) -> str:

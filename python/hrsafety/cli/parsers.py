@@ -388,7 +388,7 @@ def _add_sweep(commands: Any) -> None:
     parser.add_argument(
         "--out", metavar="DIR", default="sweep", help="folder to write into, or to resume in [%(default)s]"
     )
-    parser.add_argument("--table", metavar="FILE", help="all rows as one file, .parquet or .npz")
+    parser.add_argument("--table", metavar="FILE", help="all rows as one file, .parquet, .npz or .csv")
     parser.add_argument(
         "--outputs", metavar="A,B,...", help="columns to keep besides the axes [those of the file, or all]"
     )

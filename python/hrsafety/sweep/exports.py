@@ -1,10 +1,13 @@
-"""The result of a sweep in other formats: Polars, xarray, Parquet, NPZ."""
+"""The result of a sweep in other formats: Polars, pandas, xarray, Parquet, NPZ, CSV."""
 
 from __future__ import annotations
 
+import itertools
 import json
+import os
 import zipfile
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -13,16 +16,19 @@ import numpy.typing as npt
 
 from hrsafety._atomic import replacing
 from hrsafety.errors import MissingExtraError
+from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Axis, Column
 from hrsafety.sweep.designs import Design, Grid
 from hrsafety.sweep.lazy_columns import LazyColumn, dask_array
 from hrsafety.sweep.storage import SweepError
+from hrsafety.tables import unit_suffix, write_with_warnings
 
 if TYPE_CHECKING:
+    import pandas
     import polars
     import xarray
 
-__all__ = ["to_npz", "to_parquet", "to_polars", "to_xarray"]
+__all__ = ["to_csv", "to_npz", "to_pandas", "to_parquet", "to_polars", "to_xarray"]
 
 # Array of an NPZ file and metadata of a Parquet file that hold units and provenance.
 NPZ_TEXT = "_hrsafety"
@@ -42,6 +48,8 @@ class Stored(Protocol):
     def columns(self) -> tuple[Column, ...]: ...
     @property
     def provenance(self) -> dict[str, Any]: ...
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]: ...
     @property
     def complete(self) -> bool: ...
     @property
@@ -107,6 +115,43 @@ def to_polars(result: Stored, columns: Sequence[Column]) -> polars.DataFrame:
     frames = [_frame(stored, schema, columns) for stored in result.stored_chunks(columns)]
     frame: polars.DataFrame = pl.concat([pl.DataFrame(schema=schema), *frames], rechunk=True)
     return frame
+
+
+def to_pandas(result: Stored, columns: Sequence[Column]) -> pandas.DataFrame:
+    """Return a data frame, see `SweepResult.to_pandas`."""
+    try:
+        import pandas
+    except ModuleNotFoundError:
+        raise MissingExtraError("this format needs pandas: pip install pandas") from None
+    found = result.to_numpy([column.name for column in columns])
+    words = {column.name: list(column.words) for column in columns if column.words}
+    frame: pandas.DataFrame = pandas.DataFrame(
+        {
+            name: pandas.Categorical(values, categories=words[name]) if name in words else values
+            for name, values in found.items()
+        }
+    )
+    frame.attrs["units"] = {column.name: column.unit for column in columns}
+    if result.warnings:
+        frame.attrs["warnings"] = [asdict(each) for each in result.warnings]
+    return frame
+
+
+def to_csv(result: Stored, columns: Sequence[Column], path: str | os.PathLike[str]) -> Path:
+    """Write a CSV file, see `SweepResult.to_csv`."""
+    titles = {column.name: _title(column) for column in columns}
+    # The header stands there before the first chunk does.
+    header = {titles[column.name]: np.empty(0, dtype=column.stored) for column in columns}
+    parts = (
+        {titles[column.name]: column.decoded(stored[column.name]) for column in columns}
+        for stored in result.stored_chunks(columns)
+    )
+    return write_with_warnings(path, itertools.chain([header], parts), result.warnings)
+
+
+def _title(column: Column) -> str:
+    """Return the name of a column with its unit, as in the files of the command line, not twice."""
+    return column.name if column.name.endswith(f"_{column.unit}") else column.name + unit_suffix(column.unit)
 
 
 def to_parquet(result: Stored, columns: Sequence[Column], path: Path) -> Path:

@@ -23,6 +23,7 @@ from hrsafety.sweep.sampled_designs import LatinHypercube, Saltelli, Sobol
 from hrsafety.sweep.storage import Folder, Memory, stored_columns
 
 if TYPE_CHECKING:
+    import pandas
     import polars
     import xarray
 
@@ -260,6 +261,52 @@ class SweepResult:
             If Polars is not installed.
         """
         return exports.to_polars(self, self.selected(names))
+
+    def to_pandas(self, names: Iterable[str] | None = None) -> pandas.DataFrame:
+        """Return a pandas data frame; words are categories.
+
+        Parameters
+        ----------
+        names : iterable of str or None
+            Columns; all when ``None``.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A row for each row of the result; ``attrs["units"]`` holds the unit of each column, and
+            ``attrs["warnings"]`` the warnings, if there are any, as dictionaries.
+
+        Raises
+        ------
+        MissingExtraError
+            If pandas is not installed.
+        """
+        return exports.to_pandas(self, self.selected(names))
+
+    def to_csv(self, path: str | os.PathLike[str], names: Iterable[str] | None = None) -> Path:
+        """Write a CSV file, chunk by chunk, with units in the header, ``closing_speed_m_per_s``.
+
+        Cells and the second file for warnings are those of `Table.to_csv` (`hrsafety.tables`).
+
+        Parameters
+        ----------
+        path : path-like
+            The file; replaced in one step when it is complete.
+        names : iterable of str or None
+            Columns; all when ``None``.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the path is none, its folder does not exist, or the place of the warnings is taken by a file
+            of something else.
+        """
+        return exports.to_csv(self, self.selected(names), path)
 
     def lazy(self, column: Column, shape: tuple[int, ...]) -> LazyColumn:
         """Return a column that is read where it is used, in the shape of its dimensions."""

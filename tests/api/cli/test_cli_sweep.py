@@ -75,6 +75,14 @@ def test_example_of_gains_writes_an_overview(tmp_path: Path, capsys: pytest.Capt
     assert f"<td>{best}</td>" in (out / "summary.html").read_text(encoding="utf-8")
 
 
+def test_table_is_written_as_csv_whatever_the_case_of_its_ending(tmp_path: Path) -> None:
+    file, table = written(tmp_path / "a.toml", FAST), tmp_path / "rows.CSV"
+    assert main(["sweep", file, "--out", str(tmp_path / "out"), "--table", str(table)]) == 0
+    lines = table.read_text(encoding="utf-8").splitlines()
+    assert len(lines) == 1 + len(sweep.open(tmp_path / "out"))
+    assert lines[0].startswith("foam_stiffness_N_per_m,foam_damping_N_s_per_m,")
+
+
 def test_one_axis_gives_a_line_for_each_scenario(tmp_path: Path) -> None:
     assert main(["sweep", written(tmp_path / "a.toml", CROSSING), "--out", str(tmp_path / "out")]) == 0
     assert images(tmp_path / "out") == 3
@@ -200,7 +208,7 @@ def test_bad_options_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[s
     for options, words in (
         (["--workers", "0"], "--workers must be at least 1"),
         (["--workers", "1", "--scheduler", "tcp://x"], "--workers must not be given with --scheduler"),
-        (["--table", "a.csv"], "--table must end in .parquet or .npz"),
+        (["--table", "a.xlsx"], "--table must end in .parquet or .npz or .csv"),
         (["--threads", "0"], "error: --threads must be an integer from 1 to 1024, got 0"),
     ):
         assert main(["sweep", file, "--out", out, *options]) == 2

@@ -125,4 +125,29 @@ def test_many_values_of_one_case_are_a_density() -> None:
     panel, bar = plotting.sweep_scatter(sweep.run(design, study), "hic15").axes
     (cells,) = panel.collections
     assert cells.get_array().sum() == 3000
-    assert bar.get_ylabel() == "values"
+    assert bar.get_ylabel() == "rows"
+
+
+@pytest.mark.parametrize("value", [0.0, -0.0, 0.3, 1234.5])
+def test_a_constant_quantity_has_one_number_on_its_scale(value: float) -> None:
+    study = sweep.FunctionStudy(function=lambda x, z: {"y": 0.0 * x * z + value}, results=["y"])
+    one = sweep.run(
+        sweep.Grid([sweep.Axis(name="x", low=0.0, high=1.0, points=5), sweep.Axis(name="z", values=[1.0])]), study
+    )
+    for points in (5, 60):
+        axes = [sweep.Axis(name=name, low=0.0, high=1.0, points=points) for name in "xz"]
+        two = sweep.run(sweep.Grid(axes), study)
+        scales = [
+            plotting.sweep_lines(one, "y").axes[0],
+            plotting.sweep_map(two, "y").axes[-1],
+            plotting.sweep_scatter(two, "y").axes[0],
+            plotting.sweep_parallel(two, "y").axes[-1],
+        ]
+        for scale in scales:
+            assert [each.get_text() for each in scale.get_yticklabels()] == [f"{abs(value):g}"]
+
+
+def test_a_quantity_that_hardly_varies_keeps_its_scale() -> None:
+    study = sweep.FunctionStudy(function=lambda x: {"y": 1.0 + 1e-6 * x}, results=["y"])
+    result = sweep.run(sweep.Grid([sweep.Axis(name="x", low=0.0, high=1.0, points=5)]), study)
+    assert len(plotting.sweep_lines(result, "y").axes[0].get_yticks()) > 2

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import sys
 from pathlib import Path
@@ -90,7 +91,7 @@ def test_units_and_provenance_are_there(impacts: sweep.SweepResult, runs: sweep.
 def test_part_of_a_sweep_can_be_read(tmp_path: Path) -> None:
     study = sweep.FunctionStudy(function=sweep_functions.fails_beyond, results=["y"], parameters={"limit": 0.5})
     grid = sweep.Grid([sweep.Axis(name="x", low=0.0, high=1.0, points=11)])
-    with pytest.raises(ArithmeticError):
+    with pytest.raises(sweep.SweepError, match="x beyond"):
         sweep.run(grid, study, out=tmp_path, chunk_rows=2)
     part = sweep.open(tmp_path)
     assert not part.complete
@@ -153,6 +154,40 @@ def test_parquet_is_read_by_another_library(result: sweep.SweepResult, tmp_path:
         np.testing.assert_array_equal(np.asarray(table[name].to_pylist()), values)
 
 
+def test_csv_holds_the_numbers_with_units_in_the_header(result: sweep.SweepResult, tmp_path: Path) -> None:
+    path = result.to_csv(tmp_path / "all.csv")
+    with path.open(newline="", encoding="utf-8") as file:
+        header, *rows = csv.reader(file)
+    names = [column.name for column in result.columns]
+    assert all(title.startswith(name) for title, name in zip(header, names, strict=True))
+    for column in result.columns:
+        values = [row[names.index(column.name)] for row in rows]
+        if column.kind == "number":
+            np.testing.assert_array_equal([float(each or "nan") for each in values], result[column.name])
+        elif column.kind == "word":
+            assert values == result[column.name].tolist()
+    expected = {"closing_speed": "closing_speed_m_per_s", "peak_head_acceleration_g": "peak_head_acceleration_g"}
+    assert {title for name, title in expected.items() if name in names} <= set(header)
+    some = result.to_csv(tmp_path / "some.csv", names[:1]).read_text(encoding="utf-8").splitlines()
+    assert (len(some), some[0]) == (len(result) + 1, header[0])
+
+
+def test_csv_has_the_warnings_beside_it(tmp_path: Path) -> None:
+    speeds = sweep.Grid([sweep.Axis(name="closing_speed", values=[-1.0, 1.0])])
+    study = sweep.ImpactStudy(manipulator=impact.MANIPULATOR_1, foam=impact.FOAM_1, head=impact.Head.minimum())
+    path = sweep.run(speeds, study).to_csv(tmp_path / "a.csv")
+    assert "invalid_numbers" in path.with_name("a.csv.warnings.csv").read_text(encoding="utf-8")
+
+
+def test_pandas_frame_has_the_columns_and_units(result: sweep.SweepResult) -> None:
+    pytest.importorskip("pandas")
+    frame = result.to_pandas()
+    assert list(frame.columns) == [column.name for column in result.columns]
+    assert frame.attrs["units"] == result.units
+    for name, values in result.to_numpy().items():
+        np.testing.assert_array_equal(np.asarray(frame[name]), values)
+
+
 def test_grid_becomes_an_array_of_as_many_dimensions(impacts: sweep.SweepResult) -> None:
     pytest.importorskip("xarray", reason="needs the extra sweep")
     data = impacts.to_xarray()
@@ -208,6 +243,7 @@ def test_bad_folder_is_refused(folder: Any) -> None:
     [
         ("polars", lambda result, _path: result.to_polars()),
         ("polars", lambda result, path: result.to_parquet(path)),
+        ("pandas", lambda result, _path: result.to_pandas()),
         ("xarray", lambda result, _path: result.to_xarray()),
         ("scipy", lambda _result, _path: sweep.Sobol(AXES[:1], 4).rows()),
         ("distributed", lambda _result, _path: sweep.run(sweep.Grid(AXES), IMPACT, client=object())),

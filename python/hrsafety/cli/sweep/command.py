@@ -21,9 +21,9 @@ from hrsafety.sweep.estimates import ADVICE, size_words, time_words
 
 __all__ = ["sweep_file"]
 
-_FORMATS = (".parquet", ".npz")
+_FORMATS = (".parquet", ".npz", ".csv")
 # Arguments of a run that options give, and no key of the file.
-_OPTIONS = ("threads", "store", "chunks")
+_OPTIONS = ("threads", "store", "chunks", "out")
 
 
 def sweep_file(options: argparse.Namespace) -> None:
@@ -68,7 +68,8 @@ def sweep_file(options: argparse.Namespace) -> None:
     if options.table is not None:
         target = Path(options.table)
         target.parent.mkdir(parents=True, exist_ok=True)
-        tables = [result.to_parquet(target) if target.suffix == ".parquet" else result.to_npz(target)]
+        write = {".parquet": result.to_parquet, ".npz": result.to_npz, ".csv": result.to_csv}
+        tables = [write[target.suffix.lower()](target)]
     written = output.write_report(report, place, make(result, described.show), tables)
     output.say_written(written, report, options)
     output.report_warnings(output.warnings_of(result), options.strict)

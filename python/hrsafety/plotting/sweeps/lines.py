@@ -16,12 +16,16 @@ from hrsafety.sweep import Axis, Column, Grid, SweepResult
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import YAxis
+    from matplotlib.colorbar import Colorbar
     from matplotlib.figure import Figure
 
 __all__ = ["sweep_lines", "sweep_map"]
 
 MOST_CASES = 6
 PANELS_BESIDE = 3
+# Values that differ by a smaller share are one number, and the rest is rounding.
+ALIKE = 1e-12
 
 
 @notes.picture
@@ -72,6 +76,7 @@ def sweep_lines(result: SweepResult, column: str, *, title: str | None = None) -
         figure.legend(loc="outside lower center", ncols=MOST_CASES)
     label_axis(axes, axis, "x")
     axes.set_ylabel(drawn.label)
+    label_constant(axes.yaxis, values)
     return figure
 
 
@@ -143,7 +148,7 @@ def sweep_map(result: SweepResult, column: str, *, title: str | None = None) -> 
         if place + columns >= len(panels):
             axes.xaxis.set_tick_params(labelbottom=True)
             axes.set_xlabel(first.label)
-    figure.colorbar(colors, ax=grid, label=drawn.label)
+    label_constant(figure.colorbar(colors, ax=grid, label=drawn.label), shown)
     return figure
 
 
@@ -192,6 +197,14 @@ def ends(axis: Axis) -> tuple[float, float]:
     if axis.values is not None:
         return min(axis.values), max(axis.values)
     return float(axis.low or 0.0), float(axis.high or 0.0)
+
+
+def label_constant(scale: YAxis | Colorbar, values: Array) -> None:
+    """Give a scale of values that are all the same this one number: others would be digits that nothing has."""
+    known = values[np.isfinite(values)]
+    if known.size and np.ptp(known) <= ALIKE * np.abs(known).max():
+        value = float(known.flat[0])
+        scale.set_ticks([value], labels=[f"{value + 0.0:g}"])
 
 
 def label_axis(axes: Axes, axis: Axis, which: str) -> None:

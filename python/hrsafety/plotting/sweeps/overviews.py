@@ -18,6 +18,7 @@ from hrsafety.plotting.sweeps.lines import (
     ends,
     finite,
     label_axis,
+    label_constant,
     panels_beside,
     varying_axes,
 )
@@ -100,6 +101,7 @@ def sweep_scatter(result: SweepResult, column: str, *, most: int = MOST_POINTS, 
         label_axis(axes, axis, "x")
         if place % columns == 0:
             axes.set_ylabel(drawn.label + _part(points[column].size, len(result)))
+            label_constant(axes.yaxis, points[column])
     if len(cases) > 1:
         handles, labels = grid[0, 0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=MOST_CASES, markerscale=18.0 / size)
@@ -112,7 +114,7 @@ def _draw_density(figure: Figure, axes: Axes, along: Array, values: Array, *, lo
     scale: Any = {"xscale": "log"} if log else {}
     look: style.Properties = {"gridsize": (HEXAGONS, HEXAGONS // 2), "bins": "log", "mincnt": 1, "linewidths": 0.1}
     drawn = axes.hexbin(along[known], values[known], cmap="viridis", **scale, **look)
-    figure.colorbar(drawn, ax=axes, label="values")
+    figure.colorbar(drawn, ax=axes, label="rows")
 
 
 @notes.picture
@@ -185,7 +187,8 @@ def sweep_parallel(result: SweepResult, column: str, *, most: int = MOST_LINES, 
     axes.spines[["left", "bottom"]].set_visible(False)
     of_cases = f", mean of {len(result.cases)} cases" if len(result.cases) > 1 else ""
     rows = len(result) // max(len(result.cases), 1)
-    figure.colorbar(lines, ax=axes, label=drawn.label + of_cases + _part(len(values), rows))
+    bar = figure.colorbar(lines, ax=axes, label=drawn.label + of_cases + _part(len(values), rows))
+    label_constant(bar, values)
     return figure
 
 
