@@ -75,7 +75,7 @@ _FIRST = (
 )
 _TELLING = ("outcome", "end_time", "path_length", "min_clearance")
 """Columns that tell runs apart, as `run_warnings.of_repeats` compares."""
-SEEDS_LOOKED_AT, CASES_LOOKED_AT = 4, 16
+SEEDS_LOOKED_AT, CASES_LOOKED_AT = 4, 4
 _LAST = (
     Column(name="entered_active", kind="integer"),
     Column(name="contacts_moving", kind="integer"),
@@ -350,6 +350,8 @@ class NavigationStudy(Study):
         )
         alike = np.full(len(words[few]), len(seeds) > 1)
         for end in (0, -1):
+            if not alike.any():
+                return
             rows = {name: np.full(len(first), values[end]) for name, values in design.looked_at().items()}
             try:
                 found = study.compute(rows | {"seed": first})

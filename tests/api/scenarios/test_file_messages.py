@@ -157,7 +157,7 @@ def error_of(words: list[str], capsys: pytest.CaptureFixture[str]) -> str:
         (["optimize", "a.toml", "--out", ""], "--out must name a file or folder"),
         (["sweep", "a.toml", "--out", ""], "--out must name a file or folder"),
         (["reproduce", "--out", ""], "--out must name a file or folder"),
-        (["sweep", "a.toml", "--table", "a.csv"], "--table must end in .parquet or .npz"),
+        (["sweep", "a.toml", "--table", "a.xlsx"], "--table must end in .parquet or .npz or .csv"),
         (["simulate", "--people", "a.csv", "--animate-run", "1"], "--animate-run must come with --animate FILE"),
     ],
 )

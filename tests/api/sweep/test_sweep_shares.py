@@ -395,6 +395,15 @@ def test_dry_run_prints_the_doubts_of_the_run(tmp_path: Path, capsys: pytest.Cap
     assert told[2] == told[3] == []
 
 
+def test_dry_run_says_that_there_is_no_room(
+    study: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for free, told in ((1_000, True), (10**9, False)):
+        monkeypatch.setattr("hrsafety.cli.sweep.command.free_space", lambda _path, free=free: free)
+        assert main(["sweep", study, "--out", str(tmp_path / "out"), "--dry-run"]) == 0
+        assert ("the sweep would be refused" in capsys.readouterr().out) == told
+
+
 def test_commands_with_shares_fill_a_folder_and_one_without_writes_the_page(
     study: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -18,6 +18,7 @@ from hrsafety.cli.sweep.file import SweepFile, load
 from hrsafety.cli.sweep.pictures import make
 from hrsafety.errors import InvalidParameterError, MissingExtraError
 from hrsafety.sweep.estimates import ADVICE, size_words, time_words
+from hrsafety.sweep.room import free_space
 
 __all__ = ["sweep_file"]
 
@@ -111,6 +112,9 @@ def _expected(options: argparse.Namespace, described: SweepFile, found: sweep.Sw
     yield f"size     about {size_words(found.bytes)} in {found.store} files"
     measured = f"{found.measured_rows * each:,} measured rows"
     yield f"time     about {time_words(found.seconds)} of computing in one process, from {measured}"
+    free = free_space(Path(options.out))
+    if found.bytes > free:
+        yield f"room     {size_words(free)} are free at {options.out}: the sweep would be refused"
     if found.is_long:
         yield f"stop     loses up to {time_words(found.chunk_seconds)}, {ADVICE}"
 
