@@ -255,13 +255,14 @@ class Drive:
 
     @property
     def doubts(self) -> tuple[ResultWarning, ...]:
-        """Numbers that are hardly meant, and a drive that is not given."""
+        """Numbers that are hardly meant, measured stops that no robot makes, and a drive that is not given."""
         if self.model == "none":
             return (ResultWarning("drive_not_given", "drive.model", "nothing is known of the drive"),)
         slow = None if self.deceleration is None or math.isinf(self.deceleration) else self.deceleration
         given = {"reaction_time": self.reaction_time, "deceleration": slow, "stiffness": self.stiffness}
         found = implausible(given, {"deceleration": "robot_deceleration", "stiffness": "drive_stiffness"})
-        return tuple(replace(each, subject=f"drive.{each.subject}") for each in found)
+        stops = () if self.stopping is None else self.stopping.doubts
+        return tuple(replace(each, subject=f"drive.{each.subject}") for each in (*found, *stops))
 
 
 def _torques(given: object) -> Mapping[str, float]:

@@ -12,7 +12,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, number, numbers, own, vector
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.plausibility import ResultWarning, implausible, issue, warn_implausible
+from hrsafety.plausibility import ImplausibleWarning, ResultWarning, implausible, issue, warn_implausible
 from hrsafety.tables import Columns, Table
 
 __all__ = ["SpeedCurve", "StoppingData", "separation_distance", "separation_speed", "speed_over_distance"]
@@ -21,6 +21,10 @@ WALKING_SPEED = 1.6
 """Speed of a person in m/s whose speed is not measured."""
 STANDING = 0.1
 """Below this speed, in m/s, a person stands rather than walks."""
+BRAKED = (0.2, 1.05)
+"""Way of a measured stop as a share of speed times time: half of it with a constant deceleration, all of it without."""
+ROUNDED = 0.005
+"""Measured times in s and distances in m are taken to be rounded to twice as much."""
 
 _QUANTITIES = {
     "distance": "person_distance",
@@ -38,7 +42,8 @@ _QUANTITIES = {
 class StoppingData(Parameters):
     """Measured stops: times and distances over speed, load and extension.
 
-    Values in between are linear; outside the table nothing is known (``outside_table``).
+    Values in between are linear; outside the table nothing is known (``outside_table``). A distance of more than speed
+    times time, or of less than a fifth of it, is doubted (`doubts`) by all that takes these stops.
 
     Parameters
     ----------
@@ -107,6 +112,32 @@ class StoppingData(Parameters):
         place = [number(name, value) for name, value in values.items()]
         return _hrsafety.StoppingCurve(axes, np.ravel(self.time), np.ravel(self.distance), *place)
 
+    @property
+    def doubts(self) -> tuple[ResultWarning, ...]:
+        """Stops that no robot makes: a way beyond speed times time, or hardly any of it, at any load or extension."""
+        time, distance = np.asarray(self.time), np.asarray(self.distance)
+        speed = np.broadcast_to(np.reshape(np.asarray(self.speed), (-1, 1, 1)), time.shape)
+        least, most = (share * speed * time for share in BRAKED)
+        long = distance - most - ROUNDED * (1.0 + speed)
+        short = least - distance - ROUNDED
+        words = (
+            "a robot that brakes covers no more than speed times time: is the time too short, or the distance in "
+            "another unit?",
+            f"hardly {BRAKED[0]:g} of speed times time, where a steady brake takes half of it: is the distance in "
+            "another unit, or the time longer than the stop?",
+        )
+        found = []
+        for beyond, why in zip((long, short), words, strict=True):
+            held = (beyond > 0.0) & (speed > 0.0)
+            if held.any():
+                at = np.unravel_index(int(np.argmax(np.where(held, beyond, -np.inf))), held.shape)
+                message = (
+                    f"the stop from speed {speed[at]:g} m/s has time {time[at]:g} s and distance {distance[at]:g} m "
+                    f"({np.count_nonzero(held)} of {held.size} such stops): {why}"
+                )
+                found.append(ResultWarning("stops_inconsistent", "stopping", message))
+        return tuple(found)
+
 
 def separation_distance(
     robot_speed: object,
@@ -159,7 +190,7 @@ def separation_distance(
     Warns
     -----
     ImplausibleWarning
-        If a number is hardly meant in its unit, such as millimeters or milliseconds.
+        If a number is hardly meant in its unit, such as millimeters or milliseconds, or no robot makes a measured stop.
     HrsafetyWarning
         If intrusion or uncertainty is not given: the answer holds for none.
 
@@ -177,7 +208,7 @@ def separation_distance(
         found = _with_answer("robot_speed", speeds, _hrsafety.separation_distances(speeds, braking, rows))
     else:
         found = _stops(stopping).curve(load, extension).distances(speeds, rows)
-    _warn(taken)
+    _warn(taken, stopping)
     warn_implausible(_doubted("robot_speed", speeds, rows, deceleration, braking), _QUANTITIES)
     return found.reshape(shape) if shape else float(found[0])
 
@@ -229,7 +260,7 @@ def separation_speed(
         found = _with_answer("distance", distances, _hrsafety.separation_speeds(distances, braking, rows))
     else:
         found, _ = _stops(stopping).curve(load, extension).speeds(distances, rows)
-    _warn(taken)
+    _warn(taken, stopping)
     warn_implausible(_doubted("distance", distances, rows, deceleration, braking), _QUANTITIES)
     return found.reshape(shape) if shape else float(found[0])
 
@@ -253,7 +284,8 @@ class SpeedCurve(Table):
     status : str
         ``"permitted"`` where contact has an allowed speed, ``"not_permitted"`` where it has none.
     warnings : tuple of ResultWarning
-        Numbers that are hardly meant in their unit, and what was taken as 0 because it was not given.
+        Numbers that are hardly meant in their unit, measured stops that no robot makes, and what was taken as 0 because
+        it was not given.
     """
 
     distance: Annotated[Array, "m"]
@@ -355,6 +387,7 @@ def speed_over_distance(
         status="not_permitted" if contact_speed is None else "permitted",
         warnings=(
             *taken,
+            *(() if stopping is None else stopping.doubts),
             *implausible(
                 {
                     "distance": given,
@@ -425,10 +458,12 @@ def slow_person(name: str, speed: float, what: str) -> tuple[ResultWarning, ...]
     return (ResultWarning("slow_person", name, words),)
 
 
-def _warn(taken: tuple[ResultWarning, ...]) -> None:
+def _warn(taken: tuple[ResultWarning, ...], stopping: StoppingData | None) -> None:
     """Issue the doubts of a plain number, which carries none, at the caller of the function that returns it."""
     for doubt in taken:
         issue(doubt.message, stacklevel=3)
+    for doubt in () if stopping is None else stopping.doubts:
+        issue(doubt.message, ImplausibleWarning, stacklevel=3)
 
 
 # ---- crossing the boundary ----------------------------------------------------------------------

@@ -342,6 +342,11 @@ def test_measured_stops_take_the_place_of_a_deceleration(judged: Any) -> None:
     assert "the largest one at which a stop was measured" in page
     assert "measured time and distance of a stop" in page
     assert not any("v²/2a" in row["equation"] for row in report["equations"])
+    assert report["speed_over_distance"]["doubts"] == []
+    # Times of another load, shorter than the way takes.
+    report, page = judged(SMALL + STOPS.replace("0.3]", "0.03]").replace("0.5]]", "0.05]]"))
+    assert report["speed_over_distance"]["doubts"] == ["stops_inconsistent"]
+    assert "no more than speed times time" in page
 
 
 @pytest.mark.parametrize(

@@ -169,6 +169,9 @@ def test_statuses() -> None:
     assert [each.code for each in contact.driven_speed(hit, contact.Drive(model="none"), LIMIT).warnings][-1] == (
         "drive_not_given"
     )
+    odd = standards.StoppingData(speed=[0.0, 1.0], time=[0.0, 0.03], distance=[0.0, 0.16])
+    pressed = contact.driven_speed(hit, contact.Drive(reaction_time=0.1, stopping=odd), LIMIT)
+    assert ("stops_inconsistent", "drive.stopping") in [(each.code, each.subject) for each in pressed.warnings]
     left = contact.Drive(model="rigid", **BRAKES, path_left=1e-3)
     assert contact.driven_loads(hit, 2.0, left).force == pytest.approx(75.0)
 

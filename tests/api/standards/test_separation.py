@@ -134,6 +134,52 @@ def test_bad_stops_are_named(fields: dict[str, object], message: str) -> None:
         standards.StoppingData(**(right | fields))
 
 
+def _doubted(**stops: object) -> list[str]:
+    table = standards.StoppingData(**stops)
+    given = {"reaction_time": 0.1, "intrusion": 0.2, "uncertainty": 0.1, "stopping": table}
+    given |= {} if np.ndim(stops.get("load", 0.0)) == 0 else {"load": np.min(stops["load"])}
+    curve = standards.speed_over_distance([1.0], contact_speed=None, max_speed=1.0, **given)
+    assert curve.warnings == table.doubts
+    for call, value in ((standards.separation_distance, float(np.max(table.speed))), (standards.separation_speed, 1.0)):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            call(value, **given)
+        assert [str(each.message) for each in caught] == [each.message for each in table.doubts]
+        assert all(each.category is ImplausibleWarning for each in caught)
+    assert all(each.code == "stops_inconsistent" and not each.safe_side for each in table.doubts)
+    return [each.message for each in table.doubts]
+
+
+def test_stops_that_no_robot_makes_are_told() -> None:
+    (told,) = _doubted(speed=[0.0, 0.5, 1.0, 1.5], time=[0.0, 0.02, 0.03, 0.04], distance=[0.0, 0.05, 0.16, 0.35])
+    for word in ("speed 1.5 m/s", "time 0.04 s", "distance 0.35 m", "3 of 4", "no more than speed times time"):
+        assert word in told
+    (told,) = _doubted(speed=[0.0, 1.0, 2.0], time=[0.0, 0.3, 0.7], distance=[0.0, 0.00016, 0.0006])
+    assert "speed 2 m/s" in told
+    assert "in another unit" in told
+    # A load that is not asked for counts, too; and both kinds at once.
+    loads = {"speed": [0.0, 1.0, 2.0], "load": [0.0, 10.0], "time": [[0.0, 0.0], [0.3, 0.03], [0.7, 0.05]]}
+    assert len(_doubted(**loads, distance=[[0.0, 0.0], [0.16, 0.16], [0.6, 0.6]])) == 1
+    assert len(_doubted(**loads, distance=[[0.0, 0.0], [0.001, 0.16], [0.002, 0.6]])) == 2
+
+
+@settings(max_examples=60)
+@given(
+    most=st.floats(0.1, 8.0),
+    braking=st.floats(0.5, 20.0),
+    reaction=st.floats(0.0, 0.3),
+    shape=st.floats(0.5, 3.0),
+)
+def test_stops_of_robots_are_plausible_as_they_are_rounded(
+    most: float, braking: float, reaction: float, shape: float
+) -> None:
+    speed = np.linspace(0.0, most, 5)
+    # The speed falls as a power of the time that is left, from hard first to hard last, after a reaction at full speed.
+    time = reaction * (speed > 0.0) + speed / braking
+    distance = speed * reaction + speed**2 / braking / (1.0 + shape)
+    assert _doubted(speed=speed, time=np.round(time, 2), distance=np.round(distance, 2)) == []
+
+
 def test_stops_are_pickled_by_value() -> None:
     again = pickle.loads(pickle.dumps(STOPS))
     assert standards.separation_distance(1.3, **(MEASURED | {"stopping": again})) == standards.separation_distance(
