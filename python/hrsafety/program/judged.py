@@ -12,7 +12,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array
 from hrsafety._records import dataclass
 from hrsafety.arms import Arm
-from hrsafety.arms.doubts import doubts_of_base, doubts_of_point, for_rule
+from hrsafety.arms.doubts import doubts_of_base, doubts_of_point, doubts_of_tool, for_rule
 from hrsafety.arms.link_doubts import several
 from hrsafety.arms.masses import mass_by_rule
 from hrsafety.arms.rolling import RollingBase, links_of_base
@@ -27,8 +27,6 @@ __all__ = ["EVEN", "JudgedExposure", "judged", "named_doubts", "path_doubts", "r
 
 DISAGREES = 0.05
 """Share of the fastest recorded speed of the tool center point by which that of the joints may differ."""
-TOOL = 0.05
-"""A point farther than this from the flange, in m, is on a tool."""
 EVEN = 1e-9
 """Share by which a speed may be above its limit by rounding."""
 
@@ -195,7 +193,7 @@ def _about_point(runs: TaskContacts, masses: Array, place: int) -> tuple[ResultW
     moving = masses[np.isfinite(masses)]
     point = np.array(program.points[place].point)
     own = for_rule(arm.warnings, program.robot_mass, moving, arm.iso_mass, arm.mass_source)
-    return (*own, *doubts_of_point(point, arm.reach), *_of_tool(arm, program.points[place].link, point))
+    return (*own, *doubts_of_point(point, arm.reach), *doubts_of_tool(arm, program.points[place].link, point))
 
 
 def _of_base(
@@ -223,31 +221,6 @@ def _of_base(
 def standing(arm: Arm) -> Arm:
     """Return an arm whose base stands still."""
     return replace(arm, locked=tuple(dict.fromkeys((*arm.locked, *arm.base_joints))))
-
-
-def _of_tool(arm: Arm, link: str, point: Array) -> tuple[ResultWarning, ...]:
-    """Return the doubt about a point of an arm without payload that is off its flange: a tool that weighs nothing."""
-    facts = arm._facts
-    names, masses, parents, bodies = (
-        arm.link_names,
-        *(facts[each] for each in ("link_masses", "parents", "segments")),
-    )
-    here = names.index(link)
-    if arm.payload_mass > 0.0 or masses[here] > 0.0:
-        return ()
-    flange = here
-    while (before := parents[flange]) is not None and bodies[before] == bodies[here] and masses[before] == 0.0:
-        flange = before
-    places = ((link, point), (names[flange], np.zeros(3)))
-    ends = [arm.position(link=name, point=place, check_limits=False) for name, place in places]
-    away = float(np.linalg.norm(ends[0] - ends[1]))
-    if away <= TOOL:
-        return ()
-    message = (
-        f"the point on {link} is {1e3 * away:.0f} mm off the flange, where nothing weighs: give the tool and what it "
-        "holds as payload"
-    )
-    return (ResultWarning("tool_without_mass", "payload", message),)
 
 
 def _row(

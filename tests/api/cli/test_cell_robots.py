@@ -19,7 +19,9 @@ from hrsafety.plausibility import unsafe_doubts
 
 MOTORS = {"turn": 1.2, "shoulder": 1.2, "elbow": 1.0, "wrist_1": 0.3, "wrist_2": 0.3, "wrist_3": 0.3}
 POSES = [{"shoulder": 0.4, "elbow": 1.4}]
-TOOL = {"urdf": "arm.urdf", "link": "tool", "direction": [1.0, 0.0, 0.0], "poses": POSES}
+GRIPPER = {"link": "tool", "mass": 2.0}
+ARM = {"urdf": "arm.urdf", "payload": GRIPPER}
+TOOL = ARM | {"link": "tool", "direction": [1.0, 0.0, 0.0], "poses": POSES}
 
 
 @pytest.fixture
@@ -41,6 +43,7 @@ def test_an_ordinary_arm_with_motors_is_not_doubted(read: Any) -> None:
     robot = read(TOOL | {"armature": MOTORS, "type_plate_mass": 31.0})
     assert robot.warnings == ()
     assert (robot.total_mass, robot.moving_mass, robot.quantile_mass) == (29.0, 29.0, None)
+    assert robot.payload_mass == 2.0
     assert read(TOOL | {"armature": 0.4}).directional_mass > read(TOOL).directional_mass
 
 
@@ -56,11 +59,45 @@ def test_missing_motors_are_unsafe_where_they_may_change_the_mass(read: Any, rul
         read(TOOL | {"mass_rule": rule, "robot_mass": rule})
 
 
+FLANGE = '<link name="tool"/>'
+HAND = """
+<link name="hand"><inertial><mass value="0.8"/><inertia ixx="1e-3" iyy="1e-3" izz="1e-3" ixy="0" ixz="0" iyz="0"/>
+</inertial></link><joint name="hand_mount" type="fixed"><parent link="tool"/><child link="hand"/></joint>
+<link name="tcp"/><joint name="tcp_mount" type="fixed"><parent link="hand"/><child link="tcp"/>
+<origin xyz="0 0 0.15"/></joint>"""
+MARK = """
+<link name="mark"/><joint name="mark_mount" type="fixed"><parent link="forearm"/><child link="mark"/>
+<origin xyz="0 0 0.2"/></joint>"""
+
+
+@pytest.mark.parametrize(
+    ("link", "more", "doubted"),
+    [
+        ("tool", "", True),
+        ("tcp", HAND.replace('<mass value="0.8"/>', '<mass value="0"/>'), True),
+        # Links that weigh something, frames beside them, and frames before the end of the arm.
+        ("wrist_block_3", "", False),
+        ("hand", HAND, False),
+        ("tcp", HAND, False),
+        ("tool", HAND, False),
+        ("mark", MARK, False),
+    ],
+)
+@pytest.mark.parametrize("rule", ["larger", "iso", "directional"])
+def test_an_arm_that_carries_no_tool_is_doubted(read: Any, link: str, more: str, doubted: bool, rule: str) -> None:
+    text = EXAMPLE.replace(FLANGE, FLANGE + more)
+    given = {name: each for name, each in TOOL.items() if name not in ("payload", "direction")}
+    given |= {"link": link, "armature": MOTORS, "mass_rule": rule}
+    assert ("tool_without_mass" in codes(read(given, text))) == doubted
+    assert "tool_without_mass" not in codes(read(given | {"payload": GRIPPER}, text))
+
+
 def test_an_arm_without_inertials_is_doubted_or_refused(read: Any) -> None:
     bare = re.sub(r"<inertial>.*?</inertial>", "", EXAMPLE, flags=re.DOTALL)
-    assert "link_without_mass" in codes(read(TOOL | {"armature": MOTORS}, bare))
+    given = {name: each for name, each in TOOL.items() if name != "payload"} | {"armature": MOTORS}
+    assert "link_without_mass" in codes(read(given, bare))
     with pytest.raises(InvalidParameterError, match="urdf must have links with masses for the rule 'iso'"):
-        read(TOOL | {"armature": MOTORS, "mass_rule": "iso"}, bare)
+        read(given | {"mass_rule": "iso"}, bare)
 
 
 @pytest.mark.parametrize(
@@ -86,12 +123,12 @@ def test_poses_in_degrees_are_refused_or_told(read: Any) -> None:
     for text in (endless, limits):
         assert codes(read(TOOL | degrees, text)) == ["implausible"]
         # What is drawn is drawn between limits, and the same pose after a turn.
-        assert codes(read({"urdf": "arm.urdf", "armature": MOTORS, "samples": 50}, text)) == []
+        assert codes(read(ARM | {"armature": MOTORS, "samples": 50}, text)) == []
 
 
 def test_without_poses_the_worst_draw_is_named_as_singular_with_a_quantile_beside(read: Any) -> None:
-    robot = read({"urdf": "arm.urdf", "armature": MOTORS})
-    drawn = arms.workspace(arms.Arm.example(armature=MOTORS), link="tool", samples=2000, seed=0)
+    robot = read(ARM | {"armature": MOTORS})
+    drawn = arms.workspace(arms.Arm.example(armature=MOTORS, payload=GRIPPER), link="tool", samples=2000, seed=0)
     assert robot.near_singular
     assert robot.directional_mass == drawn.mass.max()
     assert np.quantile(drawn.mass, 0.99, method="higher") == robot.quantile_mass < 0.1 * robot.directional_mass

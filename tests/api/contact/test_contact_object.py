@@ -105,7 +105,8 @@ def test_a_support_is_never_ignored(support: dict[str, contact.Support]) -> None
 
 
 def test_doubts_about_the_robot_are_doubts_about_every_result() -> None:
-    robot = contact.ContactRobot.of_arm(arms.Arm.example(), link="tool", poses=[[0.0, 0.4, 1.4, 0.0, 0.0, 0.0]])
+    arm = arms.Arm.example(payload=arms.Payload("tool", 2.0))
+    robot = contact.ContactRobot.of_arm(arm, link="tool", poses=[[0.0, 0.4, 1.4, 0.0, 0.0, 0.0]])
     assert [each.code for each in unsafe_doubts(robot.warnings)] == ["no_motor_inertia"]
     hit = contact.Contact(robot=robot, body=40.0, region=25e3, covering=PAD)
     limits = {"force": 140.0, "pressure": 190e4}

@@ -109,7 +109,7 @@ def test_without_an_area_the_pressure_is_not_checked() -> None:
 
 def test_missing_motors_are_doubted_where_the_directional_mass_counts() -> None:
     moves = [program.Move(kind="joint", to=pose) for pose in (START, START | {"turn": 0.4})]
-    arm = type(example()).example()
+    arm = arms.Arm.example(payload=arms.Payload("tool", 2.0))
     motion = program.ArmMotion.from_moves(arm, moves, velocity=0.02, acceleration=4.0)
     free = segment(motion, "chest", **FREE)
     assert of(motion, free, robot_mass="directional").report(intervals=200).verdict == "not_checked"

@@ -84,7 +84,7 @@ def test_values_beyond_the_limits_of_a_joint_are_refused(tmp_path: Path) -> None
 
 @pytest.mark.parametrize(
     ("place", "payload", "doubted"),
-    [((0.0, 0.0, 0.15), None, True), ((0.0, 0.0, 0.15), 1.0, False), ((0.0, 0.0, 0.03), None, False)],
+    [((0.0, 0.0, 0.15), None, True), ((0.0, 0.0, 0.15), 1.0, False), ((0.0, 0.0, 0.03), None, True)],
 )
 def test_a_tool_that_weighs_nothing_is_doubted(
     place: tuple[float, float, float], payload: float | None, doubted: bool
@@ -98,3 +98,7 @@ def test_a_tool_that_weighs_nothing_is_doubted(
     study = program.Program(motion=motion, points=points, segments=[part]).report(intervals=100)
     assert ("tool_without_mass" in study.fields["doubts"]) == doubted
     assert study.verdict == ("not_checked" if doubted else "within_limits")
+    alone = {"tool_without_mass": "it pushes boxes with its flange, J. Doe"}
+    assert program.Program(motion=motion, points=points, segments=[part], confirmed=alone).report(
+        intervals=100
+    ).verdict == ("within_limits")

@@ -17,7 +17,7 @@ from hrsafety._display import displayed
 from hrsafety._keys import Keys, checked, one_of
 from hrsafety._records import dataclass
 from hrsafety.arms.arm import Arm
-from hrsafety.arms.doubts import doubts_of_base, doubts_of_point, doubts_of_poses, for_rule
+from hrsafety.arms.doubts import doubts_of_base, doubts_of_point, doubts_of_poses, doubts_of_tool, for_rule
 from hrsafety.arms.inputs import poses_of
 from hrsafety.arms.masses import RULES, mass_by_rule
 from hrsafety.arms.payload import Payload
@@ -299,6 +299,7 @@ class ContactRobot:
             *for_rule(arm.warnings, rule, masses[worst], arm.iso_mass, arm.mass_source),
             *(() if more else doubts_of_poses(rows, arm.joint_names, arm.joint_kinds)),
             *doubts_of_point(place["point"], arm.reach),
+            *doubts_of_tool(arm, place["link"], place["point"]),
             *(() if held is None else doubts_of_base(rule, mass, held)),
             *(() if singular else _unlikely(mass)),
         ]
