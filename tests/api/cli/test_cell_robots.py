@@ -138,6 +138,16 @@ def test_without_poses_the_worst_draw_is_named_as_singular_with_a_quantile_besid
     assert not read(TOOL | {"armature": MOTORS}).near_singular
 
 
+def test_a_stated_direction_is_told_beside_the_heaviest_one(read: Any) -> None:
+    free = {name: each for name, each in TOOL.items() if name != "direction"} | {"armature": MOTORS}
+    poses = {"poses": [*POSES, {"shoulder": 0.8, "elbow": 0.9, "wrist_1": 0.5}]}
+    heaviest = read(free | poses)
+    assert heaviest.heaviest_mass is None
+    for direction in ([1.0, 0.0, 0.0], [0.0, 0.0, -3.0]):
+        stated = read(free | poses | {"direction": direction})
+        assert stated.heaviest_mass == heaviest.directional_mass >= stated.directional_mass
+
+
 def test_robots_that_hardly_weigh_anything_are_doubted(read: Any) -> None:
     assert codes(read({"mass": 0.008})) == ["implausible"]
     assert read({"mass": 8.0}).warnings == ()

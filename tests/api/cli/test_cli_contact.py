@@ -309,6 +309,27 @@ def test_a_contact_that_is_not_wholly_checked_gives_no_speed_over_distance(judge
         assert "the robot must stand before it" in page
 
 
+def test_a_class_of_contact_that_is_not_judged_is_named(judged: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    report, page = judged(SMALL)
+    assert report["not_judged"] == []
+    assert "not judged" not in (page + capsys.readouterr().out).lower()
+    head = SMALL.split("[[contacts]]")[0]
+    planned = {"hand_finger": "transient", "chest": "transient", "lower_leg": "quasi_static", "thigh_knee": None}
+    rows = [
+        f'[[contacts]]\nregion = "{region}"\n' + (f'contact = "{kind}"\n' if kind else "")
+        for region, kind in planned.items()
+    ]
+    report, page = judged(head + "".join(rows))
+    assert [(each["region"], each["contact"]) for each in report["not_judged"]] == [
+        ("hand_finger", "quasi_static"),
+        ("chest", "quasi_static"),
+        ("lower_leg", "transient"),
+    ]
+    words = "being clamped: hand_finger, chest; free contact: lower_leg"
+    assert f"not judged     {words}\n" in capsys.readouterr().out
+    assert words.replace("_", " ") in page.split("<h2>")[0]
+
+
 STOPS = """
 [separation]
 max_speed = 1.5

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from hrsafety.cli.cell.pictures import PARTS, Drawing
-from hrsafety.cli.cell.report import at_path, to_thousandths
+from hrsafety.cli.cell.report import at_path, left_out_words, to_thousandths
 from hrsafety.contact.plan import LAYERS
 from hrsafety.pages import DASH, shown
 from hrsafety.standards.verdicts import VERDICT_WORDS
@@ -78,6 +78,7 @@ def html(
         status_words=STATUS_WORDS,
         contact_words=CONTACT_WORDS,
         looks=LOOKS,
+        left_out=left_out_words(values["not_judged"]),
         inputs=list(paths_of(values["inputs"], "inputs")),
         layers=LAYERS,
         annex=annex,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from importlib import resources
 from typing import Any
 
@@ -19,13 +19,14 @@ from hrsafety.pages import versions
 from hrsafety.pages.report import Report, ReportTable, Section
 from hrsafety.standards.verdicts import VERDICT_WORDS
 
-__all__ = ["CONFIRM", "NOT_COVERED", "at_path", "report_of", "sha256_of", "to_thousandths"]
+__all__ = ["CONFIRM", "NOT_COVERED", "at_path", "left_out_words", "report_of", "sha256_of", "to_thousandths"]
 
 FORMAT = 1
 CONFIRM = (
     "Every number here is computed from a model and from limits that were read in public sources. "
     "A measurement on the finished machine must confirm each of them before anybody relies on it."
 )
+LEFT_OUT = {"quasi_static": "being clamped", "transient": "free contact"}
 NOT_COVERED = (
     "Edges, corners and points: a radius below a fifth of the thickness of the covering, or tools that cut or pierce.",
     "Several contacts at once, and contacts that slide, twist or shear.",
@@ -86,14 +87,40 @@ def _facts(path: str, cell: Cell, values: Mapping[str, Any]) -> Iterator[tuple[s
     if robot["iso_mass"] is not None:
         directional = robot["directional_mass"]
         shown = directional if isinstance(directional, str) else f"{directional:.3f} kg"
+        heaviest = robot["heaviest_mass"]
+        if heaviest is not None:
+            most = heaviest if isinstance(heaviest, str) else f"{heaviest:.3f} kg"
+            shown += f" in the stated direction (in the heaviest one {most})"
         yield "masses", f"effective {shown}, ISO/TS 15066 {robot['iso_mass']:.3f} kg"
         pose = ", ".join(f"{each['joint']} {each['value']:.4g}" for each in robot["pose"])
         drawn = " drawn between the limits of the joints; poses in [robot] names those that occur"
         sampled = "samples" in cell.robot.inputs
         yield "worst pose", f"{pose} (rad or m), of {robot['poses']:,}{drawn if sampled else ''}"
     yield "limits", f"{limits['title']}, edition {limits['edition']}"
+    if values["not_judged"]:
+        yield "not judged", left_out_words(values["not_judged"])
     yield "verdict", VERDICT_WORDS[values["verdict"]]
     yield "", CONFIRM
+
+
+def left_out_words(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Return which class of contact is not judged of which regions, in a line.
+
+    Parameters
+    ----------
+    rows : sequence of mapping
+        ``not_judged`` of a study.
+
+    Returns
+    -------
+    str
+        For example ``"being clamped: hand_finger"``.
+    """
+    regions: dict[str, list[str]] = {}
+    for each in rows:
+        area = f" ({each['area_name']})" if each["area_name"] else ""
+        regions.setdefault(each["contact"], []).append(f"{each['region']}{area}")
+    return "; ".join(f"{LEFT_OUT[kind]}: {', '.join(names)}" for kind, names in regions.items())
 
 
 def _contacts(study: ContactStudy) -> ReportTable:

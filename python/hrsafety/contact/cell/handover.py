@@ -7,14 +7,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from hrsafety.contact.annex import Annex, Assumption, Hazard, annex_of
-from hrsafety.contact.cell.cell import Cell
+from hrsafety.contact.cell.cell import Cell, PlannedContact
 from hrsafety.contact.cell.judgement import Judged
 from hrsafety.contact.covering import Covering
 from hrsafety.contact.drive import Drive
 from hrsafety.contact.plan import MeasurementPlan, PlannedMeasurement
 from hrsafety.contact.simulation import ContactImpact
 from hrsafety.plausibility import unsafe_doubts
-from hrsafety.standards.contact_limits import ContactLimit
+from hrsafety.standards.contact_limits import CONTACTS, ContactLimit
 from hrsafety.standards.fields import FieldDistances
 from hrsafety.standards.limit_sets import LimitSet
 from hrsafety.standards.verdicts import strictest
@@ -26,6 +26,7 @@ __all__ = [
     "assumptions_about",
     "distances_fields",
     "hazard_of",
+    "left_out",
     "limit_words",
     "payload_assumed",
     "plan_of",
@@ -67,6 +68,29 @@ def regions_of(judged: Sequence[Judged]) -> list[dict[str, Any]]:
             }
         )
     return found
+
+
+def left_out(contacts: Sequence[PlannedContact]) -> list[dict[str, Any]]:
+    """Return the class of contact in which a planned region is not judged, since no contact of the cell names it.
+
+    Parameters
+    ----------
+    contacts : sequence of PlannedContact
+        Of a cell.
+
+    Returns
+    -------
+    list of dict
+        ``region``, ``area_name`` and ``contact``, by class.
+    """
+    held = {(each.limit.region, each.limit.area, each.limit.contact) for each in contacts}
+    places = dict.fromkeys((each.limit.region, each.limit.area) for each in contacts)
+    return [
+        {"region": region, "area_name": area, "contact": kind}
+        for kind in CONTACTS
+        for region, area in places
+        if (region, area, kind) not in held
+    ]
 
 
 def plan_of(cell: Cell, judged: Sequence[Judged], loads: Sequence[dict[str | None, ContactImpact]]) -> MeasurementPlan:

@@ -108,6 +108,8 @@ class ContactRobot:
         Of drawn poses, 99 % have at most this directional mass, in kg.
     held_mass : float or None
         Of an arm on a base that rolls: the largest directional mass if the base stood still, in kg.
+    heaviest_mass : float or None
+        Of an arm whose direction was given: the largest effective mass in any direction of the poses, in kg.
     push_limit : float or None
         Largest push of given joint torques in the poses, in N.
     near_singular : bool
@@ -136,6 +138,7 @@ class ContactRobot:
     payload_mass: Annotated[float | None, "kg"] = None
     quantile_mass: Annotated[float | None, "kg"] = None
     held_mass: Annotated[float | None, "kg"] = None
+    heaviest_mass: Annotated[float | None, "kg"] = None
     push_limit: Annotated[float | None, "N"] = None
     near_singular: bool = False
     pose: Mapping[str, float] | None = None
@@ -316,6 +319,7 @@ class ContactRobot:
             payload_mass=arm.payload_mass,
             quantile_mass=quantile if more else None,
             held_mass=held,
+            heaviest_mass=None if direction is None else float(_masses(arm, rows, None, place)[0].max()),
             push_limit=_push(arm, rows, joint_torques, directions, place),
             near_singular=singular,
             pose=dict(zip(arm.joint_names, rows[worst].tolist(), strict=True)),

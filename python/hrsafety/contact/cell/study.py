@@ -17,7 +17,7 @@ from hrsafety.contact.cell.cell import Cell, PlannedContact, contact_of
 from hrsafety.contact.cell.chances import chance_doubts, chance_of
 from hrsafety.contact.cell.driven import drive_doubts, driven_of, driven_row
 from hrsafety.contact.cell.file import load_cell
-from hrsafety.contact.cell.handover import annex_of_cell, distances_fields, plan_of, regions_of
+from hrsafety.contact.cell.handover import annex_of_cell, distances_fields, left_out, plan_of, regions_of
 from hrsafety.contact.cell.judgement import (
     FASTEST,
     Judged,
@@ -174,6 +174,7 @@ def study(cell: Cell | str | PathLike[str], *, progress: Callable[[int, int], ob
     fields: dict[str, Any] = {
         "verdict": verdict,
         "regions": regions_of(judged),
+        "not_judged": left_out(cell.contacts),
         "verdicts": verdicts,
         "doubts": _counts(judged),
         "confirmed": dict(cell.confirmed),
