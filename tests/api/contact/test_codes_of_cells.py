@@ -79,6 +79,7 @@ GREEN: dict[str, Any] = {
         "direction": [1.0, 0.0, 0.0],
         "poses": [{"shoulder": 0.4, "elbow": 1.4}],
         "armature": MOTORS,
+        "payload": {"link": "tool", "mass": 0.5},
     },
     "coverings": [
         {
@@ -122,6 +123,7 @@ def judged(folder: Path, given: dict[str, Any], urdf: str = URDF) -> dict[str, A
         ("drive_not_given", {"drive": None}),
         ("drive_not_given", {"drive": {"model": "none"}}),
         ("no_motor_inertia", {"robot.armature": None}),
+        ("tool_without_mass", {"robot.payload": None}),
         ("armature_suspicious", {"robot.armature": 5e-5, "robot.robot_mass": "directional"}),
         ("mass_below_type_plate", {"robot.type_plate_mass": 40.0}),
         ("moving_mass_small", {"robot.type_plate_mass": 80.0}),
@@ -149,14 +151,14 @@ def test_a_code_turns_a_green_cell_and_a_confirmation_turns_it_back(
 def test_sources_of_masses_reach_the_cell(tmp_path: Path) -> None:
     own = judged(tmp_path, GREEN)["all"]["robot"]
     plate = judged(tmp_path, changed(GREEN, {"robot.type_plate_mass": 30.0, "robot.mass_source": "type_plate"}))
-    assert plate["all"]["robot"]["iso_mass"] == 15.0
+    assert plate["all"]["robot"]["iso_mass"] == 15.0 + 0.5
     scaled = judged(tmp_path, changed(GREEN, {"robot.type_plate_mass": 30.0, "robot.mass_source": "scaled"}))
     assert scaled["all"]["robot"]["total_mass"] == pytest.approx(30.0)
     rolling = {"robot.base": "omni", "robot.base_mass": 60.0}
     found = judged(tmp_path, changed(GREEN, rolling))["all"]["robot"]
     assert found["held_mass"] == pytest.approx(own["directional_mass"])
     assert found["directional_mass"] <= found["held_mass"]
-    assert found["iso_mass"] == pytest.approx(0.5 * (own["total_mass"] + 60.0))
+    assert found["iso_mass"] == pytest.approx(0.5 * (own["total_mass"] + 60.0) + 0.5)
     for change, words in (
         ({"robot.mass_source": "scaled"}, "robot.type_plate_mass"),
         ({"robot.base": "omni"}, "robot.base_mass"),
@@ -197,7 +199,7 @@ def test_joint_torques_are_a_push_limit(tmp_path: Path) -> None:
     torques = dict.fromkeys(MOTORS, 2.0)
     row = judged(tmp_path, changed(GREEN, {"drive": {"model": "push_limit", "joint_torques": torques}}))
     push = row["all"]["robot"]["push_limit"]
-    arm = arms.Arm.example(armature=MOTORS)
+    arm = arms.Arm.example(armature=MOTORS, payload=GREEN["robot"]["payload"])
     alone = contact.push_limit_of_torques(
         arm, {"shoulder": 0.4, "elbow": 1.4}, torques, link="tool", direction=(1.0, 0.0, 0.0)
     )
@@ -232,7 +234,7 @@ def test_plan_annex_and_distances_are_handed_over(tmp_path: Path) -> None:
     assert (payload["held_by"], payload["verified"], payload["value"]) == (
         "tool coding, PL d",
         "test 7",
-        "at most 0 kg",
+        "at most 0.5 kg",
     )
     assert fields["distances"]["stop"] == pytest.approx(1.452)
     assert fields["distances"]["contact_speed"] == fields["verdicts"][0]["allowed_speed"]
