@@ -404,9 +404,14 @@ RANGES: dict[str, Range] = {
     "load_force": Range(1.0, 1e5, "N", "touch to far above what breaks a skull", "kN given for N"),
     "load_pressure": Range(1e3, 1e9, "Pa", "touch to hard plastics", "N/cm^2 or N/mm^2 given for Pa"),
     "reaction_time": Range(0.002, 5.0, "s", "one cycle of a fast control to very slow ones", "ms given for s"),
-    "intrusion": Range(0.0, 5.0, "m", "ISO 13855 has at most 1.2 m", "mm or cm given for m"),
-    "position_uncertainty": Range(0.0, 5.0, "m", "exact to coarse radio positioning", "mm or cm given for m"),
-    "robot_deceleration": Range(0.0, 100.0, "m/s^2", "ten times gravity", "mm/s^2 given for m/s^2"),
+    # Both of the next are 0 where there is none, which who asks passes over.
+    "intrusion": Range(0.008, 5.0, "m", "ISO 13855 has 8 mm to 1.2 m", "mm or cm given for m, or turned into m twice"),
+    "position_uncertainty": Range(
+        0.001, 5.0, "m", "the best scanners to coarse radio positioning", "mm or cm given for m, or turned into m twice"
+    ),
+    "robot_deceleration": Range(
+        0.0, 25.0, "m/s^2", "heavy robots to more than twice gravity", "g or mm/s^2 given for m/s^2"
+    ),
     "arm_reach": Range(0.02, 10.0, "m", "a finger to the largest industrial arms", "mm or cm given for m"),
     "arm_moving_mass": Range(0.0, 6000.0, "kg", "nothing to the heaviest industrial arms", "g or t given for kg"),
     "wheel_radius": Range(0.01, 1.0, "m", "casters to wheels of trucks", "mm or cm given for m"),

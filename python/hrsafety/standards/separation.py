@@ -36,6 +36,8 @@ _QUANTITIES = {
     "uncertainty": "position_uncertainty",
     "deceleration": "robot_deceleration",
 }
+_NONE = ("intrusion", "uncertainty")
+"""Distances of which 0 means that there is none."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -392,6 +394,7 @@ def speed_over_distance(
                 {
                     "distance": given,
                     **single,
+                    **{each: single[each] or None for each in _NONE},
                     "contact_speed": contact_speed,
                     "max_speed": most,
                     "deceleration": braked,
@@ -407,6 +410,7 @@ def _doubted(
 ) -> dict[str, object]:
     """Return the numbers of an answer that may be implausible, by name: each once where all rows share it."""
     columns = {name: given, **rows} | ({} if deceleration is None else {"deceleration": braking})
+    columns |= {each: np.where(columns[each] == 0.0, np.nan, columns[each]) for each in _NONE}
     return {key: float(each[0]) if len(each) and (each == each[0]).all() else each for key, each in columns.items()}
 
 

@@ -64,7 +64,10 @@ def test_too_close_is_the_target_speed() -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ({"intrusion": 850.0}, "intrusion is 850 m, outside the plausible 0 to 5 m .*mm or cm given for m"),
+        ({"intrusion": 850.0}, "intrusion is 850 m, outside the plausible 0.008 to 5 m .*mm or cm given for m"),
+        ({"intrusion": 0.00085}, "intrusion is 0.00085 m, .*turned into m twice"),
+        ({"uncertainty": [0.1, 0.0, 0.0005]}, r"uncertainty is 0.0005 m \(element 2, 1 of 3 outside\)"),
+        ({"deceleration": 30.0}, "deceleration is 30 m/s"),
         ({"uncertainty": [0.1, 100.0]}, r"uncertainty is 100 m \(element 1, 1 of 2 outside\)"),
         ({"reaction_time": 100.0}, "reaction_time is 100 s, .*ms given for s"),
         ({"deceleration": 3000.0}, "deceleration is 3000 m/s"),
