@@ -11,10 +11,11 @@ import numpy as np
 
 from hrsafety._arguments import Array, positive, word
 from hrsafety.contact.materials import StressTable
-from hrsafety.errors import Shown
+from hrsafety.errors import FileError, Shown
 from hrsafety.io.cells import TableColumn, read_columns
 from hrsafety.io.headers import cells_of, delimiter_of, first_row, is_number
 from hrsafety.io.reader import Document
+from hrsafety.plausibility import issue
 
 __all__ = ["load_compression_test"]
 
@@ -31,8 +32,13 @@ _UNITS: Mapping[str, Mapping[str, float]] = {
     "strain": {"1": 1.0, "m_m": 1.0, "mm_mm": 1.0, "percent": 0.01, "%": 0.01},
     "way": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6},
     "stress": {"pa": 1.0, "kpa": 1e3, "mpa": 1e6, "n_mm2": 1e6, "n_cm2": 1e4},
-    "force": {"n": 1.0, "kn": 1e3, "mn": 1e-3},
+    "force": {"n": 1.0, "kn": 1e3, "mn": 1e-3, "dan": 10.0},
 }
+_AXES: Mapping[str, tuple[str, str]] = {"strain": ("strain", "way"), "stress": ("stress", "force")}
+"""Quantities of which a table has one for each axis."""
+_WITH_UNIT = re.compile(r"^(?P<name>.*?)\s*(?:\[(?P<a>.*)\]|\((?P<b>.*)\)|/(?P<c>.*)|\s+in\s+(?P<d>.*))$")
+HEADER_WITHIN = 30
+"""Lines among which a header is looked for: presses write titles above it."""
 POINTS = 128
 """Points of a material at most: means of the rows between even strains."""
 UNLOADED = 0.02
@@ -67,7 +73,7 @@ def load_compression_test(
     path : path-like
         A text table with a header, whose names carry their unit: ``strain_%`` (``strain_1`` for shares) or
         ``displacement_mm``, and ``stress_kPa`` or ``force_N``; units may stand in brackets or in a row of their own.
-        Other columns are left out.
+        Other columns are left out, and so are lines of titles above the header; a warning says which line was taken.
     thickness, area : float or None
         Of the specimen before the test, in m and m^2; for columns of displacement and force.
     loading : {"first", "last"} or None
@@ -103,11 +109,10 @@ def load_compression_test(
     document = Document(path)
     columns, skip, delimiter, titles = _columns(document)
     chosen = []
-    for name, other, size, given in (("strain", "way", "thickness", thickness), ("stress", "force", "area", area)):
+    for (name, other), size, given in zip(_AXES.values(), ("thickness", "area"), (thickness, area), strict=True):
         column = columns.get(name) or columns.get(other)
         if column is None:
-            rule = f"have a column with its unit that is called {', '.join((*_WORDS[name], *_WORDS[other]))}"
-            raise document.error("columns_needed", rule, Shown(", ".join(titles)[:200]))
+            raise _without(document, titles, name, other)
         divisor = 1.0
         if name not in columns:
             if given is None:
@@ -121,6 +126,9 @@ def load_compression_test(
     table = table[np.isfinite(table).all(axis=1)] * [each.scale for each in chosen]
     if len(table) < 2:
         raise document.error("no_rows", "hold at least two rows of numbers", len(table))
+    if (line := _header(document)) != first_row(document)[0]:
+        told = f"{document.name}: line {line + 1} is taken as the header, and the lines above it are left out"
+        issue(told, stacklevel=3)
     # Presses count down or up, and pull is the positive direction of many.
     strain, stress = (each if abs(each.max()) >= abs(each.min()) else -each for each in table.T)
     return _material(document, *_loading(document, strain, stress, loading))
@@ -184,16 +192,11 @@ def _material(document: Document, strain: Array, stress: Array) -> StressTable:
 
 def _columns(document: Document) -> tuple[dict[str, _Column], int, str, list[str]]:
     """Return the columns that are known, the lines before the rows, the delimiter, and the titles of all columns."""
-    number, header = first_row(document)
-    delimiter = delimiter_of(header)
-    titles = cells_of(header, delimiter)
+    number = _header(document)
+    header = document.first_lines[number] if number >= 0 else ""
+    titles, skip, delimiter = _titles(document, number)
     if number < 0 or is_number(titles[0]):
         raise document.error("columns_needed", "have a header, such as displacement_mm,force_N", Shown(header[:80]))
-    skip = number + 1
-    below = document.first_lines[skip] if skip < len(document.first_lines) else ""
-    units = cells_of(below, delimiter)
-    if len(units) == len(titles) and not any(is_number(each) for each in units):
-        titles, skip = [f"{title} {unit}" for title, unit in zip(titles, units, strict=True)], skip + 1
     found: dict[str, _Column] = {}
     for place, title in enumerate(titles):
         quantity, scale = _meaning(title)
@@ -207,6 +210,61 @@ def _columns(document: Document) -> tuple[dict[str, _Column], int, str, list[str
             raise document.error("ambiguous_columns", f"have one column of {quantity}", shown, line=number + 1)
         found[quantity] = _Column(place, title, scale)
     return found, skip, delimiter, titles
+
+
+def _titles(document: Document, number: int) -> tuple[list[str], int, str]:
+    """Return the titles of a line with the units of a row below it, the lines up to the rows, and the delimiter."""
+    header = document.first_lines[number] if number >= 0 else ""
+    delimiter = delimiter_of(header)
+    titles, skip = cells_of(header, delimiter), number + 1
+    units = cells_of(document.first_lines[skip] if skip < len(document.first_lines) else "", delimiter)
+    if len(units) != len(titles) or any(is_number(each) for each in units):
+        return titles, skip, delimiter
+    return (
+        [f"{title} [{unit}]" if unit else title for title, unit in zip(titles, units, strict=True)],
+        skip + 1,
+        delimiter,
+    )
+
+
+def _header(document: Document) -> int:
+    """Return the line of the header, from 0: the first one that names both axes, with units before without."""
+    first, _ = first_row(document)
+    named = []
+    for number, line in enumerate(document.first_lines[:HEADER_WITHIN]):
+        titles = cells_of(line, delimiter_of(line))
+        if len(titles) > 1 and all(is_number(each) for each in titles):
+            break
+        if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        told = [_meaning(each) for each in _titles(document, number)[0]]
+        if all({quantity for quantity, scale in told if scale} & set(axis) for axis in _AXES.values()):
+            return number
+        known = {_meaning(each)[0] or _unknown(each)[0] for each in titles}
+        if all(known & set(axis) for axis in _AXES.values()):
+            named.append(number)
+    return named[0] if named else first
+
+
+def _without(document: Document, titles: list[str], name: str, other: str) -> FileError:
+    """Return the error about an axis without a column: its unit is not known, or nothing has its name."""
+    for title in titles:
+        quantity, unit = _unknown(title)
+        if quantity in (name, other):
+            rule = f"have {title!r} in a unit that is known: {', '.join(_UNITS[quantity])}"
+            return document.error("unit_unknown", rule, unit, line=_header(document) + 1)
+    rule = f"have a column with its unit that is called {', '.join((*_WORDS[name], *_WORDS[other]))}"
+    remedy = "if this line is a title and the header stands below it, delete the lines above the header"
+    return document.error("columns_needed", rule, Shown(", ".join(titles)[:200]), remedy, line=_header(document) + 1)
+
+
+def _unknown(title: str) -> tuple[str, str]:
+    """Return the quantity of a column whose unit is not known, and that unit; nothing of any other."""
+    found = _WITH_UNIT.match(title)
+    quantity, _ = _meaning(found["name"]) if found else ("", None)
+    if found is None or not quantity or _meaning(title)[0]:
+        return "", ""
+    return quantity, next(part for part in found.groups()[1:] if part is not None).strip()
 
 
 def _meaning(title: str) -> tuple[str, float | None]:

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from hrsafety import contact, standards
 from hrsafety.errors import HrsafetyError
+from hrsafety.plausibility import HrsafetyWarning
 
 THICKNESS, AREA = 0.025, 0.01
 SIZES = {"thickness": THICKNESS, "area": AREA}
@@ -140,6 +141,15 @@ def test_noise_is_averaged(tmp_path_factory: pytest.TempPathFactory, seed: int, 
         ("strain_1,stress_Pa", (STRAIN, 1e4 * STRAIN * (0.8 - STRAIN)), {}, "does not fall"),
         ("strain_1,stress_Pa", (STRAIN[:1], STRAIN[:1]), {}, "at least two rows"),
         ("strain_1,strain_%,stress_Pa", (STRAIN, STRAIN, STRAIN), {}, "one column of strain"),
+        (
+            "strain_1,Kraft [lbf]",
+            (STRAIN, STRAIN),
+            {"area": AREA},
+            "'Kraft .lbf.' in a unit that is known: n, kn, mn, dan",
+        ),
+        ("Weg,Kraft\nfurlong,N", (STRAIN, STRAIN), SIZES, "line 1 must have .* known: m, cm, mm, um, got 'furlong'"),
+        ("Foam A\nstrain,stress", (STRAIN, STRAIN), {}, "line 2 must name the unit of each column, got 'strain'"),
+        ("Foam A\nx,y", (STRAIN, STRAIN), {}, "delete the lines above the header"),
     ],
 )
 def test_what_is_no_test_is_refused(
@@ -147,6 +157,34 @@ def test_what_is_no_test_is_refused(
 ) -> None:
     with pytest.raises(HrsafetyError, match=words):
         contact.load_compression_test(written(tmp_path, header, *columns), **sizes)
+
+
+TITLES = {
+    "one line": "Foam A",
+    "cells": "Test;Foam A\nOperator;J. Doe\nThickness;25;mm\n",
+    "words of both axes": "Kraft Weg Diagramm\n\nForce, displacement",
+    "a comment": "# a press\nFoam A",
+}
+
+
+@pytest.mark.parametrize("titles", TITLES)
+@pytest.mark.parametrize("form", FORMS)
+def test_titles_above_the_header_are_left_out_and_told(tmp_path: Path, form: str, titles: str) -> None:
+    header, of_strain, of_stress, sizes = FORMS[form]
+    columns = (of_strain * STRAIN, of_stress * stress_of(STRAIN))
+    plain = contact.load_compression_test(written(tmp_path, header, *columns), **sizes)
+    line = TITLES[titles].count("\n") + 2
+    with pytest.warns(HrsafetyWarning, match=f"press.csv: line {line} is taken as the header") as caught:
+        found = contact.load_compression_test(written(tmp_path, f"{TITLES[titles]}\n{header}", *columns), **sizes)
+    assert found == plain
+    assert caught[0].filename == __file__
+
+
+def test_decanewtons_are_ten_newtons(tmp_path: Path) -> None:
+    columns = (1e3 * THICKNESS * STRAIN, AREA * stress_of(STRAIN))
+    newtons = contact.load_compression_test(written(tmp_path, "Weg [mm];Kraft [N]", *columns, delimiter=";"), **SIZES)
+    tens = written(tmp_path, "Weg [mm];Kraft [daN]", columns[0], 0.1 * columns[1], delimiter=";")
+    np.testing.assert_allclose(contact.load_compression_test(tens, **SIZES).stress, newtons.stress, rtol=1e-6)
 
 
 def test_a_cell_and_a_catalog_take_a_file(tmp_path: Path) -> None:
