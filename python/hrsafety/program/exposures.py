@@ -15,6 +15,7 @@ from hrsafety._records import dataclass
 from hrsafety.arms import Arm
 from hrsafety.contact import Contact, Covering, Drive, driven_speed, driven_speeds
 from hrsafety.contact.bodies import part_of
+from hrsafety.contact.cell.judgement import REGION_UNKNOWN
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.plausibility import ResultWarning
 from hrsafety.standards.contact_limits import ContactLimit
@@ -39,9 +40,6 @@ NO_DRIVE = ResultWarning(
     "and braked presses harder; give [drive]",
 )
 NOT_PERMITTED = ResultWarning("not_permitted", "limits", "the limit set does not permit this contact")
-REGION_UNKNOWN = ResultWarning(
-    "region_unknown", "limits", "the limit set has no spring constant or no mass of the region"
-)
 UNFINISHED = ResultWarning("unfinished", "covering", "a simulation of a contact did not end: no speed is allowed there")
 
 

@@ -181,7 +181,11 @@ def _toml(text: str) -> tuple[dict[str, str], Rows]:
             raise InvalidParameterError(key, f"be text of at most {LONGEST_WORD} characters", value)
     tables = data.get("limits")
     if not isinstance(tables, list):
-        raise InvalidParameterError("limits", "be tables [[limits]]", Shown("none") if tables is None else tables)
+        remedy = f"below each [[limits]] stand {', '.join(_NEEDED)} and loads"
+        if "base" in header:
+            remedy += f"; those that differ from the base, or take {header['base']!r} itself in place of this file"
+        rule = "be tables [[limits]], one for each limit"
+        raise InvalidParameterError("limits", rule, Shown("none") if tables is None else tables, remedy)
     rows: Rows = []
     for index, table in enumerate(tables):
         if not isinstance(table, dict):

@@ -472,7 +472,7 @@ def test_spreads_are_around_the_number_of_each_region(judged: Any) -> None:
     assert report["probability"][3]["reason"] == "not permitted"
 
 
-def test_materials_of_a_catalog_and_limits_of_a_file(judged: Any) -> None:
+def test_materials_of_a_catalog_and_limits_of_a_file(judged: Any, capsys: pytest.CaptureFixture[str]) -> None:
     Path("foams.toml").write_text(
         '[[materials]]\nname = "grey"\nsource = "press, sheet 4"\n'
         'law = "gibson_ashby"\nE = 3e5\nplateau = 15e3\ne_D = 0.9\n'
@@ -483,6 +483,9 @@ def test_materials_of_a_catalog_and_limits_of_a_file(judged: Any) -> None:
     report, page = judged(cell)
     assert report["verdict"] == "not_checked"
     assert "spring constant" in report["verdicts"][0]["reasons"][0]
+    told = capsys.readouterr().err
+    assert "no spring constant or no mass of the region" in told
+    assert 'base = "iso_ts_15066_2016"' in told
     assert set(report["audit"]["files_sha256"]) == {"catalog", "limits"}
     assert "press, sheet 4" in page
 

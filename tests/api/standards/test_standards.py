@@ -299,6 +299,17 @@ def over_base(folder: Path, *rows: str, head: str = "") -> standards.LimitSet:
     return standards.limits(path)
 
 
+def test_a_base_without_rows_says_what_is_needed(tmp_path: Path) -> None:
+    words = (
+        r"own.toml: limits must be tables \[\[limits\]\], .*region, contact, source.*take 'iso_ts_15066_2016' itself"
+    )
+    with pytest.raises(InvalidParameterError, match=words):
+        over_base(tmp_path)
+    (tmp_path / "own.toml").write_text('title = "mine"\n', encoding="utf-8")
+    with pytest.raises(InvalidParameterError, match=r"region, contact, source and loads$"):
+        standards.limits(tmp_path / "own.toml")
+
+
 def test_rows_over_a_base_change_what_they_say(tmp_path: Path) -> None:
     row = 'region = "hand_finger"\ncontact = "transient"\nforce_N = 200.0\nsource = "own tests"'
     found = over_base(tmp_path, row)

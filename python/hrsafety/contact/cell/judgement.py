@@ -10,15 +10,19 @@ from hrsafety.contact.cell.cell import Cell, PlannedContact, contact_of
 from hrsafety.contact.covering import covering_of
 from hrsafety.contact.speed import AllowedSpeed
 from hrsafety.plausibility import ResultWarning, unsafe_doubts
+from hrsafety.standards.sets import SETS
 from hrsafety.standards.verdicts import speed_verdict
 
-__all__ = ["FASTEST", "Judged", "decided", "governing", "judged_of", "known", "reasons_of"]
+__all__ = ["FASTEST", "REGION_UNKNOWN", "Judged", "decided", "governing", "judged_of", "known", "reasons_of"]
 
 FASTEST = 20.0
 """Up to this speed, in m/s, contacts are examined."""
 NOT_PERMITTED = ResultWarning("not_permitted", "limits", "the limit set does not permit this contact")
 REGION_UNKNOWN = ResultWarning(
-    "region_unknown", "limits", "the limit set has no spring constant or no mass of the region"
+    "region_unknown",
+    "limits",
+    "the limit set has no spring constant or no mass of the region, without which no speed is known: give "
+    f'spring_constant_N_per_mm and effective_mass_kg, or base = "{SETS[0]}" at the top of a set in TOML',
 )
 
 

@@ -510,7 +510,7 @@ def _warnings(
         limit = each.planned.limit
         careful = () if each.chosen is None else (doubt for doubt in each.chosen.warnings if doubt.safe_side)
         for found in (*each.doubts, *careful):
-            if found not in cell.robot.warnings and found.code not in {"not_permitted", "region_unknown"}:
+            if found not in cell.robot.warnings and found.code != "not_permitted":
                 places.setdefault(found, []).append(f"{limit.region}, {limit.contact}")
     for region, by_label in impacts.items():
         for label, impact in by_label.items():
