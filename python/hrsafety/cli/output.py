@@ -6,6 +6,7 @@ import argparse
 import csv
 import importlib.util
 import io
+import json
 import math
 import os
 import sys
@@ -51,6 +52,7 @@ __all__ = [
     "planned_animation",
     "planned_folder",
     "player",
+    "report_folder",
     "report_warnings",
     "require_matplotlib",
     "require_page",
@@ -189,6 +191,37 @@ def planned_folder(path: str) -> Path:
         raise InvalidParameterError("--out", "be a folder or not exist", path, "this is a file")
     _check_parents("--out", place)
     return place
+
+
+def report_folder(given: str | None, default: str, command: str) -> str:
+    """Return the folder of a report that is handed over: without ``--out`` never that of another file.
+
+    Parameters
+    ----------
+    given : str or None
+        Value of ``--out``.
+    default : str
+        Folder without it.
+    command : str
+        How the report is made, as ``audit.command`` of its JSON has it.
+    """
+    held = Path(default) / "report.json"
+    if given is not None or not held.exists():
+        return default if given is None else given
+    before = _command_of(held)
+    if before != command:
+        rule = f"be given where {default} holds another report"
+        remedy = f"--out DIR writes beside it, --out {default} over it"
+        raise InvalidParameterError("--out", rule, Shown(f"that of {before or 'another program'}"), remedy)
+    return default
+
+
+def _command_of(path: Path) -> str | None:
+    """Return how a report was made, ``None`` of a file that is none."""
+    try:
+        return str(json.loads(path.read_text(encoding="utf-8"))["audit"]["command"])
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return None
 
 
 def folder(path: str) -> Path:

@@ -457,7 +457,7 @@ def _add_contact(commands: Any) -> None:
     )
     parser.add_argument("cell", nargs="?", default="cell.toml", metavar="CELL.toml", help="cell file [%(default)s]")
     parser.add_argument("--init", action="store_true", help="write a commented cell file to start from")
-    parser.add_argument("--out", metavar="DIR", default="report", help="folder to write into [%(default)s]")
+    parser.add_argument("--out", metavar="DIR", help="folder to write into [report]")
     _add_pdf(parser)
     parser.add_argument("--date", metavar="YYYY-MM-DD", help="date that the page prints [SOURCE_DATE_EPOCH, else none]")
     _add_shared(parser)
@@ -473,7 +473,7 @@ def _add_program(commands: Any) -> None:
     parser.add_argument(
         "file", nargs="?", default="robot_program.toml", metavar="FILE.toml", help="program [%(default)s]"
     )
-    parser.add_argument("--out", metavar="DIR", default="program", help="folder to write into [%(default)s]")
+    parser.add_argument("--out", metavar="DIR", help="folder to write into [program]")
     _add_pdf(parser)
     parser.add_argument("--date", metavar="YYYY-MM-DD", help="date that the page prints [SOURCE_DATE_EPOCH, else none]")
     _add_shared(parser)

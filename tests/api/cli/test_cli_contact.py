@@ -497,6 +497,34 @@ def test_names_cannot_break_the_page(judged: Any) -> None:
     assert "<b>" not in page
 
 
+def test_a_report_is_not_written_over_that_of_another_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    slow = SMALL.split("[[contacts]]")[0] + '[[contacts]]\nregion = "chest"\ncontact = "transient"\n'
+    for name in ("one.toml", "two.toml"):
+        Path(name).write_text(slow, encoding="utf-8")
+    place = Path("report/report.json")
+    code = main(["contact", "one.toml"])
+    assert code != 2
+    # The same file again, changed or not.
+    Path("one.toml").write_text(slow.replace("0.25", "0.2"), encoding="utf-8")
+    assert main(["contact", "one.toml"]) == code
+    before = place.read_bytes()
+    capsys.readouterr()
+    assert main(["contact", "two.toml"]) == 2
+    told = capsys.readouterr().err
+    assert "--out must be given where report holds another report, got that of hrsafety contact one.toml" in told
+    assert "--out DIR" in told
+    assert place.read_bytes() == before
+    assert main(["contact", "two.toml", "--out", "other"]) == main(["contact", "two.toml", "--out", "report"]) == code
+    assert json.loads(place.read_bytes())["audit"]["command"] == "hrsafety contact two.toml"
+    for text in ("{}", "no JSON", "[1]"):
+        place.write_text(text, encoding="utf-8")
+        assert main(["contact", "two.toml"]) == 2
+        assert place.read_text(encoding="utf-8") == text
+
+
 def test_a_file_to_start_from(judged: Any, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["contact", "--init", "mine.toml"]) == 0
     report, _ = judged(Path("mine.toml"))

@@ -34,6 +34,8 @@ def report_cell(options: argparse.Namespace) -> None:
         remedy = "hrsafety contact --init writes one to start from"
         raise InvalidParameterError("CELL.toml", "name a file", options.cell, remedy)
     date = date_of(options.date)
+    command = f"hrsafety contact {Path(options.cell).name}"
+    options.out = output.report_folder(options.out, "report", command)
     output.planned_folder(options.out)
     output.require_page("contact")
     output.check_json(options)
@@ -42,7 +44,6 @@ def report_cell(options: argparse.Namespace) -> None:
         cell = contact.load_cell(options.cell)
         told = None if shown is None else lambda done, total: shown("map of allowed speeds", done, total, None)
         study = contact.study(cell, progress=told)
-    command = f"hrsafety contact {Path(options.cell).name}"
     report = cell_report.report_of(options.cell, cell, study, command=command, date=date)
     print(terminal.told(report))
     held = [each["drive"]["holds_for"] for each in study.verdicts if each["drive"] is not None]

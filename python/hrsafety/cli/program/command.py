@@ -30,10 +30,11 @@ def report_program(options: argparse.Namespace) -> None:
         remedy = "hrsafety init program writes one to start from"
         raise InvalidParameterError("FILE.toml", "name a file", options.file, remedy)
     date = date_of(options.date)
+    command = f"hrsafety program {Path(options.file).name}"
+    options.out = output.report_folder(options.out, "program", command)
     output.check_targets(options)
     with output.located(options.file):
         study = program.load_program(options.file).report()
-    command = f"hrsafety program {Path(options.file).name}"
     if isinstance(study, program.DrawnStudy):
         report = program_report.report_of_draws(options.file, study, command=command, date=date)
         page, tables = report.page(), {}
