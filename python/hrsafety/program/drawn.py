@@ -78,7 +78,8 @@ class DrawnProgram(ContactTask):
     Examples
     --------
     >>> from hrsafety import arms, program
-    >>> arm = arms.Arm.example(armature=[1.2, 1.2, 1.0, 0.3, 0.3, 0.3])
+    >>> gripper = arms.Payload("tool", 1.0)
+    >>> arm = arms.Arm.example(armature=[1.2, 1.2, 1.0, 0.3, 0.3, 0.3], payload=gripper)
     >>> task = program.DrawnProgram(
     ...     motion=program.DrawnMotions(arm=arm, velocity=2.0, draws=2000),
     ...     points=[program.ContactPoint(name="gripper", link="tool", area=1e-4)],

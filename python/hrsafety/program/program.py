@@ -61,7 +61,8 @@ class Program(ProgramTask):
     Examples
     --------
     >>> from hrsafety import arms, program
-    >>> arm = arms.Arm.example(armature=[1.2, 1.2, 1.0, 0.3, 0.3, 0.3])
+    >>> gripper = arms.Payload("tool", 1.0)
+    >>> arm = arms.Arm.example(armature=[1.2, 1.2, 1.0, 0.3, 0.3, 0.3], payload=gripper)
     >>> motion = program.ArmMotion.from_waypoints(arm, {"turn": [0.0, 0.5, 1.0], "elbow": [1.4] * 3}, acceleration=4.0)
     >>> task = program.Program(
     ...     motion=motion,

@@ -273,9 +273,10 @@ class ContactRobot:
         Examples
         --------
         >>> from hrsafety import arms, contact
-        >>> robot = contact.ContactRobot.of_arm(arms.Arm.example(), link="tool", poses=[[0.0, 0.4, 1.4, 0.0, 0.0, 0.0]])
+        >>> arm = arms.Arm.example(payload=arms.Payload("tool", 2.0))
+        >>> robot = contact.ContactRobot.of_arm(arm, link="tool", poses=[[0.0, 0.4, 1.4, 0.0, 0.0, 0.0]])
         >>> round(robot.mass, 3), robot.rule
-        (14.5, 'larger')
+        (16.5, 'larger')
         """
         instance("arm", arm, Arm)
         if not arm.moved_links:
