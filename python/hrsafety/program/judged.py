@@ -12,10 +12,11 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array
 from hrsafety._records import dataclass
 from hrsafety.arms import Arm
-from hrsafety.arms.doubts import doubts_of_base, doubts_of_point, doubts_of_tool, for_rule
+from hrsafety.arms.doubts import doubts_of_base, doubts_of_point, for_rule
 from hrsafety.arms.link_doubts import several
 from hrsafety.arms.masses import mass_by_rule
 from hrsafety.arms.rolling import RollingBase, links_of_base
+from hrsafety.arms.tool_doubts import doubts_of_tool
 from hrsafety.plausibility import ResultWarning, unsafe_doubts
 from hrsafety.program.contacts import BLOCK, MASSES, TaskContacts, Waypoints
 from hrsafety.program.exposures import NOT_PERMITTED, Exposure

@@ -17,11 +17,12 @@ from hrsafety._display import displayed
 from hrsafety._keys import Keys, checked, one_of
 from hrsafety._records import dataclass
 from hrsafety.arms.arm import Arm
-from hrsafety.arms.doubts import doubts_of_base, doubts_of_point, doubts_of_poses, doubts_of_tool, for_rule
+from hrsafety.arms.doubts import doubts_of_base, doubts_of_point, doubts_of_poses, for_rule
 from hrsafety.arms.inputs import poses_of
 from hrsafety.arms.masses import RULES, mass_by_rule
 from hrsafety.arms.payload import Payload
 from hrsafety.arms.rolling import BASE_JOINTS, RollingBase
+from hrsafety.arms.tool_doubts import doubts_of_tool
 from hrsafety.arms.workspaces import workspace
 from hrsafety.contact.base import Base, DifferentialBase, HolonomicBase
 from hrsafety.contact.drive import push_limit_of_torques
