@@ -18,6 +18,7 @@ pytest.importorskip("jinja2")
 from api import contact_calls
 from hrsafety import contact, standards
 from hrsafety.cli import exit_codes, main
+from hrsafety.cli.cell import pictures
 from hrsafety.contact import load_cell
 from hrsafety.contact.cell.study import verdicts_of
 from hrsafety.errors import InvalidParameterError
@@ -57,8 +58,10 @@ Judged = Callable[..., tuple[int, dict[str, Any], str]]
 
 @pytest.fixture
 def judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Judged:
-    """Return a function that makes a report and returns exit code, JSON and page."""
+    """Return a function that makes a report, without pictures, and returns exit code, JSON and page."""
     monkeypatch.chdir(tmp_path)
+    # They take three quarters of the time, and nothing here looks at them.
+    monkeypatch.setattr(pictures, "drawings", lambda *_: [])
 
     def made(cell: str, *options: str) -> tuple[int, dict[str, Any], str]:
         Path("cell.toml").write_text(cell, encoding="utf-8")
