@@ -25,6 +25,9 @@ OPEN = {"dict": "dict[str, Any]", "tuple": "tuple[Any, ...]", "Incomplete": "NDA
 def built(folder: Path) -> str:
     """Return the stub as `maturin` writes it."""
     command = ["maturin", "generate-stubs", "--profile", "release", "--locked", "--features", "stubs"]
+    # The binding itself is compiled once more, for its names alone; the crates below it are those of the wheel.
+    quick = "profile.release.package.hrsafety_py"
+    command += ["--config", f"{quick}.opt-level=0", "--config", f"{quick}.codegen-units=16"]
     # A stripped module does not tell.
     subprocess.run([*command, "--out", str(folder), "--", "-Cstrip=none"], cwd=ROOT, check=True)
     (written,) = folder.rglob("*.pyi")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Iterable
+from collections.abc import Sized
 from pathlib import Path
 
 from hrsafety.errors import InvalidParameterError, Shown
@@ -31,21 +31,21 @@ def check_memory(plan: SweepPlan) -> None:
     InvalidParameterError
         With the size and the remedy.
     """
-    size, there = _stored_bytes(plan, range(len(plan))), _memory()
+    size, there = _stored_bytes(plan, len(plan)), _memory()
     if size > there:
         rule = f"be a folder for results of about {size_words(size)}: this machine has {size_words(there)} of memory"
         remedy = f"give out=, of which chunks= computes parts, or {_FEWER}"
         raise InvalidParameterError("out", rule, Shown("nothing"), remedy)
 
 
-def check_disk(plan: SweepPlan, chunks: Iterable[int], path: Path, store: str) -> None:
+def check_disk(plan: SweepPlan, chunks: Sized, path: Path, store: str) -> None:
     """Raise if the files of chunks do not fit into the free space of the file system of a folder.
 
     Parameters
     ----------
     plan : SweepPlan
         The sweep.
-    chunks : iterable of int
+    chunks : sized
         Those that are to be written.
     path : Path
         The folder; it need not exist.
@@ -57,12 +57,11 @@ def check_disk(plan: SweepPlan, chunks: Iterable[int], path: Path, store: str) -
     InvalidParameterError
         With both numbers and the remedy.
     """
-    wanted = list(chunks)
-    size, free = _stored_bytes(plan, wanted), free_space(path)
+    size, free = _stored_bytes(plan, len(chunks)), free_space(path)
     if size > free and store != "npz":
         task = plan.task
         whole = estimate(task.design, task.study, store="parquet", chunk_rows=plan.chunk_rows, threads=task.threads)
-        size = round(whole.bytes * len(wanted) / len(plan))
+        size = round(whole.bytes * len(chunks) / len(plan))
     if size > free:
         rule = f"have room for about {size_words(size)} of results"
         remedy = f"choose a folder on a larger disk, {_FEWER}, or take parts with chunks="
@@ -77,13 +76,11 @@ def free_space(path: Path) -> int:
     return shutil.disk_usage(place).free
 
 
-def _stored_bytes(plan: SweepPlan, chunks: Iterable[int]) -> int:
-    """Return the size of the columns of chunks, which NPZ files hold as they are."""
+def _stored_bytes(plan: SweepPlan, chunks: int) -> int:
+    """Return the size of the columns of so many chunks, which NPZ files hold as they are."""
     cases = plan.task.study.cases
     each = sum(column.stored.itemsize for column in plan.task.columns) * (1 if cases is None else len(cases.words))
-    if isinstance(chunks, range) and chunks == range(len(plan)):
-        return each * plan.rows
-    return each * sum(stop - start for start, stop in map(plan.span, chunks))
+    return each * min(chunks * plan.chunk_rows, plan.rows)
 
 
 def _memory() -> int:

@@ -72,7 +72,7 @@ def test_a_shield_of_seen_people_is_at_fault() -> None:
 
 
 def test_the_benchmark_runs_places_of_three_kinds() -> None:
-    result = benchmark("hidden_people", ["corner(creep=0.1)", "corner(reckon=0)"], cases=10)
+    result = benchmark("hidden_people", ["corner(creep=0.1)", "corner(reckon=0)"], cases=4)
     assert result.at_fault("corner(creep=0.1)").value == 0.0
     assert result.at_fault("corner(reckon=0)").value > 0.0
     assert result.mean_arrival("corner(creep=0.1)") < 16.0
