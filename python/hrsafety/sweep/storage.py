@@ -36,7 +36,7 @@ MOST_NAMED = 4
 
 
 class SweepError(HrsafetyError):
-    """A sweep cannot go on: its folder is of another or damaged, a worker died, or a function of its study raised."""
+    """A sweep cannot be continued: its folder is another one or damaged, a worker died, or a function raised."""
 
 
 def new_manifest(
