@@ -100,9 +100,9 @@ class FunctionStudy(Study):
             found = self._called(rows, slice(None))
         except HrsafetyError:
             raise
-        except Exception as error:
+        except Exception as error:  # whatever a function raises: it is the cause of what is raised here
             first, cause = self._first_failing(rows, error)
-            row = {name: values[first] for name, values in rows.items()}
+            row = {} if first is None else {name: values[first] for name, values in rows.items()}
             more = f" and the parameters {', '.join(self.parameters)}" if self.parameters else ""
             raise raised(self.function, row, f"it is called with the axes {', '.join(rows)}{more}", cause) from cause
         if not isinstance(found, Mapping):
@@ -120,15 +120,18 @@ class FunctionStudy(Study):
         # Copies: what a function does to its arguments must not change the rows that are kept.
         return self.function(**{name: values[part].copy() for name, values in rows.items()}, **self.parameters)
 
-    def _first_failing(self, rows: dict[str, Array], error: Exception) -> tuple[int, Exception]:
-        """Return the first row that fails, found by halves, and its error."""
+    def _first_failing(self, rows: dict[str, Array], error: Exception) -> tuple[int | None, Exception]:
+        """Return the first row that fails by itself, found by halves, and its error; ``None`` if none does."""
         low, high = 0, len(next(iter(rows.values())))
-        while high - low > 1:
-            middle = (low + high) // 2
+        while low < high:
+            middle = max((low + high) // 2, low + 1)
             try:
                 self._called(rows, slice(low, middle))
-            except Exception as of_part:  # whatever a function raises
-                high, error = middle, of_part
+            except Exception as of_part:  # as of all rows; the last one is returned
+                error = of_part
+                if middle == low + 1:
+                    return low, error
+                high = middle
             else:
                 low = middle
-        return low, error
+        return None, error

@@ -406,7 +406,7 @@ class NavigationStudy(Study):
             made = self.scenario(values)
         except HrsafetyError:
             raise
-        except Exception as error:
+        except Exception as error:  # whatever a function raises: it is the cause of what is raised here
             raise raised(self.scenario, row, f"its row has the axes {', '.join(values) or 'none'}", error) from error
         scenes: list[Any] = list(made) if isinstance(made, Sequence) else [made]
         strange = next((scene for scene in scenes if not isinstance(scene, nav.Scenario)), None)

@@ -137,16 +137,17 @@ def raised(function: object, row: Mapping[str, Any], given: str, error: Exceptio
     function : callable
         Which raised it.
     row : mapping of str to number
-        The axes of the first row that raised it.
+        The axes of the first row that raised it; nothing if no row does by itself.
     given : str
         What the function gets, in words.
     error : Exception
         What it raised.
     """
     values = ", ".join(f"{name} = {float(value):g}" for name, value in row.items())
+    where = f" in the row {values}" if row else ""
     name = getattr(function, "__qualname__", type(function).__name__)
     kind = type(error).__name__
-    return SweepError(f"the function {name} of the study raised {kind}: {error} in the row {values}; {given}")
+    return SweepError(f"the function {name} of the study raised {kind}: {error}{where}; {given}")
 
 
 def checked_study(study: object) -> Study:

@@ -482,6 +482,17 @@ def test_error_of_a_function_names_the_first_row_that_raises_it(size: int, data:
     assert isinstance(caught.value.__cause__, KeyError)
 
 
+def test_rows_that_fail_together_only_are_not_named() -> None:
+    def crowded(x: Any) -> dict[str, Any]:
+        if len(x) > 3:
+            raise MemoryError("too many")
+        return {"y": x}
+
+    study = sweep.FunctionStudy(function=crowded, results=["y"])
+    with pytest.raises(sweep.SweepError, match=r"MemoryError: too many; it is called with the axes x"):
+        sweep.run(sweep.Grid([sweep.Axis(name="x", values=np.arange(9))]), study)
+
+
 def test_error_of_a_misspelt_axis_names_the_axes() -> None:
     axis = sweep.Axis(name="latencyy", values=[0.1, 0.2])
     row: Any = lambda values: replace(C2, control_period=values["latency"])  # noqa: E731  # a function of a row
