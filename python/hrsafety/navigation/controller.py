@@ -281,7 +281,8 @@ class Controller:
         before = self._names.copy()
         try:
             present = self._native.present()
-            left = [*self._names.left(names), *self._names.outlived(now, told, present)]
+            departed = self._names.left(names)
+            left = [*departed, *self._names.outlived(now, told, present)]
             renamed = self._names.place(now, told, present)
             places = self._names.indices
             unknown = (math.nan, math.nan)
@@ -296,7 +297,8 @@ class Controller:
             self._names = before
             found = {field: getattr(last, field) for field in (*_OF_PEOPLE, "renamed")}
         else:
-            if people is not None or scan is not None or names:
+            # Who was gone before tells of no look.
+            if people is not None or scan is not None or any(present[slot] for slot in departed):
                 self._looked = now
             if self._measured is not None:
                 self._measured.forget(names)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -421,6 +421,19 @@ def test_copies_of_a_scene_are_told_whatever_their_names_and_seeds() -> None:
     noisy = [replace(C1, measurement=nav.Measurement(of="both"), seed=seed) for seed in range(4)]
     for different in ([C1, mirrored], noisy, [scenarios.random_traffic(3, seed=seed) for seed in range(20)]):
         assert same(nav.compare(different, [field]).runs) == []
+
+
+def test_laws_of_users_that_hold_arrays_are_no_error_and_told_in_doubt() -> None:
+    @dataclass
+    class Own:
+        gains: np.ndarray
+
+        def velocity(self, _: nav.Situation) -> tuple[float, float]:
+            return 0.3, 0.0
+
+    robots = [nav.Robot(start=(0.0, 0.0), goal=(1.0, 0.0), law=Own(np.ones(3))) for _ in range(2)]
+    worlds = [nav.World(robots=[robot], time_limit=1.0) for robot in robots]
+    assert len(same(nav.simulate_many(worlds))) == 1
 
 
 def test_worlds_that_draw_nothing_are_told() -> None:

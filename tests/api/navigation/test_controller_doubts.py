@@ -315,6 +315,13 @@ def test_people_for_whom_nobody_looked_are_not_away() -> None:
         # 1 s is 16 periods of 0.06 s and a part of one.
         assert blind.told(people=None).unmeasured == (step >= 16)
     assert blind.told(people={"a": (60.0, 0.0, 0.0, 0.0)}).status == "kept"
+    for _ in range(20):
+        blind.told(people=None)
+    # Who left was looked for; whom nobody knows was not.
+    assert not blind.told(people=None, gone=["a"]).unmeasured
+    for _ in range(20):
+        stale = blind.told(people=None, gone=["a"])
+    assert stale.unmeasured
 
 
 def test_scans_are_measurements_and_unseen_people_need_none() -> None:

@@ -27,7 +27,7 @@ def test_units_of_a_lidar_are_doubted(field: str) -> None:
     law = nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield())
     told = nav.Controller(law, nav.HolonomicRobot(), (3.0, 0.0), lidar=lidar)
     assert (f"lidar.{field}", "implausible") in {(each.subject, each.code) for each in told.warnings}
-    built = nav.robots.AsBuilt(sensors=[nav.Lidar(map=WALLS, **WRONG[field])])  # type: ignore[arg-type]
+    built = nav.robots.AsBuilt(sensors=[nav.Lidar(map=WALLS, **WRONG[field])])  # type: ignore[arg-type]  # by name
     scene = nav.Scenario(start=(0.0, 0.0), goal=(3.0, 0.0), walls=WALLS, time_limit=0.2)
     run = nav.simulate(scene, nav.VirtualForceField(), built=built)
     assert (f"sensors[0].{field}", "implausible") in {(each.subject, each.code) for each in run.warnings}
@@ -56,7 +56,8 @@ def test_numbers_of_a_controller_are_doubted(given: dict[str, float]) -> None:
 @pytest.mark.parametrize("name", ["latency", "position_error", "margin", "wall_margin", "position_tracking"])
 def test_numbers_of_a_shield_in_other_units_are_doubted_on_the_safe_side(name: str) -> None:
     for value, doubted in ((0.05, False), (35.0, True)):
-        law = nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield(**{name: value}))  # type: ignore[arg-type]
+        shield = nav.Shield(**{name: value})  # type: ignore[arg-type]  # fields by name
+        law = nav.SafeNavigation(nav.VirtualForceField(), shield=shield)
         run = nav.simulate(nav.Scenario(start=(0.0, 0.0), goal=(3.0, 0.0), time_limit=0.2), law)
         found = [each for each in run.warnings if each.code == "implausible"]
         assert [each.subject for each in found] == ([f"shield.{name}"] if doubted else [])
