@@ -181,28 +181,7 @@ class Table:
 def write_with_warnings(
     path: str | os.PathLike[str], parts: Iterable[Columns], warnings: Iterable[ResultWarning]
 ) -> Path:
-    """Write columns as a CSV file and the warnings of the result beside it, see `Table.to_csv`.
-
-    Parameters
-    ----------
-    path : path-like
-        The file; its folder must exist.
-    parts : iterable of dict of str to ndarray
-        The columns in pieces, one below the other, at least one.
-    warnings : iterable of ResultWarning
-        Of the result.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    InvalidParameterError
-        If the path is none, its folder does not exist, or the place of the warnings is taken by a file
-        of something else.
-    """
+    """Write columns, in pieces one below the other, as a CSV file and the warnings beside it, see `Table.to_csv`."""
     place = _place(path)
     beside = place.with_name(f"{place.name}.warnings.csv")
     doubts = [dataclasses.astuple(each) for each in warnings]

@@ -73,6 +73,10 @@ class PythonLaw(Law):
 
     Notes
     -----
+    An object may say which walls it knows (``known_map``, a `StaticMap`), that it uses no regions of obstacles
+    (``without_regions``), and what it doubts about its robot (``doubts_of(robot, sensors, time_limit)``, an iterable of
+    `ResultWarning`): results carry that.
+
     A law that remembers something serves one run at a time, and forgets it in ``start``. Errors
     raised in it arrive unchanged, with a note of the time and of the run.
 
