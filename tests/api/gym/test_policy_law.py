@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -73,7 +74,7 @@ def to_goal(observation: np.ndarray) -> np.ndarray:
     return observation[:2]
 
 
-def doubts(law: gym.PolicyLaw, *, walls: Any = None, time_limit: float = 25.0, **robot: Any) -> set[tuple[str, str]]:
+def doubts(law: gym.PolicyLaw, *, walls: Any = (), time_limit: float = 25.0, **robot: Any) -> set[tuple[str, str]]:
     body = robot.pop("body", nav.HolonomicRobot())
     one = nav.Robot(body=body, start=(0.0, 0.0), goal=(4.0, 0.0), law=law, **robot)
     person = nav.Person(start=(3.0, 2.0), route=[(3.0, -2.0)])
@@ -96,6 +97,11 @@ def test_what_a_run_shows_otherwise_than_the_environment_is_doubted() -> None:
     assert ("policy_sees_nobody", "robots[0].law.policy") in blind
     assert not {"unknown_wall", "region_below_safe"} & {code for code, _ in blind}
     assert {code for code, _ in doubts(seeing, walls=room, time_limit=30.0)} == {"other_environment"}
+    assert {code for code, _ in doubts(seeing)} == {"walls_not_there"}
+    assert doubts(seeing, walls=ROOM) == set()
+    scene = nav.Scenario(start=(0.0, 0.0), goal=(1.0, 0.0), time_limit=25.0)
+    told = [{each.code for each in nav.simulate(each, seeing).warnings} for each in (scene, replace(scene, walls=room))]
+    assert told == [{"walls_not_there"}, set()]
     wheels = nav.DifferentialDriveRobot()
     assert {code for code, _ in doubts(seeing, walls=room, body=wheels)} == {"other_environment"}
 

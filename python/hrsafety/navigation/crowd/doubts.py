@@ -26,6 +26,7 @@ from hrsafety.navigation.warnings.shields import (
     SEES_LESS,
     Motion,
     Mover,
+    maps_of,
     of_built,
     of_order,
     of_surroundings,
@@ -183,7 +184,7 @@ def of_walls(
 
 
 def of_scans(
-    people: Sequence[Person], sources: Sequence[Source], robots: Sequence[Robot], time_limit: float
+    people: Sequence[Person], sources: Sequence[Source], robots: Sequence[Robot], time_limit: float, *, walls: bool
 ) -> tuple[ResultWarning, ...]:
     """Return the doubts of laws with a map or an observation of their own, the first of each kind with how many follow.
 
@@ -193,6 +194,8 @@ def of_scans(
         Who is in the world.
     time_limit : float
         In s.
+    walls : bool
+        Whether there are any.
 
     Returns
     -------
@@ -202,7 +205,8 @@ def of_scans(
     movers = len(people) + len(sources) + len(robots) - 1
     found = []
     for index, robot in enumerate(robots):
-        own = of_object(robot.law, robot.body, robot.as_built(), time_limit)
+        there = walls or bool(maps_of(robot.law, whole=False))
+        own = of_object(robot.law, robot.body, robot.as_built(), time_limit, walls=there)
         found.append((f"robots[{index}]", (*unwatched(robot.law, movers), *own)))
     return gathered(found, "robots")
 

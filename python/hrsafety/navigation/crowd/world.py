@@ -287,7 +287,11 @@ class World(Place):
             known = self.walls if isinstance(self.walls, StaticMap) else None
             seen = of_sensors(own[0], own[2], self.step, known)
             found = (*self.doubts, *of_numbers(*own, self.time_limit), *in_walls, *seen, *of_shields)
-            found = (*found, *of_footprints(own[0], own[1], own[2]), *of_scans(*own, self.time_limit))
+            found = (
+                *found,
+                *of_footprints(own[0], own[1], own[2]),
+                *of_scans(*own, self.time_limit, walls=len(shapes) > 0),
+            )
             if known is not None:
                 lost = *of_routes(own[0], own[1], known), *of_unknown_walls(known, own[2])
                 found = (*found, *known.warnings, *lost)

@@ -70,7 +70,9 @@ def of_run(
     things = scenario.obstacles
     stands = any(isinstance(each, Disc | Rectangle) for each in things)
     of_map = itertools.chain(of_map, unwatched(law, sum(not isinstance(each, Disc | Rectangle) for each in things)))
-    of_map = itertools.chain(of_map, of_object(law, scenario.robot, built, scenario.time_limit))
+    # Contacts are counted with the walls of the scene, and with maps around the object.
+    there = stands or scenario.walls is not None or any(maps_of(law, whole=False))
+    of_map = itertools.chain(of_map, of_object(law, scenario.robot, built, scenario.time_limit, walls=there))
     of_rule = of_filter(law, measured=measured, walls=stands or scenario.walls is not None or any(maps_of(law)))
     if shield is None:
         return (*of_scene, *of_sensors, *of_map, *of_rule)

@@ -50,9 +50,14 @@ def unwatched(law: object, movers: int) -> Iterator[ResultWarning]:
 
 
 def of_object(
-    law: object, robot: HolonomicRobot | DifferentialDriveRobot, built: AsBuilt | None, time_limit: float
+    law: object,
+    robot: HolonomicRobot | DifferentialDriveRobot,
+    built: AsBuilt | None,
+    time_limit: float,
+    *,
+    walls: bool,
 ) -> Iterator[ResultWarning]:
-    """Yield what the object in Python within a law doubts about its robot, if it has a method ``doubts_of``.
+    """Yield doubts about the object in Python within a law: its own about its robot, and walls that are not there.
 
     Parameters
     ----------
@@ -64,13 +69,22 @@ def of_object(
         Its sensors.
     time_limit : float
         Of the run, in s.
+    walls : bool
+        Whether walls stand there.
 
     Yields
     ------
     ResultWarning
-        With codes of the object.
+        With codes of the object, and ``"walls_not_there"``.
     """
-    ask = getattr(object_of(law), "doubts_of", None)
+    own = object_of(law)
+    if getattr(own, "known_map", None) is not None and not walls:
+        message = (
+            "the law knows walls that do not stand in the scene: the robot passes through them, and no contact with "
+            "them is counted; give them to the scene as well, as walls="
+        )
+        yield ResultWarning("walls_not_there", "law", message)
+    ask = getattr(own, "doubts_of", None)
     if callable(ask):
         yield from ask(robot, () if built is None else built.sensors, time_limit)
 

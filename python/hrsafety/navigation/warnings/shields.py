@@ -140,15 +140,15 @@ def shield_of(law: object) -> tuple[Shield | None, bool]:
     return shield, walls
 
 
-def maps_of(law: object) -> list[StaticMap]:
-    """Return the maps that a law and the laws within it know."""
+def maps_of(law: object, *, whole: bool = True) -> list[StaticMap]:
+    """Return the maps that a law and the laws within it know; as a whole with that of an object in Python."""
     found: list[StaticMap] = []
     inner = law
     while isinstance(inner, SafeNavigation):
         if inner.map is not None:
             found.append(inner.map)
         inner = inner.law
-    own = getattr(object_of(law), "known_map", None)
+    own = getattr(object_of(law), "known_map", None) if whole else None
     return found if own is None else [*found, own]
 
 
