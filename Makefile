@@ -12,7 +12,7 @@ unexport MAKEFLAGS MFLAGS
 # As maturin does: the binding crate is loaded by an interpreter, not linked with one.
 export PYO3_BUILD_EXTENSION_MODULE = 1
 
-.PHONY: build develop hooks test test-rust test-fast test-ros lint lint-rust lint-python bench docs images fuzz check reproduce clean
+.PHONY: build develop hooks test test-rust test-fast evidence test-ros lint lint-rust lint-python bench docs images fuzz check reproduce clean
 
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
@@ -40,7 +40,7 @@ hooks: build
 # The native module is compiled on one core for minutes, and Python waits for it: tests in Rust take what is left.
 test:
 	$(MAKE) -j2 build test-rust
-	$(PYTEST)
+	$(PYTEST) -m "not evidence"
 
 test-rust:
 	nice cargo test --workspace --locked
@@ -48,7 +48,11 @@ test-rust:
 # What fails first when a formula, a message or a name is wrong: units in Rust, and the quick files.
 test-fast: build
 	cargo test --workspace --locked --lib
-	$(PYTEST) --fast
+	$(PYTEST) --fast -m "not evidence"
+
+# What the documents publish, computed again: when a core or its data changed, and before a release.
+evidence: build
+	$(PYTEST) -m evidence
 
 # Two processes on ROS 2 itself, whose wheels (Linux x86-64, CPython 3.11) stand apart from everything else.
 ROS_VENV ?= .venv-ros

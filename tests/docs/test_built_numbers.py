@@ -94,6 +94,7 @@ def test_cameras_have_every_sensing_and_the_text_quotes_them() -> None:
     assert f"the Kalman filter and the kept side: {both} % instead of {neither} % with neither" in WORDS
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("sensing", [LATE, LATE_SIZED])
 @pytest.mark.parametrize(("name", "body"), [("c2", "both"), ("c3", "robot")])
 def test_row_of_a_late_robot_is_what_is_computed(name: str, body: str, sensing: str) -> None:
@@ -104,6 +105,7 @@ def test_row_of_a_late_robot_is_what_is_computed(name: str, body: str, sensing: 
     assert row.strip("| ").split(" | ")[2 + SENSINGS.index(sensing)] == measure_built.cell(found)
 
 
+@pytest.mark.evidence
 def test_crowds_have_every_sensing_and_some_are_what_is_computed() -> None:
     shares = written(GUIDE, measure_built.CROWD_MARKS).split("\n\n")[1].splitlines()
     titles = shares[0].strip("| ").split(" | ")[1:]

@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 GUIDE = Path(__file__).resolve().parents[2] / "docs" / "guides" / "gains.md"
 PART = re.compile(r"^```(python|text)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 # A reader does not wait longer than this, in s.
@@ -14,6 +16,7 @@ PATIENCE = 300.0
 END = "end of a block"
 
 
+@pytest.mark.evidence
 def test_guide_shows_what_its_code_prints(tmp_path: Path) -> None:
     parts = PART.findall(GUIDE.read_text(encoding="utf-8"))
     shown = [text for kind, text in parts if kind == "text"]

@@ -59,7 +59,13 @@ def test_code_of_the_gallery_fits_into_its_column() -> None:
     assert [line for line in code.splitlines() if len(line) > COLUMNS] == []
 
 
-@pytest.mark.parametrize("page", sorted(set(makers().values())))
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(page, marks=[pytest.mark.evidence] if page == GALLERY else [])
+        for page in sorted(set(makers().values()))
+    ],
+)
 def test_page_makes_its_pictures(page: str, tmp_path: Path, request: pytest.FixtureRequest) -> None:
     recordings = []
     if RECORDING in code_of(DOCS / page):

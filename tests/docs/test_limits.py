@@ -58,6 +58,7 @@ def test_text_quotes_the_corridors() -> None:
     assert set(rows["Masoud"].values()) == {(0, 0, 100)}
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("name", ["New field", "Khatib", "Masoud", "Velocity obstacle"])
 def test_corridor_of_a_law_is_what_is_computed(name: str) -> None:
     law = LAWS[name]

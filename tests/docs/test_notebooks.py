@@ -25,6 +25,7 @@ def test_notebook_is_committed_without_output(notebook: Path) -> None:
     assert max(len(line.rstrip("\n")) for cell in code for line in cell["source"]) <= 120
 
 
+@pytest.mark.evidence
 @pytest.mark.filterwarnings("default")  # of the packages that run notebooks
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
 def test_notebook_runs(notebook: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -57,6 +57,7 @@ def test_measured_numbers_print_the_arrival_times_of_the_validation() -> None:
     assert re.findall(r"(\d+\.\d+) \(", line) == times
 
 
+@pytest.mark.evidence
 def test_tables_of_the_stabilizing_modes_are_what_is_computed() -> None:
     assert written(VALIDATION, measure_stabilizing.MARKS) == measure_stabilizing.page()
 
@@ -76,6 +77,7 @@ def test_contacts_of_the_stabilizing_modes_have_every_sensing(sized: bool) -> No
     assert all(len(cells) == len(SENSINGS) for cells in rows.values())
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("sized", [False, True])
 @pytest.mark.parametrize("sensing", SENSINGS)
 @pytest.mark.parametrize(("name", "body"), [("c2", "people"), ("c3", "people and robot"), ("crowds of 3", "people")])
@@ -110,6 +112,7 @@ def counts(table: nav.RunTable) -> list[int]:
     return [int(column.sum()) for column in columns]
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("recording", ["zara01", "zara03"])
 def test_rows_of_a_recording_are_what_is_computed(recording: str, shared: Path) -> None:
     shown = ("exact", "25 mm noise", "25 mm noise, 0.1 s delay")

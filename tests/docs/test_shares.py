@@ -52,6 +52,7 @@ def test_table_of_encounters_has_every_law_and_sensing(condition: measure_shares
     assert all(len(cells) == 1 + 2 * len(measure_shares.SENSINGS) for cells in rows.values())
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("name", ["New field", "Velocity obstacle", "ORCA"])
 @pytest.mark.parametrize("column", [0, 1, 2])
 def test_shares_of_encounters_are_what_is_computed(name: str, column: int) -> None:

@@ -78,6 +78,7 @@ def test_golden_sets_cover_repeated_roots() -> None:
     assert {case["family"] for case in cases()} >= set(REPEATED)
 
 
+@pytest.mark.evidence
 def test_golden_file_is_what_its_script_makes(parameters: np.ndarray) -> None:
     drawn = random.Random(60).sample(range(len(cases())), RECOMPUTED)
     for index in drawn:

@@ -67,6 +67,7 @@ def test_derivatives_come_with_the_metrics_themselves() -> None:
             assert getattr(found, name) == pytest.approx(value, rel=1e-11, abs=0.0), name
 
 
+@pytest.mark.evidence
 def test_golden_gradients_are_what_their_script_makes() -> None:
     assert gradient_row(Parameters(*CASES[3]["parameters"])) == CASES[3]
 

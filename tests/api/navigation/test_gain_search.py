@@ -269,6 +269,7 @@ def test_ratios_above_one_count_one() -> None:
 ALONE: dict[str, Any] = {"grid": (1, 1, 1, 1), "refinements": 0, "local_starts": 0, "require_arrival": False}
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("method", FEW_SETS)
 def test_global_methods_agree_with_the_procedure_of_the_source_for_ten_seeds(method: Any) -> None:
     values = [
@@ -489,6 +490,7 @@ def test_global_search_keeps_its_budget_and_its_seed(method: Any) -> None:
     assert one.convergence[-1].tolist() == [one.evaluations, one.best_value]
 
 
+@pytest.mark.evidence
 def test_auto_reaches_the_optimum_of_the_source_with_each_of_ten_seeds() -> None:
     found = [nav.optimize_gains(SCENES, method="auto", seed=seed, time_limit=10.0) for seed in range(10)]
     assert {each.settings.evaluations for each in found} == {10_000}

@@ -31,10 +31,10 @@ SPECIFIED = {
 SPECIFIED_REAR = {"one_dynamic": 227, "two_dynamic": 254}
 
 
-@pytest.fixture(scope="module")
-def runs() -> dict[tuple[str, str], reactive.FollowerExperiment]:
-    """As many layouts as the specification, the same number with both laws."""
-    most = {kind: max(SPECIFIED[kind, law][1] for law in LAWS) for kind in KINDS}
+@pytest.fixture(scope="module", params=[2 * LAYOUTS, pytest.param(None, marks=pytest.mark.evidence)])
+def runs(request: pytest.FixtureRequest) -> dict[tuple[str, str], reactive.FollowerExperiment]:
+    """Return runs in some layouts, or in as many as the specification, the same number with both laws."""
+    most = {kind: request.param or max(SPECIFIED[kind, law][1] for law in LAWS) for kind in KINDS}
     return {
         (kind, law): reactive.experiment(kind, law, layouts=most[kind])  # type: ignore[arg-type]  # words of the call
         for kind in KINDS

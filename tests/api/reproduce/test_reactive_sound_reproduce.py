@@ -14,6 +14,9 @@ from hrsafety.reproduce.reactive import sound_figures as reactive_sound_figures
 from hrsafety.reproduce.reactive import sound_study as reactive_sound_study
 from hrsafety.reproduce.reactive import sound_tables as reactive_sound_tables
 
+# Published numbers computed again, and pictures of them drawn.
+pytestmark = pytest.mark.evidence
+
 PNG = b"\x89PNG\r\n\x1a\n"
 
 

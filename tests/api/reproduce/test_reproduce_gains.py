@@ -16,6 +16,9 @@ from hrsafety.reproduce.gain import deviations as gain_deviations
 from hrsafety.reproduce.gain import tables as gain_tables
 from hrsafety.reproduce.gain.runs import CHANGES_PERCENT, GAIN_TABLES, gain_runs
 
+# Published numbers computed again, and pictures of them drawn.
+pytestmark = pytest.mark.evidence
+
 REPEATED = 1e-12  # the same operations in another order
 
 

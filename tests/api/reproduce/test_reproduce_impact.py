@@ -24,6 +24,9 @@ from hrsafety.reproduce.impact import tables as impact_tables
 from hrsafety.reproduce.names import TABLE_TITLES
 from hrsafety.reproduce.sheets import Sheet
 
+# Published numbers computed again, and pictures of them drawn.
+pytestmark = pytest.mark.evidence
+
 SECTIONS = ("3.6", "3.7", "3.8", "4.3", "4.4", "4.5", "A.1", "A.2", "A.3")
 # Figures are compared as rounded in the specification: half a unit of their last digit.
 HUNDREDTH = 0.005

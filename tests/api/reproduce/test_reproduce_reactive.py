@@ -17,6 +17,9 @@ from hrsafety.reproduce.reactive import follower_study as reactive_follower_stud
 from hrsafety.reproduce.reactive import skirt_figures as reactive_skirt_figures
 from hrsafety.reproduce.reactive import sound_study as reactive_sound_study
 
+# Published numbers computed again, and pictures of them drawn.
+pytestmark = pytest.mark.evidence
+
 SHARED = Path(os.environ.get("HRSAFETY_SHARED", Path(__file__).resolve().parents[3].parent / "shared"))
 PAPERS = ("avi2019", "avi2017", "gussu2017")
 
