@@ -38,6 +38,8 @@ struct Side {
 pub struct Footprint {
     corners: Vec<Vector2<f64>>,
     sides: Vec<Side>,
+    /// Lowest and highest corner of a rectangle along the axes.
+    upright: Option<[Vector2<f64>; 2]>,
 }
 
 /// Twist of a robot over a time: an arc of constant curvature.
@@ -116,7 +118,16 @@ impl Footprint {
                 Given::Found(format!("a side {} m beyond it", -least).into()),
             ));
         }
-        Ok(Self { corners, sides })
+        let along_axes = sides.iter().all(|side| side.normal.amin() == 0.0);
+        let upright = (count == 4 && along_axes).then(|| {
+            let opposite = [corners[0], corners[2]];
+            [opposite[0].inf(&opposite[1]), opposite[0].sup(&opposite[1])]
+        });
+        Ok(Self {
+            corners,
+            sides,
+            upright,
+        })
     }
 
     /// Corners in m, counterclockwise.
