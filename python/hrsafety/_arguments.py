@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
+import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -132,7 +133,7 @@ def not_negative(name: str, value: object) -> float:
 def finite(name: str, value: object) -> float:
     """Return ``value`` as a finite float, or say that it should have been."""
     given = number(name, value)
-    if not np.isfinite(given):
+    if not math.isfinite(given):
         raise InvalidParameterError(name, "be finite", value)
     return given
 
