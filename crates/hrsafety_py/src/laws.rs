@@ -11,8 +11,8 @@ use vff_core::laws::field::stabilizing::Stabilizing;
 use vff_core::run::{AnyLaw, law_named};
 
 use crate::errors::{CoreError, InvalidParameterError};
-use crate::keywords::Keywords;
-use crate::python_law::PythonLaw;
+use crate::keywords::{Keywords, word};
+use crate::python_law::{Answer, PythonLaw};
 
 /// A law of any kind.
 #[pyclass(frozen, module = "hrsafety._hrsafety")]
@@ -73,14 +73,20 @@ impl Law {
     /// A law in Python: `begin(robot, start, goal, seed)` returns what is called with the fields of
     /// every situation.
     #[staticmethod]
-    #[pyo3(signature = (begin, *, velocity))]
-    fn python(begin: Py<PyAny>, velocity: bool) -> Self {
+    #[pyo3(signature = (begin, *, answer))]
+    fn python(begin: Py<PyAny>, answer: &Bound<'_, PyAny>) -> PyResult<Self> {
         let begin = Arc::new(begin);
-        Self {
-            any: AnyLaw::one_by_one(PythonLaw { begin, velocity }),
+        let answers = [
+            ("force", Answer::Force),
+            ("velocity", Answer::Velocity),
+            ("twist", Answer::Twist),
+        ];
+        let answer = word("answer", answer, "be force, velocity or twist", &answers)?;
+        Ok(Self {
+            any: AnyLaw::one_by_one(PythonLaw { begin, answer }),
             field: None,
             python: true,
-        }
+        })
     }
 
     #[staticmethod]

@@ -3,11 +3,13 @@
 use std::cell::RefCell;
 use std::sync::Arc;
 
-use numeric::error::Result;
+use numeric::error::{Failure, Given, Result};
 use pyo3::prelude::*;
 use vff_core::lanes::{Planar, Vector2};
 use vff_core::laws::{Command, Law, LawFamily, Situation, force_toward};
 use vff_core::robots::HolonomicRobot;
+use vff_core::robots::differential::Twist;
+use vff_core::robots::drives::velocity_of;
 use vff_core::world::scenario::Scenario;
 
 use crate::run::situation::situation_fields;
@@ -25,12 +27,26 @@ pub fn raised() -> Option<PyErr> {
 /// The kernels take gain sets one after the other, so it has one number, which nobody reads.
 const NUMBERS: [&str; 1] = ["none"];
 
+/// What a law answers.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Answer {
+    /// A force in N.
+    Force,
+    /// A velocity in m/s.
+    Velocity,
+    /// Speed ahead in m/s and turn rate in rad/s.
+    Twist,
+}
+
+/// Largest angle of a turn in one control period, in rad: a velocity tells no more of it.
+const MOST_TURN: f64 = 1.5;
+
 /// The law: a callable that begins an episode and returns one that is asked in every period.
 pub struct PythonLaw {
     /// Takes robot, start, goal and seed.
     pub begin: Arc<Py<PyAny>>,
-    /// True for answers that are velocities in m/s, not forces in N.
-    pub velocity: bool,
+    /// What it answers.
+    pub answer: Answer,
 }
 
 impl LawFamily for PythonLaw {
@@ -50,6 +66,10 @@ impl LawFamily for PythonLaw {
         true
     }
 
+    fn steers_by_velocity(&self) -> bool {
+        self.answer == Answer::Twist
+    }
+
     fn check_gains(&self, _gains: &[f64]) -> Result<()> {
         Ok(())
     }
@@ -60,10 +80,15 @@ impl LawFamily for PythonLaw {
         scenario: &Scenario,
         _record: bool,
     ) -> Result<Box<dyn Law<f64>>> {
+        if self.answer == Answer::Twist && scenario.differential.is_none() {
+            let rule = "have two wheels under a law that answers twists";
+            let given = Given::Found("a robot without them".into());
+            return Err(Failure::invalid("robot", rule, given));
+        }
         Ok(Box::new(AtWork {
             begin: Arc::clone(&self.begin),
             asked: None,
-            velocity: self.velocity,
+            answer: self.answer,
             robot: point_mass(scenario.point_mass()),
             ends: (scenario.start(), scenario.goal()),
             aim: None,
@@ -91,7 +116,7 @@ pub struct AtWork {
     begin: Arc<Py<PyAny>>,
     /// Law under the interpreter, from its first command on.
     asked: Option<Py<PyAny>>,
-    velocity: bool,
+    answer: Answer,
     robot: PointMass,
     ends: ([f64; 2], [f64; 2]),
     /// Local goal on the way, in m, where a guide gives one.
@@ -100,7 +125,7 @@ pub struct AtWork {
 }
 
 impl AtWork {
-    fn answer(&mut self, situation: &Situation<'_, f64>) -> PyResult<[f64; 2]> {
+    fn answered(&mut self, situation: &Situation<'_, f64>) -> PyResult<[f64; 2]> {
         let aim = self.aim;
         Python::attach(|py| {
             let fields = situation_fields(py, situation)?;
@@ -121,17 +146,24 @@ impl AtWork {
         if RAISED.with_borrow(Option::is_some) {
             return [f64::NAN; 2];
         }
-        match self.answer(situation) {
-            Ok(answer) if self.velocity => {
-                let (mass, ..) = self.robot;
-                force_toward(Vector2::splat(answer), situation, mass).lane(0)
-            }
-            Ok(force) => force,
+        let answer = match self.answered(situation) {
+            Ok(answer) => answer,
             Err(error) => {
                 RAISED.set(Some(error));
-                [f64::NAN; 2]
+                return [f64::NAN; 2];
             }
-        }
+        };
+        let velocity = match self.answer {
+            Answer::Force => return answer,
+            Answer::Velocity => Vector2::splat(answer),
+            Answer::Twist => {
+                let (period, [speed, turn_rate]) = (situation.interval, answer);
+                let turn_rate = turn_rate.clamp(-MOST_TURN / period, MOST_TURN / period);
+                velocity_of(Twist { speed, turn_rate }, situation.heading, period)
+            }
+        };
+        let (mass, ..) = self.robot;
+        force_toward(velocity, situation, mass).lane(0)
     }
 }
 

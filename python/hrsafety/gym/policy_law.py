@@ -25,7 +25,7 @@ Observation = npt.NDArray[np.float32]
 
 @dataclass(frozen=True, kw_only=True)
 class PolicyLaw:
-    """A policy of velocities as a law, so that it stands beside laws, under a shield, and on robots as built.
+    """A policy as a law, so that it stands beside laws, under a shield, and on robots as built.
 
     Parameters
     ----------
@@ -39,6 +39,10 @@ class PolicyLaw:
         How many rays.
     frame : {"world", "goal"}
         Axes of all vectors that it was shown; actions are along those of the world.
+    action : {"velocity", "unicycle"}
+        What its actions are. One of the action "unicycle" drives robots with two wheels.
+    max_turn_rate : float or None
+        Of the action "unicycle", that of the environment, in rad/s.
     walls : StaticMap or None
         What the rays see beside people; those of the world.
     name : str
@@ -47,7 +51,8 @@ class PolicyLaw:
     Raises
     ------
     InvalidParameterError
-        If a value is out of range, and in a run if there is a wall or rectangle that no ray shows to the policy.
+        If a value is out of range, and in a run if there is a wall or rectangle that no ray shows to the policy, or a
+        policy of the action "unicycle" drives a robot without two wheels.
 
     Notes
     -----
@@ -71,6 +76,8 @@ class PolicyLaw:
     people: int = 5
     lidar: int = 0
     frame: str = "world"
+    action: str = "velocity"
+    max_turn_rate: float | None = None
     walls: StaticMap | None = None
     name: str = "policy"
     _lidar: Lidar | None = field(init=False, repr=False, compare=False, default=None)
@@ -83,6 +90,13 @@ class PolicyLaw:
         object.__setattr__(self, "people", count("people", self.people, least=0, most=_MOST_SEEN))
         object.__setattr__(self, "lidar", count("lidar", self.lidar, least=0, most=_MOST_SEEN))
         word("frame", self.frame, ("world", "goal"))
+        word("action", self.action, ("velocity", "unicycle"))
+        if (self.max_turn_rate is not None) != (self.action == "unicycle"):
+            raise InvalidParameterError(
+                "max_turn_rate", 'be given with action="unicycle", and only then', self.max_turn_rate
+            )
+        if self.max_turn_rate is not None:
+            object.__setattr__(self, "max_turn_rate", positive("max_turn_rate", self.max_turn_rate))
         if self.walls is not None and not isinstance(self.walls, StaticMap):
             raise InvalidParameterError("walls", "be a StaticMap or None", self.walls)
         if self.lidar:
@@ -90,6 +104,11 @@ class PolicyLaw:
 
     without_regions = True
     """Whether the regions of obstacles are nothing to it."""
+
+    @property
+    def asked(self) -> str:
+        """Which of its methods is asked in a run: what its actions are."""
+        return "velocity" if self.action == "velocity" else "twist"
 
     @property
     def known_map(self) -> StaticMap | None:
@@ -149,14 +168,33 @@ class PolicyLaw:
         ndarray, shape (2,)
             At most the greatest speed of the robot.
         """
+        share = self._action(situation)
+        share = share / max(1.0, float(np.hypot(*share)))
+        return situation.robot.max_speed * share
+
+    def twist(self, situation: Situation) -> Array:
+        """Return the speed ahead in m/s and the turn rate in rad/s that a policy of the action "unicycle" wants.
+
+        Parameters
+        ----------
+        situation : Situation
+            Of the robot.
+
+        Returns
+        -------
+        ndarray, shape (2,)
+            At most the greatest speed of the robot, and ``max_turn_rate``.
+        """
+        return self._action(situation) * (situation.robot.max_speed, self.max_turn_rate or 0.0)
+
+    def _action(self, situation: Situation) -> Array:
+        """Return the action of the policy in a situation, as an environment takes it."""
         action = numbers("action of the policy", self.policy(self.observation(situation)))
         if action.shape != (2,):
             raise ShapeError("action of the policy", "(2,)", action.shape)
         if not np.isfinite(action).all():
             raise InvalidParameterError("action of the policy", "be finite", action)
-        share = np.clip(action, -1.0, 1.0)
-        share = share / max(1.0, float(np.hypot(*share)))
-        return situation.robot.max_speed * share
+        return np.clip(action, -1.0, 1.0)
 
     def observation(self, situation: Situation) -> Observation:
         """Return what an environment would show in a situation.

@@ -58,6 +58,38 @@ def test_law_sees_and_does_what_the_policy_did_in_the_environment(frame: str, li
     assert step > 10
 
 
+def test_a_policy_of_wheels_drives_as_in_the_environment() -> None:
+    def swerving(observation: np.ndarray) -> np.ndarray:
+        return np.array(
+            [1.5 * np.cos(observation[5] * 9.0), 0.4 * np.sin(observation[5] * 20.0) + observation[9] / 90.0]
+        )
+
+    seen: list[np.ndarray] = []
+
+    def kept(observation: np.ndarray) -> np.ndarray:
+        seen.append(observation)
+        return swerving(observation)
+
+    law = gym.PolicyLaw(policy=kept, time_limit=8.0, people=1, action="unicycle", max_turn_rate=2.0)
+    body = nav.DifferentialDriveRobot(reference_speed_share=1.0)
+    robot = nav.Robot(body, start=(0.0, 0.0), goal=(6.0, 0.0), control_period=0.1, law=law)
+    person = nav.Person(start=(3.0, -2.0), route=[(3.0, 4.0)])
+    world = nav.World(people=[person], robots=[robot], time_limit=8.0, step=0.05)
+    run = nav.simulate(world)
+    assert not run.warnings
+    env = gym.CrowdEnv(world, people=1, action="unicycle", max_turn_rate=2.0)
+    observation, _ = env.reset(seed=world.seed)
+    for index, shown in enumerate(seen):
+        np.testing.assert_array_equal(shown, observation, err_msg=f"step {index}")
+        observation, *_ = env.step(swerving(observation))
+    assert len(seen) == 80
+    with pytest.raises(InvalidParameterError, match="two wheels"):
+        nav.simulate(scenarios.circle_crossing(0, law=law))
+    for wrong in ({"action": "unicycle"}, {"max_turn_rate": 2.0}):
+        with pytest.raises(InvalidParameterError, match="max_turn_rate must be given with action"):
+            gym.PolicyLaw(policy=to_goal, time_limit=8.0, **wrong)
+
+
 def test_what_no_environment_shows_is_refused() -> None:
     law = gym.PolicyLaw(policy=lambda seen: seen[:2], time_limit=10.0)
     box = nav.Rectangle(center=(2.0, 0.0), length=1.0, width=0.5)

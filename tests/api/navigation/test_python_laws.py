@@ -247,12 +247,69 @@ def test_bad_velocities_name_their_unit():
         nav.simulate(C1, Lost())
 
 
+class Steered:
+    def __init__(self, twist):
+        self.answer, self.headings, self.period = twist, [], None
+
+    def twist(self, seen):
+        self.headings.append(seen.heading)
+        self.period = seen.control_period
+        return self.answer
+
+
+WHEELED = nav.Scenario(
+    start=(0.0, 0.0), goal=(30.0, 0.0), robot=nav.DifferentialDriveRobot(max_turn_rate=2.0), time_limit=6.0
+)
+
+
+@pytest.mark.parametrize("twist", [(0.3, 0.5), (-0.3, 0.5), (0.4, 0.0), (0.0, -1.0), (0.0, 0.0), (0.5, 30.0)])
+def test_wheels_take_up_twists(twist):
+    law = Steered(twist)
+    run = nav.simulate(WHEELED, law)
+    speed, rate = twist[0], min(twist[1], 2.0)
+    turned = np.diff(np.unwrap(law.headings[20:]))
+    np.testing.assert_allclose(turned, rate * law.period, atol=1e-9)
+    # Positions of the last seconds, on the circle or line that follows from the twist.
+    way = np.diff(run.position[-41:-1:20], axis=0)
+    lasting = run.time[-21] - run.time[-41]
+    chord = speed * lasting if rate == 0.0 else 2.0 * speed / rate * math.sin(0.5 * rate * lasting)
+    np.testing.assert_allclose(np.hypot(*way.T), abs(chord), atol=1e-6)
+
+
+def test_a_shield_takes_twists():
+    ahead = Steered((0.5, 0.0))
+    wall = nav.Rectangle(center=(2.0, 0.0), length=0.5, width=8.0)
+    blocked = replace(WHEELED, obstacles=[wall], time_limit=10.0)
+    assert nav.simulate(blocked, ahead).outcome == "collided"
+    kept = nav.simulate(blocked, nav.SafeNavigation(ahead, shield=nav.Shield()))
+    assert kept.outcome == "timed_out"
+    assert kept.position[-1, 0] > 0.9
+
+
+def test_twists_need_two_wheels():
+    with pytest.raises(nav.InvalidParameterError, match="robot must have two wheels under a law that answers twists"):
+        nav.simulate(C1, Steered((0.5, 0.0)))
+    with pytest.raises(
+        nav.InvalidParameterError, match=r"twist of law 'Steered' at t = 0 s must be finite, in m/s and"
+    ):
+        nav.simulate(WHEELED, Steered((math.nan, 0.0)))
+    with pytest.raises(nav.InvalidParameterError, match=r"two numbers \(speed, turn rate\) in m/s and rad/s"):
+        nav.simulate(WHEELED, Steered(("fast", 0.0)))
+
+
 class Both:
     def command(self, _):
         return (0.0, 0.0)
 
     def velocity(self, _):
         return (0.0, 0.0)
+
+
+def test_a_law_of_several_methods_says_which_is_asked():
+    class Free(Both):
+        asked = "velocity"
+
+    assert nav.simulate(C1, Free()).outcome == "stopped"
 
 
 @pytest.mark.parametrize(

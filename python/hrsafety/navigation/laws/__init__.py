@@ -51,6 +51,7 @@ if TYPE_CHECKING:  # the names of the package, each loaded when it is asked for
     from hrsafety.navigation.laws.python_law import (
         ForceLaw as ForceLaw,
         PythonLaw as PythonLaw,
+        TwistLaw as TwistLaw,
         VelocityLaw as VelocityLaw,
     )
     from hrsafety.navigation.laws.safe_navigation import SafeNavigation as SafeNavigation, SafetyTrace as SafetyTrace

@@ -19,12 +19,14 @@ from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.laws.situation import Situation, fixed, point_mass_of, situation_of
 
-__all__ = ["AnyLaw", "ForceLaw", "PythonLaw", "VelocityLaw", "as_law", "class_of", "law_with_gains"]
+__all__ = ["AnyLaw", "ForceLaw", "PythonLaw", "TwistLaw", "VelocityLaw", "as_law", "class_of", "law_with_gains"]
 
 RULE = (
     "be a Law, a function that takes a Situation and returns a force in N, or an object with the method `command` "
-    "(a force in N) or `velocity` (a velocity in m/s)"
+    "(a force in N), `velocity` (a velocity in m/s) or `twist` (speed ahead in m/s and turn rate in rad/s)"
 )
+ANSWERS = {"command": "force", "velocity": "velocity", "twist": "twist"}
+NUMBERS = {"force": ("x, y", "N"), "velocity": ("x, y", "m/s"), "twist": ("speed, turn rate", "m/s and rad/s")}
 
 
 @runtime_checkable
@@ -43,7 +45,15 @@ class VelocityLaw(Protocol):
         """Return the velocity in m/s that the robot should have at the next sample, shape (2,)."""
 
 
-AnyLaw: TypeAlias = Law | ForceLaw | VelocityLaw | Callable[[Situation], npt.ArrayLike]
+@runtime_checkable
+class TwistLaw(Protocol):
+    """An object that drives a robot with two wheels by twists."""
+
+    def twist(self, situation: Situation, /) -> npt.ArrayLike:
+        """Return the speed ahead in m/s and the turn rate in rad/s until the next sample, shape (2,)."""
+
+
+AnyLaw: TypeAlias = Law | ForceLaw | VelocityLaw | TwistLaw | Callable[[Situation], npt.ArrayLike]
 """Law that drives a robot: one of the package, or one of your own."""
 
 
@@ -59,23 +69,27 @@ class PythonLaw(Law):
     ----------
     function : callable or object
         A function that takes a `Situation` and returns a force in N; or an object with the method
-        ``command(situation)``, which returns a force in N, or ``velocity(situation)``, which returns
-        the velocity in m/s to have at the next sample and becomes the force ``m (v* - V)/T_s``. If it
-        has the method ``start(situation, seed)``, that is called at the start of every run, with
-        what is seen then and the seed of the scenario.
+        ``command(situation)``, which returns a force in N, ``velocity(situation)``, which returns
+        the velocity in m/s to have at the next sample and becomes the force ``m (v* - V)/T_s``, or
+        ``twist(situation)``, which returns speed ahead in m/s and turn rate in rad/s of a robot with two
+        wheels. If it has the method ``start(situation, seed)``, that is called at the start of every run,
+        with what is seen then and the seed of the scenario.
     name : str or None
         Name for messages; that of the function or of the object's class when ``None``.
 
     Raises
     ------
     InvalidParameterError
-        If the function cannot be called and has neither method, or both.
+        If the function cannot be called and has none of the methods, or several of them; in a run, if a law that
+        returns twists drives a robot without two wheels.
 
     Notes
     -----
-    An object may say which walls it knows (``known_map``, a `StaticMap`), that it uses no regions of obstacles
-    (``without_regions``), and what it doubts about its robot (``doubts_of(robot, sensors, time_limit)``, an iterable of
-    `ResultWarning`): results carry that.
+    Wheels take up a twist as fast as the robot accelerates; of a turn rate no more than 1.5 rad in one control period.
+
+    An object of several methods says which is ``asked``. It may say which walls it knows (``known_map``, a
+    `StaticMap`), that it uses no regions of obstacles (``without_regions``), and what it doubts about its robot
+    (``doubts_of(robot, sensors, time_limit)``, an iterable of `ResultWarning`): results carry that.
 
     A law that remembers something serves one run at a time, and forgets it in ``start``. Errors
     raised in it arrive unchanged, with a note of the time and of the run.
@@ -99,7 +113,7 @@ class PythonLaw(Law):
 
     def __post_init__(self) -> None:
         """Check the values."""
-        ask, velocity = _method(self.function)
+        ask, answer = _method(self.function)
         name = _name(self.function) if self.name is None else self.name
         if not isinstance(name, str) or not name:
             raise InvalidParameterError("name", "be a word or None", self.name)
@@ -107,8 +121,8 @@ class PythonLaw(Law):
         start = getattr(self.function, "start", None)
         if start is not None and not callable(start):
             raise InvalidParameterError("start", "be a method start(situation, seed) of the law", start)
-        begin = partial(_Episode, name, ask, start, "velocity" if velocity else "force")
-        self._set(_native=_hrsafety.Law.python(begin, velocity=velocity))
+        begin = partial(_Episode, name, ask, start, answer)
+        self._set(_native=_hrsafety.Law.python(begin, answer=answer))
 
 
 def as_law(law: object, name: str = "law") -> Law:
@@ -148,17 +162,20 @@ def law_with_gains(law: object, name: str = "law") -> Law:
     raise InvalidParameterError(name, "be a Law", law, class_of(law) if isinstance(law, str) else None)
 
 
-def _method(function: object) -> tuple[Callable[[Situation], object], bool]:
-    """Return what is asked for every period, and whether it returns a velocity."""
+def _method(function: object) -> tuple[Callable[[Situation], object], str]:
+    """Return what is asked for every period, and what it returns."""
     if isinstance(function, type):
         raise InvalidParameterError("function", RULE, function, f"{function.__name__} is a class: make one of it first")
-    methods = [each for each in ("command", "velocity") if callable(getattr(function, each, None))]
+    methods = [each for each in ANSWERS if callable(getattr(function, each, None))]
+    if (asked := getattr(function, "asked", None)) in methods:
+        methods = [asked]
     if len(methods) > 1:
-        raise InvalidParameterError("function", "have one of the methods `command` and `velocity`, not both", function)
+        shown = " and ".join(f"`{each}`" for each in methods)
+        raise InvalidParameterError("function", f"have one of the methods {shown}, not both", function)
     if methods:
-        return getattr(function, methods[0]), methods == ["velocity"]
+        return getattr(function, methods[0]), ANSWERS[methods[0]]
     if callable(function):
-        return function, False
+        return function, "force"
     raise InvalidParameterError("function", RULE, function)
 
 
@@ -205,9 +222,9 @@ class _Episode:
 
     def _checked(self, answer: object, time: float) -> Pair:
         """Return two finite numbers, or say which law returned something else, and when."""
-        unit = "m/s" if self.kind == "velocity" else "N"
+        axes, unit = NUMBERS[self.kind]
         what = f"{self.kind} of law {self.name!r} at t = {time:.6g} s"
-        array = numbers(what, answer, f"be two numbers (x, y) in {unit}")
+        array = numbers(what, answer, f"be two numbers ({axes}) in {unit}")
         if array.shape != (2,):
             raise ShapeError(what, "(2,)", array.shape)
         if not np.isfinite(array).all():
