@@ -32,41 +32,62 @@ if hasattr(providers, "_get_local_constants"):
 TESTS = Path(__file__).resolve().parent
 REPOSITORY = TESTS.parent
 
-# Files that take more than 7 s of one core; ``--fast`` leaves them out.
+# Files that take more than 4 s of one core; ``--fast`` leaves them out.
 SLOW = {
     "api/cli": {
+        "test_cli.py",
         "test_cli_contact.py",
         "test_cli_contact_verdicts.py",
         "test_cli_foam.py",
         "test_cli_optimize.py",
+        "test_cli_program.py",
         "test_cli_spoiled_files.py",
         "test_cli_sweep.py",
+        "test_cli_terminal.py",
         "test_cli_zones.py",
     },
     "api/contact": {"test_spoiled_files.py"},
-    "api/gym": {"test_acceptance.py"},
+    "api/gym": {"test_acceptance.py", "test_environments.py"},
+    "api/io": {"test_people.py"},
     "api/live": {"test_live.py"},
     "api/navigation": {
+        "test_contacts_between.py",
+        "test_crowd_walls.py",
         "test_footprint_robots.py",
         "test_gain_interrupt.py",
         "test_gain_search.py",
         "test_hidden_people.py",
+        "test_law_runs.py",
         "test_moving_rectangles.py",
+        "test_region_adversary.py",
+        "test_rollouts_as_law.py",
     },
-    "api/package": {"test_fuzz.py", "test_interrupt.py", "test_structure.py"},
-    "api/plotting": {
-        "test_animation.py",
-        "test_degenerate_pictures.py",
-        "test_pictures.py",
-        "test_plotting.py",
+    "api/package": {
+        "test_declared.py",
+        "test_fork.py",
+        "test_fuzz.py",
+        "test_interrupt.py",
+        "test_structure.py",
+        "test_subpackages.py",
+        "test_warnings_travel.py",
     },
+    "api/pages": {"test_reactive_follower_page.py", "test_report.py"},
+    "api/plotting": {"test_animation.py", "test_degenerate_pictures.py", "test_pictures.py", "test_plotting.py"},
     "api/reactive": {"test_reactive_follower.py", "test_reactive_sound_interrupt.py"},
-    "api/reproduce": {"test_reproduce.py"},
+    "api/reproduce": {"test_reproduce.py", "test_reproduce_rows.py"},
+    "api/ros": {"test_bridge.py"},
+    "api/scenarios": {"test_arena.py", "test_doubtful_recordings.py"},
     "api/sweep": {"test_sweep_pools.py", "test_sweep_resume.py", "test_sweep_shares.py"},
     "api/zones": {"test_zones_that_hold.py"},
     "docs": {"test_documents.py", "test_gains_guide.py", "test_images.py", "test_notebooks.py"},
-    "golden": {"test_impact_exact.py", "test_impact_tables.py", "test_reciprocal.py"},
-    "properties": {"test_pursued_robot.py", "test_tracking_convergence.py"},
+    "golden": {"test_gain_tables.py", "test_impact_exact.py", "test_impact_tables.py", "test_reciprocal.py"},
+    "properties": {
+        "test_compared_laws.py",
+        "test_identification.py",
+        "test_lyapunov.py",
+        "test_pursued_robot.py",
+        "test_tracking_convergence.py",
+    },
 }
 _GONE = [f"{part}/{name}" for part, names in SLOW.items() for name in names if not (TESTS / part / name).is_file()]
 if _GONE:
@@ -83,7 +104,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the option of the quick run."""
-    parser.addoption("--fast", action="store_true", help="leave out the files that take more than 7 s")
+    parser.addoption("--fast", action="store_true", help="leave out the files that take more than 4 s")
 
 
 def is_slow(path: Path) -> bool:
