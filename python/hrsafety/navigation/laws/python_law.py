@@ -167,7 +167,8 @@ def _method(function: object) -> tuple[Callable[[Situation], object], str]:
     if isinstance(function, type):
         raise InvalidParameterError("function", RULE, function, f"{function.__name__} is a class: make one of it first")
     methods = [each for each in ANSWERS if callable(getattr(function, each, None))]
-    if (asked := getattr(function, "asked", None)) in methods:
+    asked = getattr(function, "asked", None)
+    if isinstance(asked, str) and asked in methods:
         methods = [asked]
     if len(methods) > 1:
         shown = " and ".join(f"`{each}`" for each in methods)
