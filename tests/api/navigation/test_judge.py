@@ -160,6 +160,25 @@ def test_a_person_who_jumps_past_the_robot_is_lost() -> None:
     assert {"teleport", "person_lost_nearby"} <= {each.code for each in found.warnings}
 
 
+@pytest.mark.parametrize("elsewhere", [(-999.0, -999.0), (60.0, 40.0)])
+def test_a_person_whose_id_jumps_away_is_lost_as_one_without_rows(elsewhere: tuple[float, float]) -> None:
+    time, place = 0.1 * np.arange(141), np.stack([0.07 * np.arange(141.0), np.zeros(141)], axis=1)
+    walk = np.stack([9.0 - time, np.full(141, 0.65)], axis=1)
+    away = (time > 2.95) & (time < 7.95)
+    found = []
+    for rows, seen in ((walk, ~away), (np.where(away[:, None], elsewhere, walk), np.ones(141, dtype=bool))):
+        times, places = np.append(time[seen], time), np.concatenate([rows[seen], np.full((141, 2), 30.0)])
+        order, who = np.argsort(times, kind="stable"), np.append(np.ones(seen.sum(), dtype=int), np.full(141, 2))
+        people = datasets.Recording(time_s=times[order], person=who[order], position=places[order])
+        log = SimpleNamespace(time=time, position=place, heading=0.0 * time, people=people)
+        found.append(judge(log, robot_radius=0.3))
+    gone, jumps = found
+    assert jumps.judged_share == gone.judged_share < 0.95
+    assert jumps.not_judged == gone.not_judged
+    (passing,) = jumps.passings
+    assert set(passing.kept.values()) == {"not_judged"}
+
+
 def test_assumptions_of_a_shield() -> None:
     commands = np.array([(0.05 * k, 1.0, 0.0, 0.0) for k in range(200)])
     delay = SimpleNamespace(median=0.1, high=0.12, most=0.2)

@@ -53,24 +53,57 @@ def nearest_unseen(both: Synchronized, person_speed: float) -> Array:
     """Return how near the centers of robot and people may be where one of them is not known, (T, n) in m.
 
     From the last distance at which both were known, and from the next one, both approach with the greatest speed of the
-    robot and that of people. Infinite where both are known, and farther than 2 s from any sight.
+    robot and that of people. Infinite where both are known, and farther than 2 s from any sight. An id that jumps is
+    that of another person, or of nobody, from there on: who it was before is lost.
     """
     away = both.people - both.position[:, None]
     distance = np.hypot(away[..., 0], away[..., 1])
+    speed = person_speed + float(np.nanmax(np.hypot(*both.velocity.T), initial=0.0))
+    bound = _nearest_between_sights(distance, speed, both.step)
+    for column in np.flatnonzero(both.leaps.any(axis=0)).tolist():
+        walkers = _walkers(both, column, person_speed)
+        each = _nearest_between_sights(np.where(walkers, distance[:, column], np.nan).T, speed, both.step)
+        bound[:, column] = each.min(axis=1)
+    return bound
+
+
+def _nearest_between_sights(distance: Array, speed: float, step: float) -> Array:
+    """Return the same from distances (T, n), NaN where a person is not seen, and the speed at which both approach."""
     known = np.isfinite(distance)
-    count = len(both.time)
+    count = len(distance)
     rows = np.arange(count)[:, None]
     last = np.maximum.accumulate(np.where(known, rows, -1), axis=0)
     following = np.minimum.accumulate(np.where(known, rows, count)[::-1], axis=0)[::-1]
-    speed = person_speed + float(np.nanmax(np.hypot(*both.velocity.T), initial=0.0))
     column = np.arange(distance.shape[1])[None, :]
     bound = np.full(distance.shape, -np.inf)
     for place, there in ((last, last >= 0), (following, following < count)):
-        since = np.abs(rows - place) * both.step
+        since = np.abs(rows - place) * step
         reached = distance[np.clip(place, 0, count - 1), column] - speed * since
         between = (last >= 0) & (following < count)
         bound = np.where(there & (between | (since <= LOST + 1e-9)), np.maximum(bound, reached), bound)
     return np.where(known | np.isneginf(bound), np.inf, bound)
+
+
+def _walkers(both: Synchronized, column: int, person_speed: float) -> Flags:
+    """Return which sights of an id that jumps may be of one person, (persons, T): who jumps away is lost."""
+    place, seen = both.people[:, column], both.seen[:, column]
+    cuts = np.flatnonzero(both.leaps[:, column]) + 1
+    found: list[Flags] = []
+    for begin, end in zip([0, *cuts.tolist()], [*cuts.tolist(), len(seen)], strict=True):
+        rows = begin + np.flatnonzero(seen[begin:end])
+        if len(rows) == 0:
+            continue
+        for walker in found:
+            last = int(np.flatnonzero(walker)[-1])
+            way = float(np.hypot(*(place[rows[0]] - place[last])))
+            if last < begin - 1 and way <= person_speed * (rows[0] - last) * both.step:
+                walker[rows] = True
+                break
+        else:
+            walker = np.zeros(len(seen), dtype=np.bool_)
+            walker[rows] = True
+            found.append(walker)
+    return np.stack(found)
 
 
 def not_judged(
