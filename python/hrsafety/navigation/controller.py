@@ -174,9 +174,10 @@ class Controller:
 
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """Gaps in the cover of the law's shield, what its filter assumes, and numbers hardly meant in their units."""
+        """Gaps in the cover of the law's shield, what its filter assumes, doubts of its maps, implausible numbers."""
         shield, lidar, speed = _shield(self._law), self._lidar is not None, self._person_speed
         units = (*self._units(), *(() if self._lidar is None else of_lidar("lidar", self._lidar)))
+        units = (*units, *dict.fromkeys(doubt for map in maps_of(self._law) for doubt in map.warnings))
         if shield is None:
             stands = len(self._rules["obstacles"]) > self._capacity or any(maps_of(self._law))
             return (*units, *of_filter(self._law, measured=True, walls=stands or lidar))

@@ -393,7 +393,7 @@ class Trajectory(Played, Table):
         if self.scenario is None:
             return ()
         found = run_warnings.of_run(self.scenario, self.law, self.built, self.motion_step)
-        way = run_warnings.of_way(self.law, self.position)
+        way = run_warnings.of_way(self.law, self.position, self.scenario.walls)
         return (*run_warnings.of_commands(self.law, self.commanded_periods), *found, *way)
 
     @property

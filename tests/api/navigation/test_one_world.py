@@ -322,3 +322,29 @@ def test_worlds_are_swept() -> None:
         sweep.NavigationStudy(scenarios=nav.World())
     with pytest.raises(InvalidParameterError, match="step must be left out for worlds"):
         sweep.NavigationStudy(scenarios=plain, step=0.02)
+
+
+@pytest.mark.parametrize("footprint", [None, [(0.3, 0.2), (-0.3, 0.2), (-0.3, -0.2), (0.3, -0.2)]])
+def test_walls_that_only_the_law_knows_are_doubted_where_the_robot_passes_them(footprint: Any) -> None:
+    body = nav.HolonomicRobot() if footprint is None else nav.HolonomicRobot(footprint=footprint)
+    wall = nav.StaticMap.from_polylines([[(4.0, -1.0), (4.0, 1.0)]])
+    law = nav.SafeNavigation(lambda situation: (4.0 * (8.0 - situation.position[0]), 0.0), map=wall)
+    found = {}
+    for name, walls in {
+        "none": (),
+        "elsewhere": [[(-9.0, 9.0), (9.0, 9.0)]],
+        "the same": wall,
+        "alike": [[(4.0, -1.0), (4.0, 1.0)]],
+    }.items():
+        world = nav.World(robots=[nav.Robot(body, start=(0.0, 0.0), goal=(8.0, 0.0))], walls=walls, time_limit=40.0)
+        run, table = nav.simulate(world, law), nav.simulate_many(world, law)
+        assert run.outcome == table.outcome[0]
+        for each in (run, table):
+            codes = [doubt.code for doubt in each.warnings]
+            found[name, run.outcome, "walls_not_there" in codes] = codes.count("walls_not_there")
+    assert set(found) == {
+        ("none", "arrived", True),
+        ("elsewhere", "arrived", True),
+        ("the same", "collided", False),
+        ("alike", "collided", False),
+    }

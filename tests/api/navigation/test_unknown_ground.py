@@ -395,3 +395,33 @@ def test_tables_tell_of_straight_ways_over_unknown_ground(tmp_path: Path) -> Non
     assert codes(nav.simulate_many([inside], [law])) == []
     assert codes(nav.simulate_many([inside, outside], [law])) == ["unknown_ground"]
     assert codes(nav.simulate_batch([outside], law)) == ["unknown_ground"]
+
+
+# ---- worlds and controllers ----------------------------------------------------------------------
+
+
+def test_a_world_and_a_controller_doubt_the_map_of_a_law_as_a_scenario_does(tmp_path: Path) -> None:
+    cells = np.full((30, 80), WHITE)
+    cells[:, 30:40] = GRAY
+    there = nav.StaticMap.from_map_server(served(tmp_path, cells, free=0.196), unknown="free")
+    law = nav.SafeNavigation(nav.VirtualForceField(), map=there, shield=nav.Shield(margin=0.02, wall_margin=0.02))
+    start, goal, real = (0.0, 1.0), (6.0, 1.0), nav.StaticMap.from_polylines([[(-1.0, -0.5), (7.0, -0.5)]])
+    scene = nav.Scenario(start=start, goal=goal, walls=real)
+    expected = [each for each in nav.simulate(scene, law).warnings if each.code == "unknown_ground"]
+    for walls in ((), real):
+        world = nav.World(robots=[nav.Robot(start=start, goal=goal)], walls=walls)
+        for run in (nav.simulate(world, law), nav.simulate_many(world, law), nav.falsify(world, law, episodes=1)):
+            assert codes(run).count("unknown_ground") == len(expected) == 2
+    assert codes(nav.Controller(law, nav.HolonomicRobot(), goal)) == ["unknown_ground"]
+
+
+@pytest.mark.parametrize("place", [nav.Scenario, nav.World])
+def test_a_run_out_of_the_image_of_a_scene_is_over_unknown_ground(place: Any, tmp_path: Path) -> None:
+    there = nav.StaticMap.from_map_server(served(tmp_path, np.full((30, 30), WHITE), free=0.196))
+    found = []
+    for goal in ((1.0, 1.0), (5.0, 1.0)):
+        scene = nav.Scenario(start=(0.0, 1.0), goal=goal, walls=there)
+        run = nav.simulate(nav.World.of(scene) if place is nav.World else scene, nav.VirtualForceField())
+        assert run.outcome == "arrived"
+        found.append("unknown_ground" in codes(run))
+    assert found == [False, True]

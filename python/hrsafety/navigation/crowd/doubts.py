@@ -37,6 +37,7 @@ from hrsafety.plausibility import RANGES, ResultWarning, gathered, implausible
 
 __all__ = [
     "of_footprints",
+    "of_maps",
     "of_numbers",
     "of_people",
     "of_robots",
@@ -280,6 +281,11 @@ def of_unknown_walls(walls: StaticMap, robots: Sequence[Robot]) -> tuple[ResultW
         own = () if built is None else tuple(each.map for each in built.sensors if isinstance(each, Lidar))
         found.append((f"robots[{index}]", tuple(unknown_walls(walls, robot.law, own))))
     return gathered(found, "robots")
+
+
+def of_maps(robots: Sequence[Robot]) -> Iterator[ResultWarning]:
+    """Yield the doubts of the maps that laws of robots know, each once: whoever drives by a map trusts it."""
+    yield from dict.fromkeys(doubt for robot in robots for map in maps_of(robot.law) for doubt in map.warnings)
 
 
 def _through_walls(

@@ -15,6 +15,7 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.crowd.agents import Person, Robot, Source
 from hrsafety.navigation.crowd.doubts import (
     of_footprints,
+    of_maps,
     of_numbers,
     of_robots,
     of_scans,
@@ -295,6 +296,7 @@ class World(Place):
             if known is not None:
                 lost = *of_routes(own[0], own[1], known), *of_unknown_walls(known, own[2])
                 found = (*found, *known.warnings, *lost)
+            found = (*found, *(each for each in of_maps(own[2]) if each not in found))
             self._set(_warnings=found)
         return found
 

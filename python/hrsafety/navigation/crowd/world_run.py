@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import MISSING, fields
 from typing import Any, NoReturn
 
@@ -18,7 +19,9 @@ from hrsafety.navigation.metrics.between import distances_of, first_wall_contact
 from hrsafety.navigation.metrics.scores import table_of
 from hrsafety.navigation.robots.as_built import AsBuilt
 from hrsafety.navigation.trajectory import Divergence, Trajectory
-from hrsafety.navigation.warnings.runs import of_commands
+from hrsafety.navigation.warnings.runs import of_commands, of_way
+from hrsafety.navigation.warnings.shields import maps_of
+from hrsafety.navigation.warnings.walls import passed_walls
 from hrsafety.plausibility import ResultWarning
 from hrsafety.tables import Columns, plane
 
@@ -182,9 +185,18 @@ class WorldRun(Trajectory):
             found |= plane(f"obstacle_{index}_v{{}}", self.obstacle_velocity[:, index], "m/s")
         return found
 
+    def _passed(self, robot: int) -> Iterator[ResultWarning]:
+        """Yield a warning if a robot touches walls that only its law knows."""
+        own, places = self.scenario.robots[robot], self.robot_position[:, robot]
+        maps = [map for map in maps_of(own.law) if map is not self.scenario.walls]
+        known = np.isfinite(places).all(axis=1)
+        if maps and known.any():
+            gaps = [gap for gap, _ in self.scenario._native.nearest_walls(places[known].tolist())]
+            yield from passed_walls(maps, own.body, places[known], self.robot_heading[known, robot], np.array(gaps))
+
     @property
     def warnings(self) -> tuple[ResultWarning, ...]:
-        """Warnings of the world; divergence, people who were set back at walls, or moved faster than people do.
+        """Warnings of the world; divergence, ways over unknown ground, people set back at walls, or too fast.
 
         Of a `Run` also commands that a shield has not verified.
         """
@@ -192,6 +204,9 @@ class WorldRun(Trajectory):
         speed = self.max_person_speed if self.diverged is None else 0.0
         asked = range(len(self.scenario.robots)) if self._robot is None else (self._robot,)
         told = [each for i in asked for each in of_commands(self.scenario.robots[i].law, self._commanded[i])]
+        for i in asked:
+            told += of_way(self.scenario.robots[i].law, self.robot_position[:, i], self.scenario.walls)
+            told += self._passed(i)
         found = (*told, *of_people(self.wall_rescues, speed, self.desired_speed), *self.scenario.warnings)
         if self.diverged is None:
             return found

@@ -13,6 +13,7 @@ from hrsafety._arguments import Array
 from hrsafety.navigation.knowledge import late_cameras
 from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation
+from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.maps.unknown import over_unknown
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 from hrsafety.navigation.robots.as_built import AsBuilt
@@ -90,10 +91,18 @@ def _late(scenario: Scenario, built: AsBuilt, by_regions: bool) -> Iterator[Resu
     return late_cameras(scenario, built) if by_regions else iter(())
 
 
-def of_way(law: Law, position: Array) -> Iterator[ResultWarning]:
-    """Warn of a run that leads over ground that was not observed, of all maps that its law knows."""
-    for map in maps_of(law):
+def of_way(law: Law, position: Array, walls: object) -> Iterator[ResultWarning]:
+    """Warn of a run that leads over ground that was not observed, of all maps that its law knows and of the scene."""
+    for map in _maps(law, walls):
         yield from over_unknown(map, position, "the run")
+
+
+def _maps(law: Law, walls: object) -> list[StaticMap]:
+    """Return the maps that a law knows, and that which the walls of a scene are: contacts count with both."""
+    known = maps_of(law)
+    if isinstance(walls, StaticMap) and not any(map is walls for map in known):
+        known = [*known, walls]
+    return known
 
 
 def _straight_way(scenario: Scenario, law: Law) -> Iterator[ResultWarning]:
@@ -103,7 +112,7 @@ def _straight_way(scenario: Scenario, law: Law) -> Iterator[ResultWarning]:
     """
     ends = np.array([scenario.start, scenario.goal])
     guided = isinstance(law, SafeNavigation) and law.guide is not None
-    for map in maps_of(law):
+    for map in _maps(law, scenario.walls):
         if not guided:
             yield from over_unknown(map, ends, "the straight way to the goal")
         elif map.unseen(ends).any():

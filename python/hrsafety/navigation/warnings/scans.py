@@ -12,6 +12,7 @@ from hrsafety.navigation.scan_controller import POSITION_TRACKING, SCAN_TIMEOUT
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.warnings.shields import object_of
+from hrsafety.navigation.warnings.walls import NOT_THERE
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["MOVERS_UNWATCHED", "of_object", "of_robot", "unwatched"]
@@ -83,7 +84,7 @@ def of_object(
             "the law knows walls that do not stand in the scene: the robot passes through them, and no contact with "
             "them is counted; give them to the scene as well, as walls="
         )
-        yield ResultWarning("walls_not_there", "law", message)
+        yield ResultWarning(NOT_THERE, "law", message)
     ask = getattr(own, "doubts_of", None)
     if callable(ask):
         yield from ask(robot, () if built is None else built.sensors, time_limit)
