@@ -325,7 +325,9 @@ def test_worlds_are_swept() -> None:
 
 
 @pytest.mark.parametrize("footprint", [None, [(0.3, 0.2), (-0.3, 0.2), (-0.3, -0.2), (0.3, -0.2)]])
-def test_walls_that_only_the_law_knows_are_doubted_where_the_robot_passes_them(footprint: Any) -> None:
+def test_walls_that_only_the_law_knows_are_doubted_where_the_robot_passes_them(
+    footprint: list[tuple[float, float]] | None,
+) -> None:
     body = nav.HolonomicRobot() if footprint is None else nav.HolonomicRobot(footprint=footprint)
     wall = nav.StaticMap.from_polylines([[(4.0, -1.0), (4.0, 1.0)]])
     law = nav.SafeNavigation(lambda situation: (4.0 * (8.0 - situation.position[0]), 0.0), map=wall)
