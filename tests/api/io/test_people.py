@@ -429,3 +429,64 @@ def test_three_people_who_exchange_ids_one_after_the_other_are_told_apart() -> N
     assert again.warnings == ()
     for who in range(3):
         np.testing.assert_array_equal(again.track(who + 1)[1], ways[who])
+
+
+# ---- columns that change what x, y and rows mean -------------------------------------------------
+
+
+def crossing_rows(folder: Path, head: str, more: Any) -> Path:
+    """Write a table of four people who cross, 0.1 s apart, with further cells by ``more(x, y)``."""
+    rows = [head]
+    for step in range(80):
+        for person in range(4):
+            x, y = -4.0 + 0.1 * step, 0.8 * person
+            rows.append(f"{0.1 * step:.1f},{person},{x:.2f},{y:.2f},{more(x, y)}")
+    path = folder / "people.csv"
+    path.write_text("\n".join(rows) + "\n", encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("names", "cells"),
+    [
+        ("occluded", lambda lost: str(int(lost))),
+        ("is_lost", lambda lost: str(lost)),
+        ("visible,predicted", lambda lost: f"{not lost},0"),
+        ("Interpolated", lambda lost: "yes" if lost else "no"),
+    ],
+)
+def test_rows_that_a_table_marks_as_not_seen_are_not_seen(names: str, cells: Any, tmp_path: Path) -> None:
+    near = lambda x: abs(x) < 1.05  # noqa: E731  # 21 of 80 rows
+    path = crossing_rows(tmp_path, f"t_s,ped_id,x_m,y_m,{names}", lambda x, _: cells(near(x)))
+    found = loaded(path)
+    assert (np.abs(found.position[:, 0]) > 1.05).all()
+    assert (len(found), found.details["lost_rows"]) == (4 * 59, 4 * 21)
+    assert "lost_rows" in [each.code for each in found.warnings]
+    taken = loaded(path, columns={name: "-" for name in names.split(",")})
+    assert len(taken) == 320
+    assert "lost_rows" not in taken.details
+
+
+def test_a_column_that_is_no_mark_leaves_rows_as_they_are(tmp_path: Path) -> None:
+    found = loaded(crossing_rows(tmp_path, "t_s,ped_id,x_m,y_m,visible", lambda *_: "0.7"))
+    assert (len(found), found.warnings) == (320, ())
+
+
+def test_a_height_taken_for_a_coordinate_is_doubted(tmp_path: Path) -> None:
+    turned = crossing_rows(tmp_path, "t_s,ped_id,x_m,z_m,y_m", lambda x, y: f"{1.6 + 0.02 * y + 0.01 * abs(x):.3f}")
+    (doubt,) = loaded(turned).warnings
+    assert (doubt.code, doubt.safe_side) == ("implausible", False)
+    assert 'columns={"y_m": "z_m", "z_m": "y_m"}' in doubt.message
+    righted = loaded(turned, columns={"y_m": "z_m", "z_m": "y_m"})
+    assert righted.warnings == ()
+    assert np.ptp(righted.position[:, 1]) == pytest.approx(2.4)
+    upright = crossing_rows(tmp_path, "t_s,ped_id,x_m,y_m,z_m", lambda _, y: f"{1.6 + 0.02 * y:.3f}")
+    assert loaded(upright).warnings == ()
+
+
+def test_corners_of_boxes_are_doubted(tmp_path: Path) -> None:
+    boxes = crossing_rows(tmp_path, "t_s,ped_id,x_m,y_m,w,h", lambda *_: "0.5,1.7")
+    assert [each.code for each in loaded(boxes).warnings] == ["assumed"]
+    assert loaded(boxes, columns={"w": "-"}).warnings == ()
+    middles = crossing_rows(tmp_path, "t_s,ped_id,x_center_m,y_center_m,w,h", lambda *_: "0.5,1.7")
+    assert loaded(middles).warnings == ()

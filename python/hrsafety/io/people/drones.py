@@ -11,7 +11,7 @@ from hrsafety.errors import Shown
 from hrsafety.io.cells import Columns, TableColumn, read_columns
 from hrsafety.io.headers import Header, first_row, header_of
 from hrsafety.io.people.request import Request
-from hrsafety.io.people.rows import Rows, assumed
+from hrsafety.io.people.rows import Rows, assumed, lost_rows
 from hrsafety.io.people.tables import of_classes
 from hrsafety.io.reader import Document, Reader
 from hrsafety.plausibility import ResultWarning
@@ -49,12 +49,7 @@ def _read_sdd(document: Document, request: Request) -> Rows:
     which, notes, details = of_classes(table.words[:, 0], request, document)
     lost = which & (table.numbers[:, 5] != 0.0)
     if lost.any():
-        first = int(np.flatnonzero(lost)[0])
-        message = (
-            f"{int(lost.sum())} rows of {document.name} are marked as lost (line {table.lines[first]}, person "
-            f"{table.ids[first]}): the people are taken to go straight on in between, and are away before and after it"
-        )
-        notes = [ResultWarning("lost_rows", "position", message), *notes]
+        notes = [lost_rows(document, lost, table.lines, table.ids), *notes]
         details = details | {"lost_rows": int(lost.sum())}
     which = which & ~lost
     box = table.numbers[which, 1:5]

@@ -11,9 +11,10 @@ import numpy.typing as npt
 
 from hrsafety._records import dataclass
 from hrsafety.datasets.robots import RecordedRobot
+from hrsafety.io.reader import Document
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["Rows", "assumed"]
+__all__ = ["Rows", "assumed", "lost_rows"]
 
 Array = npt.NDArray[np.float64]
 
@@ -77,3 +78,15 @@ class Rows:
 def assumed(subject: str, message: str) -> ResultWarning:
     """Return the warning about something that a file does not say and that was taken from evidence."""
     return ResultWarning("assumed", subject, message)
+
+
+def lost_rows(
+    document: Document, lost: npt.NDArray[np.bool_], lines: npt.NDArray[np.int64], person: npt.NDArray[Any]
+) -> ResultWarning:
+    """Return the warning about rows in which a file says that a person was not seen."""
+    first = int(np.flatnonzero(lost)[0])
+    message = (
+        f"{int(lost.sum())} rows of {document.name} are marked as lost (line {lines[first]}, person {person[first]}): "
+        "the people are taken to go straight on in between, and are away before and after it"
+    )
+    return ResultWarning("lost_rows", "position", message)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,7 +12,7 @@ from hrsafety.errors import FileError, Shown
 from hrsafety.io.cells import TableColumn, read_columns
 from hrsafety.io.headers import DELIMITERS, LENGTHS, TIMES, Header, header_of
 from hrsafety.io.people.request import Request
-from hrsafety.io.people.rows import Rows
+from hrsafety.io.people.rows import Rows, assumed, lost_rows
 from hrsafety.io.reader import Document, Reader
 from hrsafety.plausibility import ResultWarning
 
@@ -64,7 +65,24 @@ ROLES = {
     "lat": ("lat", "latitude", "breite"),
     "lon": ("lon", "lng", "long", "longitude", "laenge"),
     "label": ("label", "type", "class", "category", "agenttype", "objecttype"),
+    "z": ("z", "posz", "zpos", "positionz", "zposition", "pz", "zest"),
+    "width": ("w", "width", "boxwidth", "bbwidth", "bboxwidth"),
+    "height": ("h", "height", "boxheight", "bbheight", "bboxheight"),
+    "lost": ("lost", "islost", "missing", "ismissing", "outofview", "outofsight"),
+    "occluded": ("occluded", "isoccluded", "hidden", "ishidden"),
+    "predicted": ("predicted", "ispredicted", "interpolated", "isinterpolated", "extrapolated", "isextrapolated"),
+    "seen": ("seen", "isseen", "visible", "isvisible", "detected", "isdetected", "valid", "isvalid"),
 }
+UNSEEN = ("lost", "occluded", "predicted", "seen")
+"""Roles of columns that tell in which rows nobody was seen; ``seen`` tells the contrary."""
+_FLAGS = {
+    **dict.fromkeys(("1", "1.0", "true", "t", "yes", "y"), True),
+    **dict.fromkeys(("0", "0.0", "false", "f", "no", "n"), False),
+}
+LEAST_RISE = 1.0
+"""A coordinate that varies by less, in m or another unit of the file, may be a height."""
+FLAT = 0.25
+"""A coordinate in the plane varies by less than this share of z where z is no height."""
 _CITR = ({"id", "frame", "label", "x_est", "y_est"}, {"frame", "id", "x", "y", "type"})
 CLASS_NAMES = dict.fromkeys(("ped", "peds", "pedestrians", "person", "people", "human"), "pedestrian")
 _OTHERS = {
@@ -152,6 +170,10 @@ class PeopleColumns(NamedTuple):
         Of positions; empty if the header names none.
     details : dict of str to object
         Delimiter and sign of decimals.
+    unseen : ndarray of bool, shape (n,)
+        Rows that the file marks as lost, occluded or predicted.
+    notes : list of ResultWarning
+        Doubts about what x and y are.
     """
 
     clock: Array
@@ -166,6 +188,8 @@ class PeopleColumns(NamedTuple):
     lines: npt.NDArray[np.int64]
     unit: str
     details: dict[str, Any]
+    unseen: npt.NDArray[np.bool_]
+    notes: list[ResultWarning]
 
 
 def table_columns(
@@ -206,7 +230,9 @@ def table_columns(
     unit = _unit_of_positions(document, header)
     moving = {"vx", "vy"} <= set(place) and _same_units(units, unit)
     both = clock == "time" and "frame" in place
-    wanted = [clock, "x", "y", *(["vx", "vy"] if moving else []), *(["frame"] if both else [])]
+    more = [each for each in ("z",) if each in place]
+    wanted = [clock, "x", "y", *(["vx", "vy"] if moving else []), *more, *(["frame"] if both else [])]
+    marks = [each for each in UNSEEN if each in place]
     table = read_columns(
         document,
         delimiter=header.delimiter,
@@ -215,8 +241,9 @@ def table_columns(
         comments=header.delimiter == " ",  # elsewhere an id may begin like a comment
         numbers=[TableColumn(place[each], header.names[place[each]]) for each in wanted],
         ids=None if single else TableColumn(place["id"], header.names[place["id"]]),
-        words=[TableColumn(place["label"], "label")] if "label" in place else [],
+        words=[TableColumn(place[each], each) for each in (*marks, "label") if each in place],
     )
+    marked = [_marked(name, table.words[:, index]) for index, name in enumerate(marks)]
     return PeopleColumns(
         clock=table.numbers[:, 0],
         frame=table.numbers[:, -1] if both else None,
@@ -226,11 +253,54 @@ def table_columns(
         person=table.ids,
         position=table.numbers[:, 1:3],
         velocity=table.numbers[:, 3:5] if moving else None,
-        label=table.words[:, 0] if "label" in place and (labeled or _tells_classes(table.words[:, 0])) else None,
+        label=table.words[:, -1] if "label" in place and (labeled or _tells_classes(table.words[:, -1])) else None,
         lines=table.lines,
         unit=unit,
         details={"delimiter": DELIMITERS[header.delimiter], "decimal": table.decimal},
+        unseen=np.any([np.zeros(len(table.lines), dtype=np.bool_), *marked], axis=0),
+        notes=[
+            *_of_boxes(document, header),
+            *(_of_height(document, header, table.numbers[:, [1, 2, 5 if moving else 3]]) if more else ()),
+        ],
     )
+
+
+def _marked(role: str, cells: npt.NDArray[np.str_]) -> npt.NDArray[np.bool_]:
+    """Return in which rows a column says that nobody was seen; in none if it holds anything but true and false."""
+    different, index = np.unique(cells, return_inverse=True)
+    flags = [_FLAGS.get(each.strip().lower()) for each in different.tolist()]
+    if None in flags:
+        return np.zeros(len(cells), dtype=np.bool_)
+    said = np.array(flags, dtype=np.bool_)[index.ravel()] if len(flags) else np.zeros(0, dtype=np.bool_)
+    return ~said if role == "seen" else said
+
+
+def _of_boxes(document: Document, header: Header) -> Iterator[ResultWarning]:
+    """Yield the doubt that x and y are those of the corner of a box."""
+    if {"width", "height"} <= set(header.place) and "center" not in header.names[header.place["x"]].lower():
+        yield assumed(
+            "position",
+            f"{document.name} has widths and heights of boxes: x and y are taken as where people stand, and are often "
+            "the corner of a box; write the middle of its lower side, or leave the sizes out, as "
+            f'columns={{"{header.names[header.place["width"]]}": "-"}} does',
+        )
+
+
+def _of_height(document: Document, header: Header, place: Array) -> Iterator[ResultWarning]:
+    """Yield the doubt that one of x and y is the height, from x, y and z of all rows."""
+    place = place[np.isfinite(place).all(axis=1)]
+    if not len(place):
+        return
+    x, y, z = np.ptp(place, axis=0).tolist()
+    if z > LEAST_RISE and min(x, y) < FLAT * z:
+        least = "x" if x < y else "y"
+        name, up = header.names[header.place[least]], header.names[header.place["z"]]
+        message = (
+            f"{up} of {document.name} varies by {z:.3g} and {name} by {min(x, y):.3g} only: {name} looks like the "
+            f"height, and {up} like a coordinate in the plane; exchange them, as "
+            f'columns={{"{name}": "{up}", "{up}": "{name}"}} does'
+        )
+        yield ResultWarning("implausible", "position", message)
 
 
 def rows_of(document: Document, request: Request, *, form: str, unit: str = "", guess: bool = True) -> Rows:
@@ -252,10 +322,17 @@ def rows_of(document: Document, request: Request, *, form: str, unit: str = "", 
     labeled = form == "citr"
     table = table_columns(document, request.columns, labeled=labeled)
     which, details = np.ones(len(table.clock), dtype=np.bool_), table.details
-    notes: list[ResultWarning] = []
+    notes = table.notes
     if table.label is not None:
-        which, notes, counts = of_classes(table.label, request, document)
-        details |= counts
+        which, others, counts = of_classes(table.label, request, document)
+        notes, details = [*others, *notes], details | counts
+    lost = which & table.unseen
+    if lost.any():
+        notes, details = (
+            [lost_rows(document, lost, table.lines, table.person), *notes],
+            details | {"lost_rows": int(lost.sum())},
+        )
+        which &= ~lost
     clock, frames, rate = _clock(document, request, table)
     length = table.unit or unit
     every = bool(which.all())

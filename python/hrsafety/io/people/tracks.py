@@ -78,10 +78,13 @@ def load_track(path: str | PathLike[str], *, fps: float | None = None) -> tuple[
     clock, lines = table.clock, table.lines
     if len(clock) == 0:
         raise document.error("no_rows", "hold at least one row", Shown("none"))
-    unknown = np.flatnonzero(np.isnan(clock) | np.isnan(table.position).any(axis=1))
+    unknown = np.flatnonzero(np.isnan(clock) | np.isnan(table.position).any(axis=1) | table.unseen)
     if len(unknown):
-        rule = "have a time and a place in each row"
-        raise document.error("unreadable_number", rule, Shown("none"), line=int(lines[unknown[0]]))
+        rule, found = (
+            "have a time and a place in each row",
+            "one marked as lost" if table.unseen[unknown[0]] else "none",
+        )
+        raise document.error("unreadable_number", rule, Shown(found), line=int(lines[unknown[0]]))
     column = f"column {table.clock_name}"
     if rate is not None:
         broken = np.flatnonzero(clock != np.floor(clock))
