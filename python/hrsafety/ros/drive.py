@@ -18,7 +18,7 @@ from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.ros.base import STANDING, PlanarTwist
 from hrsafety.ros.bridge import map_of
 from hrsafety.ros.bus import EVENTS, SENSOR, Bus, Message, Quality
-from hrsafety.ros.messages import Pose, pose_in, seconds, stamp, twist_in
+from hrsafety.ros.messages import Pose, pose_in, seconds, stamp, transform_in, twist_in
 from hrsafety.ros.steering import STAMPED, TWIST
 
 __all__ = ["SILENT", "LawNode"]
@@ -90,6 +90,9 @@ class LawNode:
         self._poses: deque[_Known] = deque(maxlen=64)
         self._scan: tuple[float, Array] | None = None
         self._lidar: Lidar | None = None
+        self._frames: dict[str, tuple[str, Pose | None, bool]] = {}  # parent, pose in it, whether it keeps up there
+        self._base = "base_footprint"
+        self._framed = bus.has("tf2_msgs/msg/TFMessage")
         self._people: deque[tuple[float, dict[str, Sighting]]] = deque(maxlen=64)
         self._gone: set[Hashable] = set()
         self._seen_at, self._done_at = -math.inf, -math.inf
@@ -106,10 +109,13 @@ class LawNode:
             bus.subscribe("/people", "people_msgs/msg/People", Quality(10), self._hear_people)
         else:
             bus.subscribe("/people_markers", "visualization_msgs/msg/MarkerArray", Quality(10), self._hear_markers)
-        if bus.has("tf2_msgs/msg/TFMessage"):
+        if self._framed:
+            fixed = Quality(100, transient_local=True)
+            bus.subscribe("/tf_static", "tf2_msgs/msg/TFMessage", fixed, self._hear_transforms)
             bus.subscribe("/tf", "tf2_msgs/msg/TFMessage", Quality(100), self._hear_transforms)
         else:
-            bus.log("warn", "tf2_msgs is not installed: /odom is taken to be in the frame of the map")
+            text = "/odom is taken to be in the frame of the map, and a lidar in the middle of the robot, looking ahead"
+            bus.log("warn", f"tf2_msgs is not installed: {text}")
         bus.subscribe("/scan", "sensor_msgs/msg/LaserScan", SENSOR, self._hear_scan)
         bus.subscribe("/goal_pose", "geometry_msgs/msg/PoseStamped", EVENTS, self._aim)
         bus.subscribe("/odom", "nav_msgs/msg/Odometry", Quality(10), self._hear_robot)
@@ -137,9 +143,13 @@ class LawNode:
 
     def _hear_people(self, message: Any) -> None:
         time = seconds(message.header.stamp)
-        found = {
-            each.name: (each.position.x, each.position.y, each.velocity.x, each.velocity.y) for each in message.people
-        }
+        found: dict[str, tuple[float, float, float, float]] = {}
+        for each in message.people:
+            name = each.name
+            while name in found:
+                self._count("people_names", f"two people in one message are called {each.name!r}: both are there")
+                name += "'"
+            found[name] = (each.position.x, each.position.y, each.velocity.x, each.velocity.y)
         self._take(time, message.header.frame_id, {name: Sighting(*four, time) for name, four in found.items()})
 
     def _hear_markers(self, message: Any) -> None:
@@ -170,22 +180,44 @@ class LawNode:
     def _hear_scan(self, message: Any) -> None:
         """Keep a scan, which tells that a person has left, and what else stands there."""
         ranges = np.asarray(message.ranges, dtype=np.float64)
-        if self._lidar is None and not self._learn(message, len(ranges)):
+        place = self._mounting(message.header.frame_id.lstrip("/"))
+        if place is None or (self._lidar is None and not self._learn(message, len(ranges), place)):
             return
-        if self._lidar is None or len(ranges) != self._lidar.beams:
-            self._count("scan_refused", "a scan has another number of beams than those before: it is not used")
+        if self._lidar is None or len(ranges) != self._lidar.beams or self._lidar.mounting != place:
+            rule = "has another number of beams or place of the lidar than those before"
+            self._count("scan_refused", f"a scan {rule}: it is not used")
             return
         self._scan = (seconds(message.header.stamp), np.where(ranges >= self._lidar.range_max, np.inf, ranges))
         self._try()
 
-    def _learn(self, message: Any, beams: int) -> bool:
-        """Return whether the lidar of a scan, in the middle of the robot, is one that the controller can have."""
+    def _mounting(self, frame: str) -> tuple[float, float, float] | None:
+        """Return where a lidar is on the robot by its transforms, in m, m and rad; ``None`` where that is not known."""
+        if not self._framed:
+            return 0.0, 0.0, 0.0
+        place, at, passed = Pose(0.0, 0.0, 0.0), frame, set[str]()
+        while at != self._base:
+            parent, pose, upright = self._frames.get(at, ("", None, True))
+            if pose is None or at in passed:
+                rule = f"the place of the lidar is not known: no transforms lead from {frame!r} to {self._base!r}"
+            elif not upright:
+                rule = f"the lidar {frame!r} is tilted or upside down"
+            else:
+                passed.add(at)
+                place, at = pose @ place, parent
+                continue
+            self._count("lidar_place", f"scans are not used: {rule}")
+            return None
+        return place.x, place.y, math.remainder(place.yaw, math.tau)
+
+    def _learn(self, message: Any, beams: int, mounting: tuple[float, float, float]) -> bool:
+        """Return whether the lidar of a scan is one that the controller can have."""
         step, most = float(message.angle_increment), float(message.range_max)
         width = step * (beams - 1)
         turns = math.isfinite(width) and width + 1.5 * step > math.tau
         try:
             first = float(message.angle_min)
-            lidar = Lidar(beams=beams, field_of_view=math.tau if turns else width, angle_min=first, range_max=most)
+            view = math.tau if turns else width
+            lidar = Lidar(beams=beams, field_of_view=view, angle_min=first, range_max=most, mounting=mounting)
             if np.abs(lidar.bearings - (first + step * np.arange(beams))).max() > 0.5 * abs(step):
                 raise InvalidParameterError("angle_increment", "divide a whole turn evenly", step)
             self._lidar = lidar
@@ -202,6 +234,9 @@ class LawNode:
             if each.header.frame_id.lstrip("/") == "map" and each.child_frame_id.lstrip("/") == "odom":
                 move, turn = each.transform.translation, each.transform.rotation
                 self._origin = Pose(move.x, move.y, 2.0 * math.atan2(turn.z, turn.w))
+            else:
+                known = (each.header.frame_id.lstrip("/"), *transform_in(each.transform))
+                self._frames[each.child_frame_id.lstrip("/")] = known
 
     def _hear_robot(self, message: Any) -> None:
         pose = pose_in(message.pose.pose)
@@ -211,6 +246,7 @@ class LawNode:
                 "odometry_not_finite", "odometry is not finite, or its quaternion has not the length 1: ignored"
             )
             return
+        self._base = message.child_frame_id.lstrip("/")
         if message.header.frame_id.lstrip("/") != "map":
             pose = self._origin @ pose
         sin, cos = math.sin(pose.yaw), math.cos(pose.yaw)

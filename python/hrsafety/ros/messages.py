@@ -28,11 +28,13 @@ __all__ = [
     "scan",
     "seconds",
     "stamp",
+    "transform_in",
     "transforms",
     "twist_in",
 ]
 
 _NANO = 1_000_000_000
+_UPRIGHT = math.cos(math.radians(5.0))
 _MOST_CELLS = 4_000_000
 """Cells of a map that is published; finer ones are made coarser."""
 
@@ -253,7 +255,17 @@ def twist_in(message: Any) -> tuple[float, float, float]:
 
 def pose_in(message: Any) -> Pose | None:
     """Return the pose of geometry_msgs/Pose; ``None`` where it is not finite or its quaternion is none."""
-    place, turn = message.position, message.orientation
+    return _pose(message.position, message.orientation)
+
+
+def transform_in(message: Any) -> tuple[Pose | None, bool]:
+    """Return the pose of geometry_msgs/Transform as `pose_in`, and whether it keeps up where it is."""
+    turn = message.rotation
+    pose = _pose(message.translation, turn)
+    return pose, pose is not None and 1.0 - 2.0 * (turn.x * turn.x + turn.y * turn.y) > _UPRIGHT
+
+
+def _pose(place: Any, turn: Any) -> Pose | None:
     parts = [float(each) for each in (place.x, place.y, turn.x, turn.y, turn.z, turn.w)]
     size = math.hypot(*parts[2:])
     if not all(map(math.isfinite, parts)) or not 0.9 < size < 1.1:

@@ -145,6 +145,72 @@ def test_a_person_in_the_way_is_not_driven_into() -> None:
     assert drive.last.speed < 0.05
 
 
+def static(*edges: tuple[str, str, tuple[float, float, float], dict[str, float]]) -> Any:
+    """Return transforms of edges: parent, child, place, and parts of the quaternion."""
+    none = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 0.0}
+    place = [{"translation": dict(zip("xyz", at, strict=True)), "rotation": none | turn} for _, _, at, turn in edges]
+    return told(
+        {
+            "transforms": [
+                {"header": {"frame_id": parent}, "child_frame_id": child, "transform": each}
+                for (parent, child, _, _), each in zip(edges, place, strict=True)
+            ]
+        }
+    )
+
+
+AHEAD, BACKWARD, OVER = {"w": 1.0}, {"z": 1.0}, {"x": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("edges", "mounting"),
+    [
+        ([("base_footprint", "laser", (0.0, 0.0, 0.2), AHEAD)], (0.0, 0.0, 0.0)),
+        ([("base_footprint", "laser", (-0.15, 0.0, 0.2), BACKWARD)], (-0.15, 0.0, math.pi)),
+        (
+            [
+                ("base_link", "laser", (0.1, 0.0, 0.1), BACKWARD),
+                ("base_footprint", "base_link", (0.0, 0.1, 0.1), {"z": math.sqrt(0.5), "w": math.sqrt(0.5)}),
+            ],
+            (0.0, 0.2, -0.5 * math.pi),
+        ),
+        ([("base_footprint", "laser", (0.0, 0.0, 0.2), OVER)], None),
+        ([("base_footprint", "laser", (math.nan, 0.0, 0.2), AHEAD)], None),
+        ([("arm", "laser", (0.0, 0.0, 0.2), AHEAD)], None),
+        ([("laser", "laser", (0.0, 0.0, 0.2), AHEAD)], None),
+        ([], None),
+    ],
+)
+def test_a_lidar_is_where_its_transforms_say(edges: Any, mounting: tuple[float, float, float] | None) -> None:
+    bus = FakeBus()
+    drive = LawNode(hall(), bus)
+    bus.say("/tf_static", static(*edges))
+    lidar = nav.Lidar(beams=360, range_max=12.0, mounting=mounting or (0.0, 0.0, 0.0))
+    for step in range(60):
+        now, body = 0.05 * step, Seen("a", 1.6, 0.0, 0.0, 0.0, 0.25)
+        ranges = lidar.scan((0.0, 0.0), 0.0, people=[(body.x, body.y, body.radius)])
+        message = messages.scan(now, lidar, ranges, 0.05) | {
+            "header": {"frame_id": "laser", "stamp": messages.stamp(now)}
+        }
+        told_of(bus, now, *([body] if step < 3 else []), speed=0.0)
+        bus.say("/scan", told(message))
+    assert drive.counts["lidar_place"] == (60 if mounting is None else 0)
+    # Who is in the way, and is not listed any more, stays there: the lidar sees somebody at that place.
+    assert drive.last is not None
+    assert drive.last.oldest > 2.0
+    assert all(speed < 0.3 for speed, _ in sent(bus)[-20:])
+
+
+def test_two_people_with_one_name_are_both_there() -> None:
+    bus = FakeBus()
+    drive = LawNode(hall(), bus)
+    told_of(bus, 0.0, Seen("a", 0.9, 0.0, 0.0, 0.0, 0.25), Seen("a", 6.0, 2.0, 0.0, 0.0, 0.25), speed=0.0)
+    assert drive.counts["people_names"] == 1
+    assert drive.last is not None
+    assert drive.last.speed is not None
+    assert drive.last.speed < 0.05
+
+
 @pytest.mark.parametrize("given", [pose(math.nan, 0.0), pose(1.0, 0.0, frame="odom")])
 def test_goals_that_are_none_are_refused(given: Any) -> None:
     bus = FakeBus()

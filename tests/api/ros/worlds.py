@@ -53,7 +53,7 @@ def ahead(bus: FakeBus) -> None:
 class Wire:
     """Hand over what a bridge publishes to a controller, and its commands back."""
 
-    TOPICS = ("/people", "/people_markers", "/tf", "/scan", "/odom")
+    TOPICS = ("/tf_static", "/people", "/people_markers", "/tf", "/scan", "/odom")
 
     def __init__(self, world: nav.World, bus: FakeBus, **given: Any) -> None:
         self.bus = FakeBus(types=sorted(bus.types))
