@@ -199,3 +199,21 @@ def test_the_map_of_a_bag_is_that_of_its_judgement(tmp_path: Path) -> None:
     assert log.map.unseen([(5.5, 0.0), (1.0, 0.0)]).tolist() == [True, False]
     found = nav.metrics.judge(log, map=log.map, robot_radius=0.3)
     assert [each.kind for each in found.contacts] == ["wall"]
+
+
+@pytest.mark.parametrize("kind", ["rosbag1", "sqlite3"])
+def test_two_people_with_one_id_are_refused(tmp_path: Path, kind: str) -> None:
+    make = Made(ros1=kind == "rosbag1")
+    rows = []
+    for step in range(40):
+        stamp = ORIGIN * 10**9 + step * 10**8
+        there = make.transform(stamp, "map", "base_link", (0.05 * step, 0.0, 0.0))
+        rows.append(("/tf", TRANSFORMS, stamp, there))
+        message = make.people(stamp, "map", {"person": (5.0 - 0.1 * step, 1.0), "other": (0.0, 9.0)})
+        for each in message.people:
+            each.name = "person"
+        rows.append(("/people", "people_msgs/msg/People", stamp, message))
+    path = write_bag(tmp_path / ("log.bag" if kind == "rosbag1" else "log"), kind, rows)
+    with pytest.raises(FileError, match=r"'person' at \(5, 1\) and \(0, 9\) in one message") as caught:
+        io.load_log(path)
+    assert caught.value.code == "two_positions_at_one_instant"

@@ -139,8 +139,14 @@ def sightings(message: Any, layout: Layout, name: str) -> Iterator[PersonMessage
         Where they stand.
     name : str
         File and topic, for errors.
+
+    Raises
+    ------
+    FileError
+        If two people have one id (``two_positions_at_one_instant``), or one has none (``no_ids``).
     """
     common = getattr(message, "header", None)
+    places: dict[tuple[str, int], tuple[float, float, float]] = {}
     for person in _at(message, layout.people, name):
         if not layout.present(person):
             continue
@@ -151,7 +157,15 @@ def sightings(message: Any, layout: Layout, name: str) -> Iterator[PersonMessage
         velocity = _three(_at(person, layout.velocity, name)) if layout.velocity else _NOWHERE
         predicted = bool(_at(person, layout.predicted, name)) if layout.predicted else False
         identity = _identity(person, layout.identity, name)
-        yield PersonMessage(stamp, frame, identity, _three(_at(person, layout.position, name)), velocity, predicted)
+        place = _three(_at(person, layout.position, name))
+        before = places.setdefault((identity, stamp), place)
+        if before != place and all(map(math.isfinite, (*before, *place))):
+            both = " and ".join(f"({x:.6g}, {y:.6g})" for x, y, _ in (before, place))
+            found = Shown(f"{identity!r} at {both} in one message")
+            remedy = 'people need ids of their own: name another field, people="/topic:list[] id=... position=..."'
+            rule = "have one position of a person at one instant"
+            raise FileError(name, rule, found, remedy, code="two_positions_at_one_instant")
+        yield PersonMessage(stamp, frame, identity, place, velocity, predicted)
 
 
 def _identity(person: Any, paths: Sequence[str], name: str) -> str:
