@@ -387,6 +387,9 @@ RANGES: dict[str, Range] = {
     "drive_stiffness": Range(
         500.0, 1e9, "N/m", "soft impedance control to a rigid frame", "N/mm or kN/m given for N/m"
     ),
+    "drive_force": Range(5.0, 1e5, "N", "the lightest arms to heavy industrial robots", "kN given for N"),
+    # 0 is the first touch, which who asks passes over.
+    "detection_force": Range(0.5, 2000.0, "N", "a skin for touch to heavy industrial robots", "kN given for N"),
     # A body region is smaller than a back; 1 cm^2, the area of many tests, must not pass as 1 m^2.
     "contact_area": Range(1e-6, 0.3, "m^2", "1 mm^2 to the back of a person", "mm^2 or cm^2 given for m^2"),
     "contact_radius": Range(1e-4, 100.0, "m", "an edge to nearly flat", "mm or cm given for m"),

@@ -24,6 +24,12 @@ __all__ = ["FASTEST_BRAKE", "MODELS", "Drive", "drive_of", "push_limit_of_torque
 
 MODELS = ("any_stiffness", "rigid", "push_limit", "elastic", "none")
 """Kinds of knowledge about a drive; the first one covers every spring."""
+_QUANTITIES = {
+    "deceleration": "robot_deceleration",
+    "stiffness": "drive_stiffness",
+    "push_limit": "drive_force",
+    "weight": "drive_force",
+}
 BRAKING = ("any_stiffness", "rigid", "elastic")
 """Models that push until they have braked."""
 MOST = MappingProxyType({"stiffness": 1e9, "damping": 1e6, "reaction_time": 60.0})
@@ -231,6 +237,8 @@ class Drive:
         """
         found = {each.name: getattr(self, each.name) for each in fields(self)}
         found = {name: value for name, value in found.items() if value is not None}
+        if self.deceleration is not None and math.isinf(self.deceleration):
+            found["deceleration"] = "unbounded"  # as results hold it
         if self.stopping is not None:
             names = ("speed", "time", "distance", "load", "extension")
             found["stopping"] = {name: np.asarray(getattr(self.stopping, name)).tolist() for name in names}
@@ -260,7 +268,10 @@ class Drive:
             return (ResultWarning("drive_not_given", "drive.model", "nothing is known of the drive"),)
         slow = None if self.deceleration is None or math.isinf(self.deceleration) else self.deceleration
         given = {"reaction_time": self.reaction_time, "deceleration": slow, "stiffness": self.stiffness}
-        found = implausible(given, {"deceleration": "robot_deceleration", "stiffness": "drive_stiffness"})
+        # 0 N is the first touch, or a weight that does not press.
+        forces = {"push_limit": self.push_limit, "weight": self.weight, "detection_force": self.detection_force}
+        given |= {name: force or None for name, force in forces.items()}
+        found = implausible(given, _QUANTITIES)
         stops = () if self.stopping is None else self.stopping.doubts
         return tuple(replace(each, subject=f"drive.{each.subject}") for each in (*found, *stops))
 

@@ -12,7 +12,7 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Parameters, number, numbers, own, vector
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
-from hrsafety.plausibility import ImplausibleWarning, ResultWarning, implausible, issue, warn_implausible
+from hrsafety.plausibility import RANGES, ImplausibleWarning, ResultWarning, implausible, issue, warn_implausible
 from hrsafety.tables import Columns, Table
 
 __all__ = ["SpeedCurve", "StoppingData", "separation_distance", "separation_speed", "speed_over_distance"]
@@ -45,7 +45,8 @@ class StoppingData(Parameters):
     """Measured stops: times and distances over speed, load and extension.
 
     Values in between are linear; outside the table nothing is known (``outside_table``). A distance of more than speed
-    times time, or of less than a fifth of it, is doubted (`doubts`) by all that takes these stops.
+    times time, or of less than a fifth of it, and a stop of more than 25 m/s^2 are doubted (`doubts`) by all that takes
+    these stops.
 
     Parameters
     ----------
@@ -116,20 +117,24 @@ class StoppingData(Parameters):
 
     @property
     def doubts(self) -> tuple[ResultWarning, ...]:
-        """Stops that no robot makes: a way beyond speed times time, or hardly any of it, at any load or extension."""
+        """Stops that no robot makes: a way beyond speed times time, hardly any of it, or a time that no brake needs."""
         time, distance = np.asarray(self.time), np.asarray(self.distance)
         speed = np.broadcast_to(np.reshape(np.asarray(self.speed), (-1, 1, 1)), time.shape)
         least, most = (share * speed * time for share in BRAKED)
         long = distance - most - ROUNDED * (1.0 + speed)
         short = least - distance - ROUNDED
+        sudden = speed - RANGES["robot_deceleration"].most * (time + ROUNDED)
+        sudden = np.where((long > 0.0) | (short > 0.0), -1.0, sudden)  # told already
         words = (
             "a robot that brakes covers no more than speed times time: is the time too short, or the distance in "
             "another unit?",
             f"hardly {BRAKED[0]:g} of speed times time, where a steady brake takes half of it: is the distance in "
             "another unit, or the time longer than the stop?",
+            f"a robot that brakes by {RANGES['robot_deceleration'].most:g} m/s^2 at most takes longer: is the time in "
+            "another unit, or missing?",
         )
         found = []
-        for beyond, why in zip((long, short), words, strict=True):
+        for beyond, why in zip((long, short, sudden), words, strict=True):
             held = (beyond > 0.0) & (speed > 0.0)
             if held.any():
                 at = np.unravel_index(int(np.argmax(np.where(held, beyond, -np.inf))), held.shape)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -224,3 +225,44 @@ def test_a_drive_in_another_unit_is_doubted(stiffness: float, told: bool) -> Non
     assert any("drive.stiffness" in each.subject for each in drive.doubts) == told
     clamped = contact.study(made(contacts=[planned("chest", "quasi_static", area=1e-4)], drive=drive, uncertain={}))
     assert ("implausible" in clamped.fields["doubts"]) == told
+
+
+@pytest.mark.parametrize(
+    ("slip", "told"),
+    [
+        ({"model": "push_limit", "push_limit": 0.06}, "drive.push_limit"),
+        ({"model": "push_limit", "push_limit": 6.0, "gravity": "acts", "weight": 0.08}, "drive.weight"),
+        ({"reaction_time": 0.02, "deceleration": 20.0, "detection_force": 0.03}, "drive.detection_force"),
+        ({"model": "push_limit", "push_limit": 6.0, "gravity": "acts", "weight": 0.0}, None),
+        ({"reaction_time": 0.02, "deceleration": 20.0, "detection_force": 0.0}, None),
+    ],
+)
+def test_forces_of_a_drive_in_kilonewtons_keep_no_limit(slip: dict[str, Any], told: str | None) -> None:
+    drive = contact.Drive(**slip)
+    assert [each.subject for each in drive.doubts] == ([told] if told else [])
+    slow = replace(planned("chest", "quasi_static", area=1e-4), speed=0.02, covering=None)
+    found = contact.study(made(contacts=[slow], drive=drive, uncertain={}, separation=None))
+    assert found.verdict == ("not_checked" if told else "within_limits")
+
+
+def test_a_drive_may_stop_at_once(tmp_path: Path) -> None:
+    path = tmp_path / "cell.toml"
+    path.write_text(
+        'speed = 0.05\ncontact_area = 1e-4\n[robot]\nmass = 6.0\n[[contacts]]\nregion = "chest"\n'
+        "[drive]\nreaction_time = 0.02\ndeceleration = inf\n",
+        encoding="utf-8",
+    )
+    found = contact.study(path)
+    assert found.verdict == "within_limits"
+    assert contact.load_cell(path).inputs["drive"]["deceleration"] == "unbounded"
+
+
+def test_the_worst_of_few_drawn_poses_is_no_bound() -> None:
+    arm = arms.Arm.example(armature=0.5, payload=arms.Payload("tool", 1.0))
+    for samples, told in ((1, True), (999, True), (1000, False)):
+        robot = contact.ContactRobot.of_arm(arm, link="tool", samples=samples)
+        (found,) = [each for each in robot.warnings if each.code == "few_poses"] or (None,)
+        assert (found is not None) == told
+        assert found is None or not found.safe_side
+    one = contact.ContactRobot.of_arm(arm, link="tool", poses=[[0.0, 0.4, 1.4, 0.0, 0.0, 0.0]])
+    assert not [each for each in one.warnings if each.code == "few_poses"]

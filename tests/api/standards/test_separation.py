@@ -160,6 +160,10 @@ def test_stops_that_no_robot_makes_are_told() -> None:
     (told,) = _doubted(speed=[0.0, 1.0, 2.0], time=[0.0, 0.3, 0.7], distance=[0.0, 0.00016, 0.0006])
     assert "speed 2 m/s" in told
     assert "in another unit" in told
+    for time in ([0.0, 0.0, 0.0], [0.0, 0.01, 0.03]):
+        (told,) = _doubted(speed=[0.0, 0.5, 1.0], time=time, distance=[0.0, 0.5 * time[1] * 0.5, 0.5 * time[2]])
+        assert "speed 1 m/s" in told
+        assert "25 m/s^2 at most takes longer" in told
     # A load that is not asked for counts, too; and both kinds at once.
     loads = {"speed": [0.0, 1.0, 2.0], "load": [0.0, 10.0], "time": [[0.0, 0.0], [0.3, 0.03], [0.7, 0.05]]}
     assert len(_doubted(**loads, distance=[[0.0, 0.0], [0.16, 0.16], [0.6, 0.6]])) == 1

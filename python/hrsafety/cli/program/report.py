@@ -84,7 +84,7 @@ def _values(
 ) -> dict[str, Any]:
     """Return what report.json holds."""
     program = study.program
-    inputs = canonical(dict(program.given))
+    inputs = canonical(numbers_of(program.given))
     values: dict[str, Any] = numbers_of(
         {
             "format": "hrsafety program report",

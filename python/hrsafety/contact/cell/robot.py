@@ -38,6 +38,8 @@ LEAST_MASS = 0.3
 SINGULAR = 10.0
 """A drawn pose whose mass is so many times the median is near a singular one."""
 QUANTILE = 0.99
+LEAST_SAMPLES = 1000
+"""Fewer drawn poses hardly show the heaviest ones: a hundredth of the poses of an arm weighs many times the median."""
 MOTORS = frozenset({"no_motor_inertia", "armature_suspicious"})
 """Doubts about what could only make a mass larger."""
 
@@ -308,6 +310,8 @@ class ContactRobot:
             *(() if held is None else doubts_of_base(rule, mass, held)),
             *(() if singular else _unlikely(mass)),
         ]
+        if more and len(rows) < LEAST_SAMPLES:
+            doubts.append(_few_poses(len(rows)))
         if singular:
             doubts.append(_near_singular(float(masses[worst]), quantile, len(rows)))
         return cls(
@@ -337,6 +341,14 @@ class ContactRobot:
 
 def _drawing(samples: int, seed: int) -> dict[str, Any]:
     return {"samples": count("samples", samples, most=MOST_SAMPLES), "seed": checked_seed("seed", seed)}
+
+
+def _few_poses(rows: int) -> ResultWarning:
+    words = (
+        f"no poses given: the worst of {rows} drawn ones may be far from the heaviest; give the poses of the task as "
+        f"poses, or {LEAST_SAMPLES} samples at least"
+    )
+    return ResultWarning("few_poses", "samples", words)
 
 
 def _given(poses: npt.ArrayLike, names: tuple[str, ...]) -> Array:
