@@ -33,6 +33,10 @@ SHORTEST_DWELL = 0.05
 THINNED = 0.25
 """Samples nearer to each other than this share of the tolerance are one place of the path."""
 FIRST_KNOTS = 4
+OFTEN_USED = 10.0
+"""A joint is taken to have at most so many times the fastest recorded rate as its velocity, to tell standstill."""
+CREEPS = 1e-2
+"""Way in rad or m of a joint in a standstill beyond which the robot moves."""
 FOLLOWS = 1e-2
 """Largest distance in rad or m of a joint of a log from where the arm has it."""
 UNSEEN = 0.25
@@ -284,7 +288,10 @@ def followed(log: JointLog, velocity: Array, tolerance: float) -> FollowedLog:
     dwells, worst = [0.0], 0.0
     place = np.zeros(len(log.time))
     length = 0.0
-    for first, last, still in _stretches(np.asarray((rates <= STILL * velocity).all(axis=1)), steps):
+    # Many files have velocities far beyond what the joints do.
+    used = min(OFTEN_USED * float((rates / velocity).max()), 1.0)
+    slow = np.asarray((rates <= STILL * used * velocity).all(axis=1))
+    for first, last, still in _stretches(slow, steps, log.joints):
         if still:
             dwells[-1] += float(log.time[last] - log.time[first])
             place[first : last + 1] = length
@@ -316,13 +323,14 @@ def _from(curves: list[JointCurve], joints: Array) -> tuple[Array, int]:
     return np.vstack([end, joints[1:]]), 0
 
 
-def _stretches(still: npt.NDArray[np.bool_], steps: Array) -> Iterator[tuple[int, int, bool]]:
-    """Yield first and last sample of each stretch, and whether the robot stands in it for long enough."""
+def _stretches(still: npt.NDArray[np.bool_], steps: Array, joints: Array) -> Iterator[tuple[int, int, bool]]:
+    """Yield first and last sample of each stretch, and whether the robot stands in it, for long enough and in place."""
     edges = np.flatnonzero(np.diff(still.astype(np.int8))) + 1
     runs = list(zip([0, *edges], [*edges, len(still)], strict=True))
     moving: int | None = None
     for first, last in runs:
-        if still[first] and float(steps[first:last].sum()) >= SHORTEST_DWELL * (1.0 - 1e-9):
+        stands = still[first] and float(np.ptp(joints[first : last + 1], axis=0).max()) <= CREEPS
+        if stands and float(steps[first:last].sum()) >= SHORTEST_DWELL * (1.0 - 1e-9):
             if moving is not None:
                 yield moving, first, False
                 moving = None

@@ -39,11 +39,26 @@ def test_standstill_of_a_log_is_a_dwell() -> None:
         chain(1), time=time, joints=values[:, np.newaxis], acceleration=1e3, velocity=100.0
     )
     assert len(found.dwells) == 3
-    # The slow starts and ends of the ramps stand, too: less than 0.1 rad/s.
+    # The slow starts and ends of the ramps stand, too.
     assert found.dwells[1] == pytest.approx(0.5, abs=0.12)
     assert found.retimed().time < time[-1]
     assert found.place[0] == 0.0
     assert found.place[-1] == pytest.approx(found.curve.length)
+
+
+@pytest.mark.parametrize("velocity", [3.0, 100.0, 1e3, 1e6])
+def test_a_slow_part_is_followed_whatever_velocity_a_file_has(velocity: float) -> None:
+    time = np.arange(0.0, 12.0, 0.01)
+    slow, fast = (np.clip(each, 0.0, 1.0) for each in (time / 4.0, time / 1.5 - 4.0))
+    ramp = 0.3 * (1.0 - np.cos(np.pi * slow)) + 0.75 * (1.0 - np.cos(np.pi * fast))
+    joints = np.column_stack([ramp, 0.3 * np.sin(np.pi * slow) ** 2])
+    found = program.ArmMotion.from_log(chain(2), time=time, joints=joints, velocity=velocity, acceleration=8.0)
+    places = np.linspace(0.0, found.curve.length, 4000)
+    apart = np.abs(joints[:, np.newaxis] - found.curve.at(places)[0]).max(axis=2).min(axis=1)
+    assert apart.max() <= 5e-3
+    # The robot stands for 2 s between both and for 4.5 s behind them.
+    assert found.dwells[1] == pytest.approx(2.0, abs=0.3)
+    assert found.dwells[2] == pytest.approx(4.5, abs=0.2)
 
 
 def test_a_log_stops_where_it_turns_back() -> None:
