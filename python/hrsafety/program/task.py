@@ -145,7 +145,7 @@ class ContactTask:
         for name, pad in self.coverings.items():
             instance(f"coverings[{name!r}]", pad, Covering)
         names: list[str] = []
-        links = self.motion.arm.link_names
+        links, moved = self.motion.arm.link_names, self.motion.arm.moved_links
         for place, each in enumerate(self.points):
             instance(f"points[{place}]", each, ContactPoint)
             if each.name in names:
@@ -154,6 +154,9 @@ class ContactTask:
             if each.link not in links:
                 rule = f"be a link of the arm: {', '.join(links)}"
                 raise InvalidParameterError(f"points[{place}].link", rule, each.link, meant(each.link, links))
+            if each.link not in moved:
+                rule = f"be a link that a joint moves ({', '.join(moved)}): nothing else hits anybody"
+                raise InvalidParameterError(f"points[{place}].link", rule, each.link)
             if each.covering is not None and each.covering not in self.coverings:
                 rule = f"name a covering ({', '.join(self.coverings) or 'none is given'})"
                 remedy = meant(each.covering, self.coverings)

@@ -321,6 +321,10 @@ def test_rates_of_a_covering_count_by_the_slower_neighbor() -> None:
     [
         ({"points": []}, "points must name one point"),
         ({"points": [program.ContactPoint(name="a", link="hand")]}, r"points\[0\].link must be a link of the arm"),
+        (
+            {"points": [program.ContactPoint(name="a", link="base")]},
+            r"points\[0\].link must be a link that a joint moves .*got 'base'",
+        ),
         ({"points": [program.ContactPoint(name="a", link="tool", covering="pad")]}, r"points\[0\].covering must name"),
         ({"segments": []}, "segments must be 1 to"),
         ({"link": "nowhere"}, "link must be"),
