@@ -285,6 +285,7 @@ RANGES: dict[str, Range] = {
     "beam_step": Range(
         2e-4, np.pi / 4.0, "rad", "0.0115 degrees, finer than any scanner of floors", "radians given for degrees"
     ),
+    "leg_radius": Range(0.02, 0.1, "m", "legs of children to thighs", "a diameter, mm or cm given for a radius in m"),
     "robot_max_turn_rate": Range(
         0.01, 20.0, "rad/s", "heavy trucks to small robots that spin", "degrees given for radians"
     ),

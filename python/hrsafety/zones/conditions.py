@@ -40,6 +40,7 @@ _QUANTITIES = {
     "error": "position_uncertainty",
     "supplement": "intrusion",
     "beam_step": "beam_step",
+    "leg_radius": "leg_radius",
     "footprint": "robot_radius",
 }
 

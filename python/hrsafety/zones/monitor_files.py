@@ -195,6 +195,10 @@ def monitor_of(document: YamlDocument, *, footprint: object = None) -> Collision
     doubts = list(document.warnings)
     if not _flag(node, "enabled", True):
         raise node["enabled"].error("be true", "a monitor that is switched off passes every command")
+    topics = [node[key].text() for key in ("cmd_vel_in_topic", "cmd_vel_out_topic") if key in node]
+    if len(topics) == 2 and topics[0].strip("/") == topics[1].strip("/"):
+        words = "be another topic than cmd_vel_in_topic"
+        raise node["cmd_vel_out_topic"].error(words, "the robot obeys commands that no zone has looked at")
     sources = _sources(node, doubts)
     zones = []
     for name in _names(node, "polygons"):

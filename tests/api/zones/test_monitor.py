@@ -170,6 +170,11 @@ def test_no_zone_makes_a_robot_faster_or_turns_its_way(
         ('      action_type: "stop"\n', "", r"Stop must hold action_type"),
         ('"stop"\n', '"stop"\n      min_points: 2.5\n', r"Stop\.min_points must be a whole number"),
         ("source_timeout: 0.2", "source_timeout: -1", r"source_timeout must be at least 0"),
+        (
+            "source_timeout: 0.2",
+            'source_timeout: 0.2\n    cmd_vel_in_topic: "cmd_vel"\n    cmd_vel_out_topic: "/cmd_vel"',
+            r"cmd_vel_out_topic must be another topic than cmd_vel_in_topic, got '/cmd_vel'",
+        ),
         ("collision_monitor:", "planner:", None),
     ],
 )

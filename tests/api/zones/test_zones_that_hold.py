@@ -318,3 +318,5 @@ def test_conditions_that_cannot_be_are_refused(change: dict[str, Any], argument:
 
 def test_implausible_conditions_are_doubted() -> None:
     assert [each.subject for each in replace(SMALL, reaction_time=150.0).warnings] == ["reaction_time"]
+    # A leg that is thicker than any is seen sooner, and by more beams.
+    assert [each.subject for each in replace(SMALL, leg_radius=0.3).warnings] == ["leg_radius"]
