@@ -16,6 +16,7 @@ from hrsafety.sweep.navigation_study import NavigationStudy
 from hrsafety.sweep.result import SweepResult, open
 from hrsafety.sweep.running import SweepInterrupted, SweepWarning, run
 from hrsafety.sweep.sampled_designs import LatinHypercube, Saltelli, Sobol
+from hrsafety.sweep.shares import SweepShares
 from hrsafety.sweep.sobol_indices import SobolIndices, sobol_indices
 from hrsafety.sweep.search_problem import Generation, SearchProblem
 from hrsafety.sweep.storage import SweepError
@@ -41,6 +42,7 @@ __all__ = [
     "SweepEstimate",
     "SweepInterrupted",
     "SweepResult",
+    "SweepShares",
     "SweepWarning",
     "estimate",
     "open",

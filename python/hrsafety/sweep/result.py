@@ -20,6 +20,7 @@ from hrsafety.sweep.axes import Axis, Column
 from hrsafety.sweep.designs import Design, Grid
 from hrsafety.sweep.lazy_columns import LazyColumn
 from hrsafety.sweep.sampled_designs import LatinHypercube, Saltelli, Sobol
+from hrsafety.sweep.shares import SweepShares, counted
 from hrsafety.sweep.storage import Folder, Memory, stored_columns
 
 if TYPE_CHECKING:
@@ -239,6 +240,45 @@ class SweepResult:
                 merged[name][start:stop] = values
             start = stop
         return {column.name: column.decoded(merged[column.name]) for column in chosen}
+
+    def shares(self, name: str, by: Iterable[str] = ()) -> SweepShares:
+        """Return how often each word of a column occurs in groups of the rows, with 95 % Wilson intervals.
+
+        Every group has a row for each word, so also for what never happened, whose upper end tells how often it may.
+
+        Parameters
+        ----------
+        name : str
+            A column of words or flags, or of counts: of these the share of rows with none and with some. ``"collided"``
+            of ``"outcome"`` leaves out contacts of worlds that diverged later; the columns of contacts have them.
+        by : iterable of str
+            Axes with levels (of a grid, or with values or whole numbers in a sample) and the column of the cases: rows
+            with the same values are a group. All rows are one without any.
+
+        Returns
+        -------
+        SweepShares
+            A table: a row for each group and word.
+
+        Raises
+        ------
+        InvalidParameterError
+            If a column is unknown or cannot be counted, or an axis has no levels.
+        SweepError
+            If a file is damaged.
+
+        Examples
+        --------
+        >>> from hrsafety import scenarios, sweep
+        >>> noise = sweep.Axis(name="measurement_scale", values=[0.02, 0.05])
+        >>> seeds = sweep.Axis(name="seed", low=0, high=49, scale="integer")
+        >>> study = sweep.NavigationStudy(scenarios=scenarios.configuration("c2"))
+        >>> table = sweep.run(sweep.Grid([noise, seeds]), study).shares("outcome", by=["measurement_scale"])
+        >>> arrived = table.word == "arrived"
+        >>> table.group["measurement_scale"][arrived].tolist(), table.rows[arrived].tolist()
+        ([0.02, 0.05], [50, 50])
+        """
+        return counted(self, name, by)
 
     # ---- other formats ------------------------------------------------------------------------------
 

@@ -75,6 +75,68 @@ def test_example_of_gains_writes_an_overview(tmp_path: Path, capsys: pytest.Capt
     assert f"<td>{best}</td>" in (out / "summary.html").read_text(encoding="utf-8")
 
 
+NOISY = """
+scenarios = ["c2", "c3"]
+axes = [
+    { name = "detour_gain", values = [0.0, 60.0] },
+    { name = "measurement_scale", values = [0.05] },
+    { name = "seed", from = 0, to = 19, scale = "integer" },
+]
+"""
+
+
+def test_shares_of_outcomes_stand_on_page_and_terminal(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    study = written(tmp_path / "study.toml", NOISY)
+    assert main(["sweep", study, "--out", str(tmp_path / "out")]) == 0
+    printed = capsys.readouterr()
+    result = sweep.open(tmp_path / "out")
+    table = result.shares("outcome", by=["detour_gain", "measurement_scale", "scenario"])
+    assert re.search(r"^ *detour gain .*scenario +rows +arrived +collided", printed.out, re.MULTILINE)
+    text = " ".join(page_of(tmp_path / "out" / "summary.html").texts)
+    for gain, scene in ((0.0, "c2"), (0.0, "c3"), (60.0, "c2"), (60.0, "c3")):
+        here = (table.group["detour_gain"] == gain) & (table.group["scenario"] == scene)
+        collided = int(table.count[here & (table.word == "collided")][0])
+        line = re.search(rf"^ *{gain:g} +0.05 +{scene} +20 (.*)$", printed.out, re.MULTILINE)
+        assert line is not None
+        share = f"{collided / 20:.1%} ("
+        assert share in line[1]
+        assert f"), {collided}" in line[1]
+        assert share in text
+    # Nobody diverges in a scenario, and 0 of 20 say up to 16.2 %, rounded outwards.
+    assert "diverged" not in printed.out
+    assert "0.0% (0.0% to 16.2%), 0" in printed.out
+    assert "of another one of their group" not in printed.err
+
+
+def test_of_many_groups_the_page_says_how_to_get_the_shares(tmp_path: Path) -> None:
+    study = written(
+        tmp_path / "study.toml", NOISY.replace("values = [0.0, 60.0]", "from = 0.0, to = 60.0, points = 13")
+    )
+    assert main(["sweep", study, "--out", str(tmp_path / "out")]) == 0
+    text = " ".join(page_of(tmp_path / "out" / "summary.html").texts)
+    call = re.search(r"in 26 groups of rows: sweep\.open\(\.\.\.\)\.shares\(\"outcome\", by=(\[.*?\])\)", text)
+    assert call is not None
+    assert call[1] == "['detour_gain', 'measurement_scale', 'scenario']"
+
+
+def test_shares_are_told_of_draws_only(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["sweep", written(tmp_path / "study.toml", CROSSING), "--out", str(tmp_path / "grid")]) == 0
+    assert "collided" not in capsys.readouterr().out.split("begun")[1]
+    kept = NOISY.replace("axes", 'outputs = ["end_time"]\naxes', 1)
+    assert main(["sweep", written(tmp_path / "study.toml", kept), "--out", str(tmp_path / "kept")]) == 0
+    assert "Outcomes" not in " ".join(page_of(tmp_path / "kept" / "summary.html").texts)
+
+
+def test_seeds_that_change_nothing_are_told_beside_the_shares(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    still = NOISY.replace("[0.05]", "[0.0]")
+    study = written(tmp_path / "study.toml", still)
+    assert main(["sweep", study, "--out", str(tmp_path / "out"), "--strict"]) == 4
+    assert "are the same run" in capsys.readouterr().err
+    assert "are the same run" in " ".join(page_of(tmp_path / "out" / "summary.html").texts)
+
+
 def test_table_is_written_as_csv_whatever_the_case_of_its_ending(tmp_path: Path) -> None:
     file, table = written(tmp_path / "a.toml", FAST), tmp_path / "rows.CSV"
     assert main(["sweep", file, "--out", str(tmp_path / "out"), "--table", str(table)]) == 0

@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 
+from hrsafety._bounds import MOST_ROWS_AT_ONCE
 from hrsafety.cli import output
 from hrsafety.cli.sweep.file import SweepFile
 from hrsafety.cli.sweep.summary import Summary, summarized
 from hrsafety.pages import sentence
 from hrsafety.pages.report import Report, ReportTable, Section
-from hrsafety.sweep import Axis, NavigationStudy, SweepResult
+from hrsafety.sweep import Axis, Grid, NavigationStudy, SweepResult, SweepShares
+from hrsafety.sweep.shares import SEED, levels_of
 
 __all__ = ["report_of"]
 
 _KINDS = {"grid": "grid", "latin_hypercube": "Latin hypercube", "sobol": "Sobol sequence"}
 # More values than these are given as a count.
 MOST_LISTED = 8
+# Of more groups of rows the page has no shares, and says how to get them.
+MOST_GROUPS = 24
+# Outcomes that the page tells of even if no run had them.
+_ALWAYS = ("arrived", "collided")
 
 
 def design_words(result: SweepResult) -> str:
@@ -60,6 +67,8 @@ def report_of(study: str, described: SweepFile, result: SweepResult, seconds: fl
     rest = [each for each in summary.numbers if each.column.name not in described.show]
     titles = ("quantity", "least", "mean", "largest", "without value")
     extremes = _extremes(summary, described.show)
+    by = _groups(described, result)
+    shares = None if by is None or _size(by) > MOST_GROUPS else result.shares("outcome", by)
     blocks: list[str | ReportTable] = [
         ReportTable(headers=[titles], rows=[(each.label, *each.numbers()) for each in shown], printed=True),
         *([ReportTable(headers=[titles], rows=[(each.label, *each.numbers()) for each in rest])] if rest else []),
@@ -79,11 +88,12 @@ def report_of(study: str, described: SweepFile, result: SweepResult, seconds: fl
         ],
         said=f"{len(result):,} rows",
         sections=[
+            *([] if by is None else [Section("Outcomes", _outcomes(by, shares, result))]),
             Section("Columns", blocks),
             *([Section("Extremes", [extremes])] if extremes.rows else []),
             Section("Settings", [settings]),
         ],
-        warnings=result.warnings,
+        warnings=result.warnings if shares is None else shares.warnings,
         warned="Warnings",
         files=["sweep.json", "the folder chunks, read with hrsafety.sweep.open"],
         source=study,
@@ -94,6 +104,47 @@ def _law_facts(described: SweepFile) -> list[tuple[str, str]]:
     """Return which law drives the robots, of a study with robots."""
     study = described.study
     return [("law", output.law_words(study.law))] if isinstance(study, NavigationStudy) else []
+
+
+def _groups(described: SweepFile, result: SweepResult) -> dict[str, int] | None:
+    """Return what makes groups of runs, each with its number of values; ``None`` if no run is drawn by chance."""
+    kept = any(each.name == "outcome" for each in result.found)
+    drawn = SEED in result.design.names or not isinstance(result.design, Grid)
+    if not (isinstance(described.study, NavigationStudy) and kept and drawn):
+        return None
+    levels = {each.name: levels_of(each, result.design, MOST_ROWS_AT_ONCE) for each in result.axes if each.name != SEED}
+    axes = {name: len(values) for name, values in levels.items() if values is not None}
+    return axes | ({result.columns[len(result.axes)].name: len(result.cases)} if result.cases else {})
+
+
+def _size(by: dict[str, int]) -> int:
+    return math.prod(by.values())
+
+
+def _outcomes(by: dict[str, int], shares: SweepShares | None, result: SweepResult) -> list[str | ReportTable]:
+    """Return the shares of the outcomes in each group of runs, or where they are to be had."""
+    if shares is None:
+        call = f'sweep.open(...).shares("outcome", by={list(by)})'
+        return [f"The shares of the outcomes in {_size(by):,} groups of rows: {call}."]
+    labels = {column.name: column.label for column in result.columns}
+    occurring = set(shares.word[shares.count > 0].tolist())
+    words = [word for word in dict.fromkeys(shares.word.tolist()) if word in occurring or word in _ALWAYS]
+    cells = [_share_words(shares, row) for row in range(len(shares.word))]
+    each = len(set(shares.word.tolist()))
+    rows = []
+    for at in range(0, len(cells), each):
+        told = dict(zip(shares.word[at : at + each].tolist(), cells[at : at + each], strict=True))
+        values = (_shown(shares.group[name][at].item()) for name in by)
+        rows.append((*values, f"{shares.rows[at]:,}", *(told[word] for word in words)))
+    titles = (*(labels[name] for name in by), "rows", *(word.replace("_", " ") for word in words))
+    note = "Share of the rows with these values that ended so, its 95 % Wilson interval, and the count."
+    return [note, ReportTable(headers=[titles], rows=rows, left=(), printed=True)]
+
+
+def _share_words(shares: SweepShares, row: int) -> str:
+    """Return a share with its interval, rounded outwards, and how many rows it is."""
+    low, high = math.floor(shares.low[row] * 1000.0) / 10.0, math.ceil(shares.high[row] * 1000.0) / 10.0
+    return f"{shares.share[row]:.1%} ({low:.1f}% to {high:.1f}%), {shares.count[row]:,}"
 
 
 def _extremes(summary: Summary, show: Sequence[str]) -> ReportTable:
