@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -17,10 +17,8 @@ from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Axis, Column
 from hrsafety.sweep.designs import Design, Grid
+from hrsafety.sweep.exports import Stored
 from hrsafety.tables import Columns, Table
-
-if TYPE_CHECKING:
-    from hrsafety.sweep.result import SweepResult
 
 __all__ = ["SEED", "SweepShares", "counted", "levels_of"]
 
@@ -88,7 +86,7 @@ def levels_of(axis: Axis, design: Design, most: int) -> npt.NDArray[np.float64] 
     return np.unique(whole.levels()) if size <= most else None
 
 
-def counted(result: SweepResult, name: object, by: object) -> SweepShares:
+def counted(result: Stored, name: object, by: object) -> SweepShares:
     """Return the shares of a column in groups of rows, see `SweepResult.shares`."""
     column = _counted_column(result, name)
     names = tuple(sequence("by", "be names of axes or the column of the cases", by))
@@ -135,7 +133,7 @@ def _interval(count: int, rows: int) -> tuple[float, float, float]:
     return (found.value, found.low, found.high)
 
 
-def _counted_column(result: SweepResult, name: object) -> Column:
+def _counted_column(result: Stored, name: object) -> Column:
     """Return the column that is counted, which has words, flags or counts."""
     known = [each.name for each in result.found if each.kind != "number"]
     if isinstance(name, str) and any(each.name == name for each in result.found if each.kind == "number"):
@@ -158,7 +156,7 @@ def _codes(column: Column, values: npt.NDArray[Any]) -> npt.NDArray[np.int64]:
     return (values > 0).astype(np.int64)
 
 
-def _kind_of_group(result: SweepResult, name: object, counted: str) -> npt.NDArray[Any]:
+def _kind_of_group(result: Stored, name: object, counted: str) -> npt.NDArray[Any]:
     """Return the values that tell the groups of a column apart."""
     leading = result.columns[: len(result.columns) - len(result.found)]
     chosen = word("by", name, [each.name for each in leading])
@@ -196,7 +194,7 @@ def _places(
 class _Repeats:
     """Looks for rows of a group that are one run, or hang on one draw, among the first rows."""
 
-    def __init__(self, result: SweepResult) -> None:
+    def __init__(self, result: Stored) -> None:
         self._result = result
         found = [each.name for each in result.found]
         self._telling = _TELLING if set(_TELLING) <= set(found) else ()
@@ -247,11 +245,15 @@ class _Repeats:
             yield ResultWarning("repeated_seeds", "by", self._repeated(by, f"{again} {of}"))
 
     def _repeated(self, by: tuple[str, ...], rows: str) -> str:
-        leading = self._result.columns[: len(self._result.columns) - len(self._result.found)]
-        continuous = [
-            each.name for each in self._result.axes if levels_of(each, self._result.design, MOST_TABLE_ROWS) is None
-        ]
-        pooled = [each.name for each in leading if each.name not in (*by, *continuous, SEED)]
+        levels = {
+            each.name: levels_of(each, self._result.design, MOST_TABLE_ROWS)
+            for each in self._result.axes
+            if each.name != SEED
+        }
+        pooled = [name for name, values in levels.items() if values is not None and len(values) > 1]
+        if len(self._result.cases) > 1:
+            pooled.append(self._result.columns[len(levels) + self._seeded].name)
+        pooled = [name for name in pooled if name not in by]
         what = "seed" if self._seeded else "row of the design"
         remedy = f"group by {' and '.join(pooled)}, too" if pooled else f"give each row a {SEED} of its own"
         return (

@@ -6,6 +6,8 @@ import json
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from hrsafety._bounds import MOST_ROWS_AT_ONCE
 from hrsafety.cli import output
 from hrsafety.cli.sweep.file import SweepFile
@@ -113,8 +115,8 @@ def _groups(described: SweepFile, result: SweepResult) -> dict[str, int] | None:
     if not (isinstance(described.study, NavigationStudy) and kept and drawn):
         return None
     levels = {each.name: levels_of(each, result.design, MOST_ROWS_AT_ONCE) for each in result.axes if each.name != SEED}
-    axes = {name: len(values) for name, values in levels.items() if values is not None}
-    return axes | ({result.columns[len(result.axes)].name: len(result.cases)} if result.cases else {})
+    axes = {name: len(values) for name, values in levels.items() if values is not None and len(values) > 1}
+    return axes | ({result.columns[len(result.axes)].name: len(result.cases)} if len(result.cases) > 1 else {})
 
 
 def _size(by: dict[str, int]) -> int:
@@ -128,23 +130,31 @@ def _outcomes(by: dict[str, int], shares: SweepShares | None, result: SweepResul
         return [f"The shares of the outcomes in {_size(by):,} groups of rows: {call}."]
     labels = {column.name: column.label for column in result.columns}
     occurring = set(shares.word[shares.count > 0].tolist())
-    words = [word for word in dict.fromkeys(shares.word.tolist()) if word in occurring or word in _ALWAYS]
-    cells = [_share_words(shares, row) for row in range(len(shares.word))]
-    each = len(set(shares.word.tolist()))
-    rows = []
-    for at in range(0, len(cells), each):
-        told = dict(zip(shares.word[at : at + each].tolist(), cells[at : at + each], strict=True))
-        values = (_shown(shares.group[name][at].item()) for name in by)
-        rows.append((*values, f"{shares.rows[at]:,}", *(told[word] for word in words)))
-    titles = (*(labels[name] for name in by), "rows", *(word.replace("_", " ") for word in words))
+    told = {
+        word.replace("_", " "): _share_words(shares, word)
+        for word in dict.fromkeys(shares.word.tolist())
+        if word in occurring or word in _ALWAYS
+    }
     note = "Share of the rows with these values that ended so, its 95 % Wilson interval, and the count."
-    return [note, ReportTable(headers=[titles], rows=rows, left=(), printed=True)]
+    if any(each.name == "contacts_at_fault" for each in result.found):
+        told["contact at fault"] = _share_words(result.shares("contacts_at_fault", by), "some")
+        note += " A contact is at fault where the robot moves toward whom it touches."
+    first = shares.word == shares.word[0]
+    values = ([_shown(value) for value in shares.group[name][first].tolist()] for name in by)
+    columns = (*values, [f"{rows:,}" for rows in shares.rows[first].tolist()], *told.values())
+    titles = (*(labels[name] for name in by), "rows", *told)
+    return [note, ReportTable(headers=[titles], rows=list(zip(*columns, strict=True)), left=(), printed=True)]
 
 
-def _share_words(shares: SweepShares, row: int) -> str:
-    """Return a share with its interval, rounded outwards, and how many rows it is."""
-    low, high = math.floor(shares.low[row] * 1000.0) / 10.0, math.ceil(shares.high[row] * 1000.0) / 10.0
-    return f"{shares.share[row]:.1%} ({low:.1f}% to {high:.1f}%), {shares.count[row]:,}"
+def _share_words(shares: SweepShares, word: str) -> list[str]:
+    """Return the share of a word in each group with its interval, rounded outwards, and how many rows it is."""
+    here = np.flatnonzero(shares.word == word)
+    low, high = np.floor(shares.low[here] * 1000.0) / 10.0, np.ceil(shares.high[here] * 1000.0) / 10.0
+    columns = (shares.share[here].tolist(), low.tolist(), high.tolist(), shares.count[here].tolist())
+    return [
+        f"{share:.1%} ({least:.1f}% to {most:.1f}%), {count:,}"
+        for share, least, most, count in zip(*columns, strict=True)
+    ]
 
 
 def _extremes(summary: Summary, show: Sequence[str]) -> ReportTable:
