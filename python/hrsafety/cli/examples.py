@@ -139,7 +139,8 @@ VALIDATE = """examples:
   hrsafety validate my_first_crossing.toml gain_study.toml
   hrsafety validate robot.urdf --strict
 
-Each file is read as its command reads it, and nothing is run. The exit code is 2 if a file is invalid.
+Each file is read as its command reads it, and nothing is run but, of a sweep over seeds, a few rows to see that they
+differ. The exit code is 2 if a file is invalid.
 """
 
 ZONES = """examples:

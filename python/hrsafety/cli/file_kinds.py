@@ -18,6 +18,7 @@ from hrsafety.cli.sweep import file as sweep_file
 from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.warnings import runs as run_warnings
 from hrsafety.plausibility import ResultWarning
+from hrsafety.sweep.chunks import planned
 
 __all__ = ["KINDS", "FileKind", "kind_of", "starter"]
 
@@ -68,8 +69,8 @@ def _gains(path: str) -> Warnings:
 
 
 def _sweep(path: str) -> Warnings:
-    sweep_file.load(path)
-    return ()
+    found = sweep_file.load(path)
+    return planned(found.design, found.study, chunk_rows=found.chunk_rows, least_chunks=0, threads=None).doubts()
 
 
 def _cell(path: str) -> Warnings:
@@ -94,7 +95,7 @@ KINDS = {
     "world": FileKind("world", "ros", ("people", "sources", "walls"), _world),
     "scenario": FileKind("scenario", "simulate", ("start", "goal", "obstacles"), _scenario),
 }
-"""Kinds by the word that ``hrsafety init`` takes, in the order in which they are recognized."""
+"""Kinds by name, in the order in which they are recognized; ``hrsafety init`` has a file to start from of each."""
 
 ARM = FileKind("arm", "arm", (), _arm)
 

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from hrsafety._arguments import count
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Column
 from hrsafety.sweep.designs import Design
 from hrsafety.sweep.identity import described, digest
@@ -70,6 +71,11 @@ class SweepPlan:
     def __len__(self) -> int:
         """Return the number of chunks."""
         return -(-self.rows // self.chunk_rows)
+
+    def doubts(self) -> tuple[ResultWarning, ...]:
+        """Return the doubts of design and study before anything runs."""
+        design = self.task.design
+        return (*design.warnings, *self.task.study.judged(design))
 
     def span(self, index: int) -> tuple[int, int]:
         """Return first row and end of a chunk."""

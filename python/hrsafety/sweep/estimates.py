@@ -166,7 +166,7 @@ def estimate(
         threads=thread_count(threads),
     )
     wanted = range(len(plan)) if share is None else share.of(len(plan))
-    doubts = (*plan.task.design.warnings, *study.judged(plan.task.design))
+    doubts = plan.doubts()
     # Only the last chunk may have fewer rows.
     rows = len(wanted) * plan.chunk_rows
     if len(plan) - 1 in wanted:

@@ -96,12 +96,17 @@ def test_shares_of_outcomes_stand_on_page_and_terminal(tmp_path: Path, capsys: p
     for gain, scene in ((0.0, "c2"), (0.0, "c3"), (60.0, "c2"), (60.0, "c3")):
         here = (table.group["detour_gain"] == gain) & (table.group["scenario"] == scene)
         collided = int(table.count[here & (table.word == "collided")][0])
-        line = re.search(rf"^ *{gain:g} +0.05 +{scene} +20 (.*)$", printed.out, re.MULTILINE)
+        line = re.search(rf"^ *{gain:g} +{scene} +20 (.*)$", printed.out, re.MULTILINE)
         assert line is not None
         share = f"{collided / 20:.1%} ("
         assert share in line[1]
         assert f"), {collided}" in line[1]
         assert share in text
+        at_fault = int(
+            (result["contacts_at_fault"][(result["detour_gain"] == gain) & (result["scenario"] == scene)] > 0).sum()
+        )
+        assert line[1].endswith(f"), {at_fault}")
+    assert (result["contacts_at_fault"] > 0).sum() < (result["outcome"] == "collided").sum()
     # Nobody diverges in a scenario, and 0 of 20 say up to 16.2 %, rounded outwards.
     assert "diverged" not in printed.out
     assert "0.0% (0.0% to 16.2%), 0" in printed.out
@@ -116,7 +121,7 @@ def test_of_many_groups_the_page_says_how_to_get_the_shares(tmp_path: Path) -> N
     text = " ".join(page_of(tmp_path / "out" / "summary.html").texts)
     call = re.search(r"in 26 groups of rows: sweep\.open\(\.\.\.\)\.shares\(\"outcome\", by=(\[.*?\])\)", text)
     assert call is not None
-    assert call[1] == "['detour_gain', 'measurement_scale', 'scenario']"
+    assert call[1] == "['detour_gain', 'scenario']"
 
 
 def test_shares_are_told_of_draws_only(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -135,6 +140,40 @@ def test_seeds_that_change_nothing_are_told_beside_the_shares(
     assert main(["sweep", study, "--out", str(tmp_path / "out"), "--strict"]) == 4
     assert "are the same run" in capsys.readouterr().err
     assert "are the same run" in " ".join(page_of(tmp_path / "out" / "summary.html").texts)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (NOISY.replace("[0.05]", "[0.0]"), "are the same run"),
+        (NOISY.replace("[0.05]", "[0.05, 500.0]"), "measurement"),
+        (FAST.replace("5e3, to = 6e4", "5.0, to = 60.0"), "foam_stiffness"),
+        (FAST.replace("axes = [", 'design = { kind = "sobol", size = 12 }\naxes = ['), "not a power of two"),
+    ],
+)
+def test_validate_tells_the_doubts_of_a_dry_run(
+    text: str, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    study = written(tmp_path / "study.toml", text)
+    assert main(["sweep", study, "--dry-run"]) == 0
+    told = capsys.readouterr().err
+    assert words in told
+    assert main(["validate", study]) == 0
+    checked = capsys.readouterr()
+    assert checked.err == told
+    assert re.search(r"sweep file, \d+ warning", checked.out)
+    assert main(["validate", study, "--strict"]) == 4
+
+
+def test_validate_refuses_what_a_sweep_refuses_and_writes_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    study = written(tmp_path / "study.toml", CROSSING.replace("detour_gain", "detour_gian"))
+    for command in (["sweep", study, "--dry-run"], ["validate", study]):
+        assert main(command) == 2
+        assert "detour_gian" in error_line(capsys)
+    assert [each.name for each in tmp_path.iterdir()] == ["study.toml"]
 
 
 def test_table_is_written_as_csv_whatever_the_case_of_its_ending(tmp_path: Path) -> None:
