@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from hrsafety.cli import output
-from hrsafety.cli.file_kinds import KINDS, starter
+from hrsafety.cli.file_kinds import kind_of, starter
 from hrsafety.cli.parsers import STARTERS
 from hrsafety.errors import InvalidParameterError
 
@@ -26,4 +26,4 @@ def write_starter(options: argparse.Namespace) -> None:
         raise InvalidParameterError("FILE", "not exist", path, "nothing is overwritten; give another name")
     print(f"wrote {output.write_text(place, starter(options.kind, path))}")
     shown = f'"{path}"' if " " in path else path
-    print(f"next  hrsafety {KINDS[options.kind].command} {shown} --out {place.stem}")
+    print(f"next  hrsafety {kind_of(str(place)).command} {shown} --out {place.stem}")

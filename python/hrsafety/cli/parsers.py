@@ -57,6 +57,7 @@ STARTERS = {
     "foam": "foam_design.toml",
     "gains": "gain_study.toml",
     "sweep": "impact_sweep.toml",
+    "run_sweep": "run_sweep.toml",
     "contact": "cell.toml",
     "program": "robot_program.toml",
     "world": "people_in_a_hall.toml",

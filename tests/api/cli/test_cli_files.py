@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import hrsafety
+from hrsafety import sweep
 from hrsafety.cli import exit_codes, main
 from hrsafety.cli.file_kinds import KINDS
 from hrsafety.cli.parsers import STARTERS
@@ -29,11 +30,34 @@ def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("kind", STARTERS)
 def test_a_file_to_start_from_is_valid_and_names_itself(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["init", kind, "mine.toml"]) == 0
+    found = KINDS["sweep" if kind == "run_sweep" else kind]
     written = capsys.readouterr().out.splitlines()
-    assert written == ["wrote mine.toml", f"next  hrsafety {KINDS[kind].command} mine.toml --out mine"]
-    assert "examples/" not in Path("mine.toml").read_text(encoding="utf-8").splitlines()[2]
-    assert main(["validate", "mine.toml", "--strict"]) == 0
-    assert capsys.readouterr().out.startswith(f"mine.toml: {KINDS[kind].title} file, valid")
+    assert written == ["wrote mine.toml", f"next  hrsafety {found.command} mine.toml --out mine"]
+    text = Path("mine.toml").read_text(encoding="utf-8")
+    assert kind == "contact" or f"hrsafety {found.command} mine.toml" in text
+    assert "examples/" not in text.splitlines()[2]
+    # The foams of the sweep of impacts are varied beyond what is closed, and its text says that there is a warning.
+    doubted = "a warning says so" in text
+    assert doubted == (kind == "sweep")
+    assert main(["validate", "mine.toml", "--strict"]) == (exit_codes.WARNED if doubted else 0)
+    answer = capsys.readouterr()
+    assert answer.out.startswith(f"mine.toml: {found.title} file, {'1 warning' if doubted else 'valid'}")
+    assert ("compress the foam by more than its thickness" in answer.err) == doubted
+
+
+def test_the_sweep_of_runs_to_start_from_runs_without_a_doubt(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["init", "run_sweep"]) == 0
+    assert capsys.readouterr().out.splitlines()[0] == "wrote run_sweep.toml"
+    assert main(["sweep", "run_sweep.toml", "--out", "out", "--strict"]) == 0
+    assert capsys.readouterr().err == ""
+    result = sweep.open("out")
+    assert len(result) == 2 * 100 * 4 * 2
+    table = result.shares("outcome", by=["measurement_scale", "detour_gain", "scenario"])
+    assert table.warnings == ()
+    assert set(table.rows.tolist()) == {100}
+    # The gain that is asked for matters: the groups differ by more than their intervals.
+    collided = table.word == "collided"
+    assert table.high[collided].min() < table.low[collided].max()
 
 
 def test_files_to_start_from_are_the_examples() -> None:
