@@ -73,7 +73,7 @@ def sweep_file(options: argparse.Namespace) -> None:
         tables = [write[target.suffix.lower()](target)]
     written = output.write_report(report, place, make(result, described.show), tables)
     output.say_written(written, report, options)
-    output.report_warnings(report.warnings, options.strict)
+    output.report_warnings(output.warnings_of(report), options.strict)
 
 
 def _described(options: argparse.Namespace) -> SweepFile:
