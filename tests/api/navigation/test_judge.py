@@ -18,6 +18,7 @@ from hrsafety import contact, datasets, io, standards
 from hrsafety import navigation as nav
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.metrics import Judgement, PermitRules, judge
+from hrsafety.plausibility import unsafe_doubts
 
 SHARED = Path(__file__).resolve().parents[3].parent / "shared"
 FOLDER = Path(os.environ.get("HRSAFETY_SHARED", SHARED)) / "data" / "formats"
@@ -132,6 +133,11 @@ def test_walls_are_touched_between_instants_too() -> None:
     grid = nav.StaticMap.from_grid(np.zeros((40, 40), dtype=int), resolution=0.1, outside="unknown")
     outside = judge(log_of(lambda t: (t, 1.0 + 0 * t), {}), map=grid, robot_radius=0.3)
     assert "outside_map" in {each.reason for each in outside.not_judged}
+    (doubt,) = [each for each in unsafe_doubts(outside.warnings) if each.code == "unknown_ground"]
+    assert "the log leads" in doubt.message
+    inside = judge(log_of(lambda t: (1.0 + 0.1 * t, 1.0 + 0 * t), {}), map=grid, robot_radius=0.3)
+    assert "outside_map" not in {each.reason for each in inside.not_judged}
+    assert "unknown_ground" not in {each.code for each in inside.warnings}
 
 
 def test_without_people_nothing_is_judged() -> None:

@@ -24,6 +24,7 @@ from hrsafety.navigation.judging.touches import Touch, clearances, people_touche
 from hrsafety.navigation.judging.unjudged import NotJudged, judged_share, nearest_unseen, not_judged
 from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.maps.static_map import StaticMap
+from hrsafety.navigation.maps.unknown import over_unknown
 from hrsafety.navigation.metrics.between import Outlined
 from hrsafety.navigation.metrics.declared import METRICS, OF_GOAL
 from hrsafety.navigation.metrics.episode import Episode
@@ -319,6 +320,7 @@ def judge(
         *_circled(outline),
         *_sideways(both, robot),
         *people_off_map(log.people, both, walls),
+        *(() if walls is None else over_unknown(walls, both.position[both.known], "the log")),
         *other_twists(log, both),
     )
     return Judgement(
