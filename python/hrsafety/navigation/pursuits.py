@@ -287,6 +287,7 @@ def falsify(
         warnings=(
             *implausible({"person_radius": size, "person_speed": fastest}, {"person_speed": "pursuer_speed"}),
             *run_warnings.of_run(pursued, drives, robot, step),
+            *run_warnings.of_way(drives, worst.position, pursued.walls),
             *_of_turns(drives, fastest),
             *(() if how == "hidden" else _of_walls(drives)),
         ),

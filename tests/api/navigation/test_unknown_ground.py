@@ -421,7 +421,9 @@ def test_a_run_out_of_the_image_of_a_scene_is_over_unknown_ground(place: Any, tm
     found = []
     for goal in ((1.0, 1.0), (5.0, 1.0)):
         scene = nav.Scenario(start=(0.0, 1.0), goal=goal, walls=there)
-        run = nav.simulate(nav.World.of(scene) if place is nav.World else scene, nav.VirtualForceField())
+        there_too = nav.World.of(scene) if place is nav.World else scene
+        run = nav.simulate(there_too, nav.VirtualForceField())
         assert run.outcome == "arrived"
-        found.append("unknown_ground" in codes(run))
-    assert found == [False, True]
+        attacked = nav.falsify(there_too, nav.VirtualForceField(), episodes=1)
+        found.append(("unknown_ground" in codes(run), "unknown_ground" in codes(attacked)))
+    assert found == [(False, False), (True, True)]
