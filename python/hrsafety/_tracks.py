@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from hrsafety._arguments import Pair
 from hrsafety.plausibility import RANGES, ResultWarning
 
 __all__ = [
@@ -17,6 +18,7 @@ __all__ = [
     "Ways",
     "cutoff",
     "fitted_rows",
+    "gaps_of_paths",
     "motion_of_ways",
     "plausible_unit",
     "position_noise",
@@ -50,6 +52,7 @@ JUMP_SPEED, JUMP_LENGTH, ORDINARY_SPEED = 6.0, 0.5, 3.0
 SWITCH_RESIDUAL, SWITCH_GAIN = 0.6, 4.0
 """Deviation of two people from constant velocity in m, and how many times smaller it is with exchanged ids."""
 LONG_GAP, GAP_RATIO = 2.0, 10.0
+GAP_IN_TRACK = "gap_in_track"
 """Without a row for longer than the first, in s, and than so many median steps a person is not seen."""
 NOISE_ACCELERATION = 3.0
 """Noise of accelerations per axis that is more than people do, in m/s^2."""
@@ -379,6 +382,10 @@ class Ways(NamedTuple):
 
     # ---- gaps and noise -------------------------------------------------------------------------
 
+    def gap_doubt(self, named: Callable[[int], str]) -> tuple[ResultWarning, ...]:
+        """Return the doubt of `doubts` about people who are away for long, alone."""
+        return self._gap_doubt(np.diff(self.time), self.gaps(self.periods()), named)
+
     def _gap_doubt(self, spans: Array, gaps: Flags, named: Callable[[int], str]) -> tuple[ResultWarning, ...]:
         """Return a doubt about people who are away for long."""
         long = np.flatnonzero(gaps)
@@ -390,7 +397,7 @@ class Ways(NamedTuple):
             f"{named(int(self.who[worst]))} is not seen for {spans[worst]:g} s after {self.time[worst]:g} s and taken "
             f"to go straight on in between{more}: give who was away, or another person, an id of its own"
         )
-        return (ResultWarning("gap_in_track", "person", message),)
+        return (ResultWarning(GAP_IN_TRACK, "person", message),)
 
     def _noise(self, sigma: float, period: float, lengths: Array, smoothing: str) -> tuple[ResultWarning, ...]:
         """Return a doubt about positions whose noise is larger than their motion."""
@@ -522,3 +529,23 @@ def _in_parts(sizes: Indices) -> list[slice]:
         found.append(slice(begin, end))
         begin = end
     return found
+
+
+def gaps_of_paths(
+    paths: Mapping[str, tuple[Sequence[float], Sequence[Pair]]], told: Sequence[ResultWarning]
+) -> tuple[ResultWarning, ...]:
+    """Return the doubt about paths with long times between two places, unless it has been told of their recording.
+
+    Parameters
+    ----------
+    paths : mapping of str to pair
+        Instants in s and places in m by the names of those who move.
+    told : sequence of ResultWarning
+        Doubts about what they come from.
+    """
+    if not paths or any(each.code == GAP_IN_TRACK for each in told):
+        return ()
+    names, counts = list(paths), [len(time) for time, _ in paths.values()]
+    time = np.concatenate([np.asarray(each, dtype=np.float64) for each, _ in paths.values()])
+    place = np.concatenate([np.asarray(each, dtype=np.float64) for _, each in paths.values()])
+    return Ways(time, np.repeat(np.arange(len(names)), counts), place).gap_doubt(names.__getitem__)

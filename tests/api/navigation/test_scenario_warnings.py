@@ -308,3 +308,24 @@ def test_a_goal_in_the_walls_is_doubted(goal: tuple[float, float], doubted: bool
     walls = nav.StaticMap.from_polylines([[(5.0, -2.0), (5.0, 2.0)]])
     there = nav.Scenario(start=(0.0, 0.0), goal=(goal[0] + 0.15, 0.0), walls=walls)
     assert ("goal_in_wall" in codes(there)) == doubted
+
+
+def test_a_recorded_person_who_is_not_seen_for_long_is_doubted_in_scenes_made_by_hand() -> None:
+    time = np.arange(0.0, 12.0, 0.1)
+    seen = (time < 3.0) | (time > 7.0)
+    way = np.stack([9.0 - time, 0.0 * time + 3.0], axis=1)
+    found = []
+    for rows in (seen, np.ones(len(time), dtype=bool)):
+        person = nav.Human.from_path(time[rows], way[rows])
+        by_hand = scene(person)
+        agent = nav.Person(start=tuple(way[0]), recording=(time[rows], way[rows]))
+        worlds = nav.World.of(by_hand), nav.World(people=[agent], robots=[nav.Robot(**ENDS)])
+        found.append([codes(by_hand).count("gap_in_track"), *(codes(each).count("gap_in_track") for each in worlds)])
+    assert found == [[1, 1, 1], [0, 0, 0]]
+    (doubt,) = [
+        each for each in scene(nav.Human.from_path(time[seen], way[seen])).warnings if each.code == "gap_in_track"
+    ]
+    assert not doubt.safe_side
+    assert doubt.message.startswith("obstacles[0] is not seen for 4.2 s")
+    told = scene(nav.Human.from_path(time[seen], way[seen]), doubts=[doubt])
+    assert codes(told) == ["gap_in_track"]

@@ -11,6 +11,7 @@ import numpy as np
 
 from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair
+from hrsafety._tracks import gaps_of_paths
 from hrsafety.navigation.crowd.agents import FASTEST_DRAWN, Person, Robot, Source, middle_of
 from hrsafety.navigation.laws.shield import Shield
 from hrsafety.navigation.maps.static_map import StaticMap
@@ -37,6 +38,7 @@ from hrsafety.plausibility import RANGES, ResultWarning, gathered, implausible
 
 __all__ = [
     "of_footprints",
+    "of_gaps",
     "of_maps",
     "of_numbers",
     "of_people",
@@ -281,6 +283,14 @@ def of_unknown_walls(walls: StaticMap, robots: Sequence[Robot]) -> tuple[ResultW
         own = () if built is None else tuple(each.map for each in built.sensors if isinstance(each, Lidar))
         found.append((f"robots[{index}]", tuple(unknown_walls(walls, robot.law, own))))
     return gathered(found, "robots")
+
+
+def of_gaps(people: Sequence[Person], told: Sequence[ResultWarning]) -> tuple[ResultWarning, ...]:
+    """Return the doubt about recorded people with long times between two places; ``told``: of their recording."""
+    paths = {
+        f"people[{index}]": each.recording or getattr(each.mover, "path", None) for index, each in enumerate(people)
+    }
+    return gaps_of_paths({name: path for name, path in paths.items() if path is not None}, told)
 
 
 def of_maps(robots: Sequence[Robot]) -> Iterator[ResultWarning]:

@@ -15,6 +15,7 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.crowd.agents import Person, Robot, Source
 from hrsafety.navigation.crowd.doubts import (
     of_footprints,
+    of_gaps,
     of_maps,
     of_numbers,
     of_robots,
@@ -287,7 +288,8 @@ class World(Place):
             in_walls = of_walls(*own, self._native, shapes) if shapes else ()
             known = self.walls if isinstance(self.walls, StaticMap) else None
             seen = of_sensors(own[0], own[2], self.step, known)
-            found = (*self.doubts, *of_numbers(*own, self.time_limit), *in_walls, *seen, *of_shields)
+            numbers = *of_numbers(*own, self.time_limit), *of_gaps(own[0], self.doubts)
+            found = (*self.doubts, *numbers, *in_walls, *seen, *of_shields)
             found = (
                 *found,
                 *of_footprints(own[0], own[1], own[2]),

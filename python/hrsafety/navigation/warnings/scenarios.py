@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Protocol
 
 from hrsafety._arguments import Pair
+from hrsafety._tracks import gaps_of_paths
 from hrsafety.navigation import free_space
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles.base import Obstacle
@@ -75,8 +76,16 @@ def found(scenario: Described) -> tuple[ResultWarning, ...]:
     """
     about_ends = (*_starts(scenario), *_goals(scenario))
     own = (*_regions(scenario), *about_ends, *of_units(scenario), *_reach(scenario), *_closed(scenario))
-    own = (*own, *circled("robot", scenario.robot))
+    own = (*own, *circled("robot", scenario.robot), *_gaps(scenario))
     return tuple(dict.fromkeys((*scenario.doubts, *own)))
+
+
+def _gaps(scenario: Described) -> tuple[ResultWarning, ...]:
+    """Return the doubt about recorded motions with long times between two places."""
+    moves = {
+        f"obstacles[{index}]": each.path for index, each in enumerate(scenario.obstacles) if isinstance(each, Mobile)
+    }
+    return gaps_of_paths({name: path for name, path in moves.items() if path is not None}, scenario.doubts)
 
 
 def circled(name: str, robot: HolonomicRobot | DifferentialDriveRobot) -> Iterator[ResultWarning]:
