@@ -41,6 +41,32 @@ BLOCK = 1024
 LAW_UNITS: Mapping[str, str] = MappingProxyType(
     {"stabilizing_force_cap": "N", "stabilizing_momentum_cap": "", "side_hysteresis": "rad"}
 )
+PART_UNITS: Mapping[str, Mapping[str, str]] = MappingProxyType(
+    {
+        "shield": {
+            "person_speed": "m/s",
+            "latency": "s",
+            "position_error": "m",
+            "velocity_error": "m/s",
+            "person_acceleration": "m/s^2",
+            "margin": "m",
+            "wall_margin": "m",
+            "position_tracking": "m",
+            "reaction_time": "s",
+            "person_deceleration": "m/s^2",
+        },
+        "yielding": {
+            "clearance": "m",
+            "horizon": "s",
+            "time_weight": "s",
+            "distance_weight": "",
+            "comfort": "m",
+            "goal_weight": "",
+            "reach": "m",
+        },
+    }
+)
+"""Units of the numbers of parts around a law; an axis has the name of the part before that of the number."""
 SCENE_UNITS: Mapping[str, str] = MappingProxyType(
     {
         "control_period": "s",
@@ -50,6 +76,7 @@ SCENE_UNITS: Mapping[str, str] = MappingProxyType(
         "rest_time": "s",
         "seed": "",
         "measurement_scale": "m",
+        "measurement_latency": "s",
         "robot_mass": "kg",
         "robot_radius": "m",
         "robot_max_speed": "m/s",
@@ -61,6 +88,7 @@ SCENE_UNITS: Mapping[str, str] = MappingProxyType(
     }
 )
 _OF_SCENARIOS = ("entered_active", "force_evaluations")
+_MEASURED = MappingProxyType({"measurement_scale": "scale", "measurement_latency": "latency"})
 _OF_SCENES = ("rest_time", "obstacle_speed")
 """Columns and axes that only scenarios have."""
 ROWS_NOT_LOOKED_AT = "rows_not_looked_at"
@@ -101,14 +129,16 @@ class NavigationStudy(Study):
 
     - the gains of the law by its ``GAIN_NAMES``; of the virtual force field also
       ``stabilizing_force_cap``, ``stabilizing_momentum_cap``, ``side_hysteresis``;
+    - of a law with a `Shield` or `Yielding` around it their numbers, as ``shield_latency``, ``shield_position_error``
+      or ``yielding_clearance``;
     - ``control_period``, ``time_limit``, ``arrival_tolerance``, ``heading``, ``rest_time``,
       ``seed`` of the scenarios; ``measurement_scale`` (the noise is that of `Measurement`
-      where a scenario has none); ``robot_mass``, ``robot_radius``, ``robot_max_speed``,
-      ``robot_max_acceleration``, ``robot_max_deceleration``, and of two wheels ``robot_max_turn_rate``
-      and ``robot_max_turn_acceleration``; ``obstacle_speed``, which every obstacle that walks straight
-      takes on in its direction. The regions around obstacles stay as they are;
+      where a scenario has none) and ``measurement_latency`` (without noise where a scenario has none);
+      ``robot_mass``, ``robot_radius``, ``robot_max_speed``, ``robot_max_acceleration``, ``robot_max_deceleration``,
+      and of two wheels ``robot_max_turn_rate`` and ``robot_max_turn_acceleration``; ``obstacle_speed``, which every
+      obstacle that walks straight takes on in its direction. The regions around obstacles stay as they are;
     - of worlds of one robot those of them that are gains, ``control_period``, ``time_limit``, ``arrival_tolerance``,
-      ``heading``, ``seed``, ``measurement_scale`` and of the robot;
+      ``heading``, ``seed``, ``measurement_scale``, ``measurement_latency`` and of the robot;
     - with ``scenario``, any others: the function builds the scene from them.
 
     Gains that vary alone run fastest. Scenes that differ from row to row are built one by one,
@@ -248,8 +278,15 @@ class NavigationStudy(Study):
 
     @property
     def _law_units(self) -> Mapping[str, str]:
-        """Units of what else may vary of the law."""
-        return LAW_UNITS if isinstance(self._law_within, nav.VirtualForceField) else {}
+        """Units of what else may vary of the law and of the parts around it."""
+        own = LAW_UNITS if isinstance(self._law_within, nav.VirtualForceField) else {}
+        parts = {
+            f"{part}_{name}": unit
+            for part, units in PART_UNITS.items()
+            if isinstance(self.law, nav.SafeNavigation) and getattr(self.law, part) is not None
+            for name, unit in units.items()
+        }
+        return {**own, **parts}
 
     def units(self, names: Sequence[str]) -> dict[str, str]:
         """Return the units of axes with these names, see `Study.units`."""
@@ -268,6 +305,11 @@ class NavigationStudy(Study):
             own = ", ".join((*self.law.GAIN_NAMES, *self._law_units)) or "none"
             rule = f"be an axis of the law {type(self._law_within).__name__}, whose axes are {own}"
             raise InvalidParameterError("name of an axis", rule, name)
+        for part, units in PART_UNITS.items():
+            if name not in known and name.removeprefix(f"{part}_") in units and name.startswith(part):
+                rule = f"be an axis of a law with {part} around it"
+                remedy = f"give law=SafeNavigation(..., {part}=...), in a file [safe.{part}]"
+                raise InvalidParameterError("name of an axis", rule, name, remedy)
         word("name of an axis", name, known)
 
     def compute(self, rows: dict[str, Array], threads: int | None = None) -> Found:
@@ -301,20 +343,31 @@ class NavigationStudy(Study):
         """Return the warnings of the scenes of these rows, see `Study.doubts`."""
         others = [name for name in rows if name not in self.law.GAIN_UNITS]
         distinct = np.unique(np.stack([rows[name] for name in others], axis=1), axis=0) if others else np.empty((1, 0))
-        scenes: list[Any] = []
+        # Rows of one law together: what a shield assumes is compared with the scenes of its own rows.
+        of_laws: dict[tuple[float, ...], tuple[nav.Law, list[Any]]] = {}
         refused: list[InvalidParameterError] = []
         for row in distinct.tolist():
+            values = dict(zip(others, row, strict=True))
             # A row that cannot be is an error of the chunk that computes it.
             try:
-                scenes += self._scenes(dict(zip(others, row, strict=True)), len(self.names or [""]))
+                law, made = self._law(values), self._scenes(values, len(self.names or [""]))
             except InvalidParameterError as error:
                 refused.append(error)
-        impossible = _impossible(refused, len(distinct))
+                continue
+            numbers = tuple(values[name] for name in others if name in self._law_units)
+            of_laws.setdefault(numbers, (law, []))[1].extend(made)
+        told: dict[tuple[str, bool], ResultWarning] = {}
+        for law, scenes in of_laws.values():
+            for each in self._of_law(law, scenes):
+                told.setdefault((each.code, each.safe_side), each)
+        return (*_impossible(refused, len(distinct)), *told.values())
+
+    def _of_law(self, law: nav.Law, scenes: list[Any]) -> tuple[ResultWarning, ...]:
+        """Return the warnings of scenes under a law."""
         if self._in_worlds:
-            return (*impossible, *(doubts_of(scenes, self.law) if scenes else ()))
+            return doubts_of(scenes, law)
         words = [f"scenarios[{name!r}]" for name in self.names] if self.names else ["scenario"]
-        found = run_warnings.of_runs(scenes, words * (len(scenes) // len(words)), [self.law], None, self.step)
-        return (*impossible, *found)
+        return run_warnings.of_runs(scenes, words * (len(scenes) // len(words)), [law], None, self.step)
 
     def judged(self, design: Design) -> tuple[ResultWarning, ...]:
         """Return the doubts of a design before it runs, see `Study.judged`.
@@ -394,7 +447,11 @@ class NavigationStudy(Study):
     def _law(self, row: dict[str, float]) -> nav.Law:
         """Return the law of a row, its gains aside."""
         changes: dict[str, Any] = {name: value for name, value in row.items() if name in self._law_units}
-        return self.law.replaced(**changes)
+        for part, units in PART_UNITS.items():
+            own = {name: changes.pop(f"{part}_{name}") for name in units if f"{part}_{name}" in changes}
+            if own:
+                changes[part] = _replaced(getattr(self.law, part), part, own)
+        return self.law.replaced(**changes) if changes else self.law
 
     def _scenes(self, row: dict[str, float], each: int) -> list[Any]:
         """Return the scenarios of a row."""
@@ -463,8 +520,8 @@ def _changed(scene: nav.Scenario, values: Mapping[str, float]) -> nav.Scenario:
     for name, value in values.items():
         if name == "seed":
             changes["seed"] = _whole("seed", value)
-        elif name == "measurement_scale":
-            changes["measurement"] = replace(scene.measurement or nav.Measurement(), scale=value)
+        elif name in _MEASURED:
+            changes["measurement"] = _measured(scene.measurement, values)
         elif name == "obstacle_speed":
             changes["obstacles"] = tuple(_at_speed(obstacle, value) for obstacle in scene.obstacles)
         elif name.startswith("robot_"):
@@ -487,8 +544,8 @@ def _world_changed(world: nav.World, values: Mapping[str, float]) -> nav.World:
             changes["seed"] = _whole("seed", value)
         elif name == "time_limit":
             changes[name] = value
-        elif name == "measurement_scale":
-            own["measurement"] = replace(robot.measurement or nav.Measurement(), scale=value)
+        elif name in _MEASURED:
+            own["measurement"] = _measured(robot.measurement, values)
         elif name.startswith("robot_"):
             body[name.removeprefix("robot_")] = value
         else:
@@ -496,6 +553,21 @@ def _world_changed(world: nav.World, values: Mapping[str, float]) -> nav.World:
     if body:
         own["body"] = replace(robot.body, **body)
     return replace(world, robots=[replace(robot, **own)], **changes)
+
+
+def _replaced(part: Any, prefix: str, values: Mapping[str, float]) -> Any:
+    """Return a part with other numbers; an error names the axis."""
+    try:
+        return replace(part, **values)
+    except InvalidParameterError as error:
+        raise error.renamed(f"{prefix}_{error.argument}") from None
+
+
+def _measured(given: nav.Measurement | None, values: Mapping[str, float]) -> nav.Measurement:
+    """Return a measurement with the numbers of a row; late positions alone are not noisy."""
+    own = {field: values[name] for name, field in _MEASURED.items() if name in values}
+    made: nav.Measurement = _replaced(nav.Measurement(scale=0.0) if given is None else given, "measurement", own)
+    return made
 
 
 def _whole(name: str, value: float) -> int:
