@@ -18,6 +18,7 @@ from hrsafety.plausibility import ResultWarning
 from hrsafety.sweep.axes import Axis, Column
 from hrsafety.sweep.designs import Design, Grid
 from hrsafety.sweep.exports import Stored
+from hrsafety.sweep.sampled_designs import Saltelli
 from hrsafety.tables import Columns, Table
 
 __all__ = ["SEED", "SweepShares", "counted", "levels_of"]
@@ -199,6 +200,9 @@ class _Repeats:
         found = [each.name for each in result.found]
         self._telling = _TELLING if set(_TELLING) <= set(found) else ()
         self._seeded = SEED in result.design.names
+        # Rows of one draw follow each other: the cases, and of a Saltelli design those with numbers from one base row.
+        self._based = isinstance(result.design, Saltelli) and not self._seeded
+        self._together = max(len(result.cases), 1) * (len(result.axes) + 2 if self._based else 1)
         self._groups: list[npt.NDArray[np.int64]] = []
         self._draws: list[Array] = []
         self._runs: list[Array] = []
@@ -215,8 +219,7 @@ class _Repeats:
         if left <= 0:
             return
         self._groups.append(place[:left])
-        cases = max(len(self._result.cases), 1)
-        draws = stored[SEED] if self._seeded else (self._looked_at + np.arange(len(place))) // cases
+        draws = stored[SEED] if self._seeded else (self._looked_at + np.arange(len(place))) // self._together
         self._draws.append(draws[:left].astype(np.float64))
         if self._telling:
             self._runs.append(np.stack([stored[name][:left] for name in self._telling], axis=1))
@@ -254,8 +257,9 @@ class _Repeats:
         if len(self._result.cases) > 1:
             pooled.append(self._result.columns[len(levels) + self._seeded].name)
         pooled = [name for name in pooled if name not in by]
-        what = "seed" if self._seeded else "row of the design"
+        what = "seed" if self._seeded else "base row" if self._based else "row of the design"
         remedy = f"group by {' and '.join(pooled)}, too" if pooled else f"give each row a {SEED} of its own"
+        remedy = "take a Sobol design or a Latin hypercube for shares" if self._based else remedy
         return (
             f"{rows} have the {what} of another one of their group: runs of one {what} are alike, and "
             f"intervals that count each of them may be too narrow; {remedy}"

@@ -172,6 +172,18 @@ def test_runs_that_are_the_same_are_found_where_no_look_before_the_sweep_found_t
     assert doubt.message.startswith("9 of 50 rows are the same run")
 
 
+def test_rows_of_a_saltelli_design_are_not_independent() -> None:
+    axes = [sweep.Axis(name="detour_gain", low=10.0, high=90.0), sweep.Axis(name="gain_ratio", low=0.1, high=1.0)]
+    study = navigation(["c2"])
+    (doubt,) = [
+        each for each in sweep.run(sweep.Saltelli(axes, 4), study).shares("outcome").warnings if each.subject == "by"
+    ]
+    assert doubt.code == "repeated_seeds"
+    assert doubt.message.startswith("12 of 16 rows have the base row of another one")
+    assert doubt.message.endswith("take a Sobol design or a Latin hypercube for shares")
+    assert "repeated_seeds" not in codes(sweep.run(sweep.Sobol(axes, 16), study).shares("outcome"))
+
+
 def test_repeats_are_looked_for_in_the_first_rows_only(monkeypatch: pytest.MonkeyPatch) -> None:
     grid = sweep.run(sweep.Grid([GAIN, SPEED, SEED]), STUDY, chunk_rows=11)
     monkeypatch.setattr(module, "MOST_COMPARED", 50)
