@@ -144,6 +144,16 @@ def test_a_wrong_contact_is_refused(more: dict[str, Any], words: str) -> None:
         contact.PlannedContact(**({"limit": HAND, "speed": 0.2} | more))
 
 
+def test_a_contact_touches_no_more_of_a_covering_than_there_is(tmp_path: Path) -> None:
+    assert made(contacts=[planned("chest", "transient", covered_area=4e-3)]).contacts[0].covered_area == 4e-3
+    with pytest.raises(InvalidParameterError, match=r"contacts\[0\].contact_area must be at most the area of covering"):
+        made(contacts=[planned("chest", "transient", covered_area=5e-3)])
+    path = tmp_path / "cell.toml"
+    path.write_text(FILE.replace("contact_area = 4e-4", "contact_area = 5e-3"), encoding="utf-8")
+    with pytest.raises(InvalidParameterError, match=r"contacts\[1\].contact_area must be at most .* \(0.004\)"):
+        contact.load_cell(path)
+
+
 def test_an_area_of_its_own_is_refused_beside_a_covering_that_is_not_flat() -> None:
     pad = contact.Covering(material=contact.Linear(modulus=2e5), thickness=0.02, shape="sphere", radius=0.05)
     with pytest.raises(InvalidParameterError, match=r"contacts\[2\].contact_area must be left out"):

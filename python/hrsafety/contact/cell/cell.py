@@ -238,7 +238,7 @@ class Cell:
 
 
 def checked_fit(path: str, covering: str | None, covered_area: float | None, coverings: Mapping[str, Covering]) -> None:
-    """Refuse a contact whose covering is not there, or has an area of its own beside the one that is given.
+    """Refuse a contact whose covering is not there, is smaller than the contact, or has an area by its shape.
 
     Parameters
     ----------
@@ -259,6 +259,10 @@ def checked_fit(path: str, covering: str | None, covered_area: float | None, cov
     if covered_area is not None and coverings[covering].shape != "flat":
         rule = f"be left out beside covering {covering!r}, whose area follows from its shape"
         raise InvalidParameterError(f"{path}.contact_area", rule, covered_area)
+    pad = coverings[covering].area
+    if covered_area is not None and pad is not None and covered_area > pad:
+        rule = f"be at most the area of covering {covering!r} ({pad:g}): nothing touches more of it than there is"
+        raise InvalidParameterError(f"{path}.contact_area", rule, covered_area, "give the covering its whole area")
 
 
 def _pushing(drive: Drive, robot: ContactRobot) -> Drive:
