@@ -18,7 +18,7 @@ from hrsafety.arms.arm import Arm
 from hrsafety.arms.inputs import armature_of, vectors_of
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning, implausible
-from hrsafety.standards.separation import StoppingData
+from hrsafety.standards.separation import StoppingData, lighter_load
 
 __all__ = ["FASTEST_BRAKE", "MODELS", "Drive", "drive_of", "push_limit_of_torques"]
 
@@ -274,6 +274,23 @@ class Drive:
         found = implausible(given, _QUANTITIES)
         stops = () if self.stopping is None else self.stopping.doubts
         return tuple(replace(each, subject=f"drive.{each.subject}") for each in (*found, *stops))
+
+    def doubts_with(self, payload: float | None) -> tuple[ResultWarning, ...]:
+        """Return the doubts about a drive whose robot carries a payload.
+
+        Parameters
+        ----------
+        payload : float or None
+            In kg; ``None`` where it is not known.
+
+        Returns
+        -------
+        tuple of ResultWarning
+            `doubts`, and ``lighter_load`` where the stops were measured with less.
+        """
+        if self.stopping is None:
+            return self.doubts
+        return (*self.doubts, *lighter_load("drive.stopping", self.stopping, self.load, payload))
 
 
 def _torques(given: object) -> Mapping[str, float]:

@@ -343,7 +343,7 @@ class Exposer:
         speeds = driven_speeds(hit, drive, grid)
         status = row.governs if speeds.any() else driven_speed(hit, drive).status
         governs = status if status in NO_ROOM else row.governs
-        table, told = (grid, np.minimum(speeds, FASTEST)), (*doubts, *drive.doubts)
+        table, told = (grid, np.minimum(speeds, FASTEST)), (*doubts, *drive.doubts_with(self.arm.payload_mass))
         return [row, replace(row, how="drive", energy=math.inf, table=table, governs=governs, warnings=told)]
 
     def _hit(self, limit: ContactLimit, covering: str | None, area: float | None) -> Contact:

@@ -153,7 +153,7 @@ def study_of(program: ProgramTask, *, intervals: int | None = None, threads: int
         slow = min(least, fastest) if least > 0.0 else None
         distances = distances_of(program.separation, fastest, slow)
     # Distances are handed over beside the contacts: a doubt about them is one about the whole.
-    apart = doubts_of(None, distances)
+    apart = doubts_of(None, distances, program.separation, program.motion.arm.payload_mass)
     own = tuple(each for each in (*general, *apart) if each.code not in program.confirmed)
     verdict = doubted(strictest(each.verdict for each in found), own) if found else doubted("within_limits", own)
     plan = plan_of(runs, limited, choice)

@@ -467,6 +467,38 @@ def slow_person(name: str, speed: float, what: str) -> tuple[ResultWarning, ...]
     return (ResultWarning("slow_person", name, words),)
 
 
+def lighter_load(
+    subject: str, stopping: StoppingData, load: float | None, payload: float | None
+) -> tuple[ResultWarning, ...]:
+    """Return the doubt about stops that were measured with less than the robot carries.
+
+    Parameters
+    ----------
+    subject : str
+        Name of the stops.
+    stopping : StoppingData
+        Measured stops.
+    load : float or None
+        Where they are read.
+    payload : float or None
+        What the robot carries in kg; ``None`` where that is not known.
+
+    Returns
+    -------
+    tuple of ResultWarning
+        ``lighter_load``, or nothing: loads up to 1 may be shares of the largest one.
+    """
+    loads = np.atleast_1d(stopping.load)
+    read = float(loads[0]) if load is None else load
+    if payload is None or float(loads.max()) <= 1.0 or read >= payload:
+        return ()
+    words = (
+        f"the stops are those with a load of {read:g} kg, and the robot carries {payload:g} kg: it may need longer; "
+        "give stops with that load"
+    )
+    return (ResultWarning("lighter_load", subject, words),)
+
+
 def _warn(taken: tuple[ResultWarning, ...], stopping: StoppingData | None) -> None:
     """Issue the doubts of a plain number, which carries none, at the caller of the function that returns it."""
     for doubt in taken:

@@ -276,3 +276,25 @@ def test_the_worst_of_few_drawn_poses_is_no_bound() -> None:
         assert found is None or not found.safe_side
     one = contact.ContactRobot.of_arm(arm, link="tool", poses=[[0.0, 0.4, 1.4, 0.0, 0.0, 0.0]])
     assert not [each for each in one.warnings if each.code == "few_poses"]
+
+
+@pytest.mark.parametrize(
+    ("load", "at", "told"),
+    [([0.0, 10.0], 0.0, True), ([0.0, 10.0], 5.0, False), ([2.0], None, True), ([0.0, 1.0], 0.5, False)],
+)
+def test_stops_with_less_than_the_payload_are_told(load: list[float], at: float | None, told: bool) -> None:
+    arm = arms.Arm.example(armature=0.5, payload=arms.Payload("tool", 5.0))
+    robot = contact.ContactRobot.of_arm(arm, link="tool", poses=[[0.0, 0.4, 1.4, 0.0, 0.0, 0.0]])
+    table = {"speed": [0.0, 0.5], "time": [[0.0] * len(load), [0.1] * len(load)], "load": load}
+    table["distance"] = [[0.0] * len(load), [0.03] * len(load)]
+    stops = standards.StoppingData(**table)
+    drive = contact.Drive(reaction_time=0.02, stopping=stops, load=at)
+    slow = replace(planned("chest", "quasi_static", area=1e-4), speed=0.02, covering=None)
+    found = contact.study(made(robot=robot, contacts=[slow], drive=drive, uncertain={}, separation=None))
+    assert found.verdicts[0]["doubts"] == (["lighter_load"] if told else [])
+    rules = {"max_speed": 0.5, "reaction_time": 0.1, "height": 0.3, "uncertainty": 0.1, "stopping": table}
+    rules |= {} if at is None else {"load": at}
+    free = replace(planned("chest", "transient", area=1e-4), covering=None)
+    found = contact.study(made(robot=robot, contacts=[free], uncertain={}, separation=rules))
+    assert ("lighter_load" in [each.code for each in found.warnings]) == told
+    assert found.verdict == ("not_checked" if told else "within_limits")

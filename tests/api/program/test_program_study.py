@@ -277,6 +277,19 @@ def test_a_worse_drive_or_a_smaller_area_is_never_faster() -> None:
     assert time(area=2e-5) > usual
 
 
+def test_stops_of_an_empty_gripper_do_not_hold_for_a_loaded_one() -> None:
+    motion = turning(0.02)
+    payload = motion.arm.payload_mass
+    assert payload > 0.0
+    loads = {"load": [0.0, 10.0], "time": [[0.0] * 2, [0.1] * 2], "distance": [[0.0] * 2, [0.03] * 2]}
+    stops = standards.StoppingData(speed=[0.0, 0.5], **loads)
+    for load, told in ((0.0, True), (payload, False)):
+        drive = contact.Drive(reaction_time=0.02, stopping=stops, load=load)
+        study = of(motion, segment(motion, "hand_finger"), drive=drive).report(intervals=200)
+        assert [each.code for each in study.warnings] == (["lighter_load"] if told else [])
+        assert study.verdict == ("not_checked" if told else "within_limits")
+
+
 def test_a_person_who_walks_takes_the_speed_off() -> None:
     motion = turning()
     standing = of(motion, segment(motion, "chest", **FREE)).report(intervals=200)

@@ -81,7 +81,7 @@ def drive_doubts(cell: Cell, driven: Driven | None) -> tuple[ResultWarning, ...]
         words = {"outside_table": "the stop was not measured from the planned speed"}
         message = f"loads with the drive are not known: {words.get(driven.loads.status, 'a motion did not settle')}"
         told = (ResultWarning("unfinished", "drive", message),)
-    return (*driven.drive.doubts, *told)
+    return (*driven.drive.doubts_with(cell.robot.payload_mass), *told)
 
 
 def driven_row(cell: Cell, judged: Judged, driven: Driven | None) -> Judged:

@@ -14,7 +14,7 @@ from hrsafety._keys import Keys, checked, located
 from hrsafety.errors import InvalidParameterError
 from hrsafety.plausibility import ResultWarning
 from hrsafety.standards.fields import FieldDistances, field_distances, intrusion_of_field
-from hrsafety.standards.separation import SpeedCurve, StoppingData
+from hrsafety.standards.separation import SpeedCurve, StoppingData, lighter_load
 from hrsafety.standards.separation import speed_over_distance as allowed_over_distance
 
 __all__ = ["distances_of", "doubts_of", "separation_of", "speed_over_distance"]
@@ -127,9 +127,17 @@ def distances_of(separation: Mapping[str, Any], speed: float, contact_speed: flo
     return field_distances(speed, contact_speed=contact_speed, **rules)
 
 
-def doubts_of(speeds: SpeedCurve | None, distances: FieldDistances | None) -> tuple[ResultWarning, ...]:
-    """Return the doubts about a separation, each once."""
-    parts = (each.warnings for each in (speeds, distances) if each is not None)
+def doubts_of(
+    speeds: SpeedCurve | None,
+    distances: FieldDistances | None,
+    separation: Mapping[str, Any] | None,
+    payload: float | None,
+) -> tuple[ResultWarning, ...]:
+    """Return the doubts about a separation of a robot with a payload in kg, each once."""
+    parts = [each.warnings for each in (speeds, distances) if each is not None]
+    if separation is not None and "stopping" in separation:
+        stops = StoppingData(**separation["stopping"])
+        parts.append(lighter_load("separation.stopping", stops, separation.get("load"), payload))
     return tuple(dict.fromkeys(chain.from_iterable(parts)))
 
 

@@ -164,7 +164,7 @@ def study(cell: Cell | str | PathLike[str], *, progress: Callable[[int, int], ob
     speeds = _over_distance(cell, contact_speed)
     rules = cell.separation
     distances = None if rules is None else distances_of(rules, rules["max_speed"], contact_speed)
-    apart = doubts_of(speeds, distances)
+    apart = doubts_of(speeds, distances, rules, cell.robot.payload_mass)
     plan, annex = plan_of(cell, judged, loads), annex_of_cell(cell, judged, distances)
     drawn = _by_region(judged, loads)
     verdicts = [each.verdict for each in judged]
