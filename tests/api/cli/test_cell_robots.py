@@ -123,7 +123,7 @@ def test_poses_in_degrees_are_refused_or_told(read: Any) -> None:
     for text in (endless, limits):
         assert codes(read(TOOL | degrees, text)) == ["implausible"]
         # What is drawn is drawn between limits, and the same pose after a turn.
-        assert codes(read(ARM | {"armature": MOTORS, "samples": 50}, text)) == []
+        assert codes(read(ARM | {"armature": MOTORS, "samples": 1000}, text)) == []
 
 
 def test_without_poses_the_worst_draw_is_named_as_singular_with_a_quantile_beside(read: Any) -> None:
