@@ -1,7 +1,7 @@
 """Costs of decisions in a place known from scans and of foresight, and of distances from a swept rectangle.
 
-On one core: processor time, the best of several rounds; decisions in an unknown place are timed one by one in the core,
-map, share of the guide, rollouts and verification. Nothing here asserts a time.
+On one core: processor time, the best of several rounds; decisions in an unknown place are timed one by one, scan, map,
+share of the guide, rollouts, verification and motion. Nothing here asserts a time.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.benchmarks.hidden import PERSON, ROBOT
 from hrsafety.benchmarks.hidden import PLACES as HIDING
-from hrsafety.benchmarks.unknown import dead_end, rollout_entry, trial
+from hrsafety.benchmarks.unknown import STEP, dead_end, episode, rollout_entry
 
 PLACES, ROUNDS, POINTS = 10, 5, 1000
 
@@ -30,8 +30,15 @@ def test_decisions_in_a_place_known_from_scans(benchmark: Any, deceleration: int
     ends = {"start": (0.0, 0.0), "heading": 0.0, "goal": (10.0, 0.0)}
 
     def episodes() -> Any:
-        found = [trial(entry, dead_end(index, 0), index, timed=True, **ends) for index in range(PLACES)]
-        return np.concatenate([each["decision_times"] for each in found])
+        spent = []
+        for index in range(PLACES):
+            scene, built = episode(entry, dead_end(index, 0), index, **ends)
+            run = nav.Run(scene, entry.law, built, step=STEP, stop_on_contact=True)
+            while not run.finished:
+                start = time.perf_counter()
+                run.step()
+                spent.append(time.perf_counter() - start)
+        return np.array(spent)
 
     spent = benchmark.pedantic(episodes, rounds=1)
     half, most = np.quantile(spent, [0.5, 0.999]) * 1e3

@@ -26,8 +26,8 @@ PERIOD = 0.05
 """Control period in s."""
 START, GOAL, HEADING = (-2.25, 3.0), (-2.25, 13.0), 0.5 * math.pi
 """Of BARN, in m and rad."""
-SAMPLES = 20
-"""Motion steps of a control period."""
+STEP = PERIOD / 20
+"""Motion step in s."""
 LEFT = 0.1
 """An episode is timed from where the robot leaves this distance from its start, in m."""
 BEAMS, FIELD_OF_VIEW, RANGE = 720, 1.5 * math.pi, 10.0
@@ -137,6 +137,14 @@ def trial(entry: RolloutEntry, place: nav.StaticMap, seed: int, **ends: Any) -> 
     Trajectory
         Commands act at once, every 2.5 ms is recorded.
     """
+    scene, built = episode(entry, place, seed, **ends)
+    return nav.simulate(scene, entry.law, built=built, step=STEP, stop_on_contact=True)
+
+
+def episode(
+    entry: RolloutEntry, place: nav.StaticMap, seed: int, **ends: Any
+) -> tuple[nav.Scenario, nav.robots.AsBuilt]:
+    """Return scenario and sensors of a `trial`."""
     robot = nav.DifferentialDriveRobot(
         max_speed=SPEED,
         max_acceleration=entry.acceleration,
@@ -159,8 +167,7 @@ def trial(entry: RolloutEntry, place: nav.StaticMap, seed: int, **ends: Any) -> 
         latency=entry.late * PERIOD,
     )
     odometry = nav.sensing.Odometry(length_error=LENGTH_DRIFT * entry.drift, heading_error=HEADING_DRIFT * entry.drift)
-    built = nav.robots.AsBuilt(sensors=[lidar, odometry])
-    return nav.simulate(scene, entry.law, built=built, step=PERIOD / SAMPLES, stop_on_contact=True)
+    return scene, nav.robots.AsBuilt(sensors=[lidar, odometry])
 
 
 def driving_time(run: nav.Trajectory) -> float:
