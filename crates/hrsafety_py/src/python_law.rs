@@ -27,7 +27,7 @@ pub fn raised() -> Option<PyErr> {
 /// The kernels take gain sets one after the other, so it has one number, which nobody reads.
 const NUMBERS: [&str; 1] = ["none"];
 
-/// What a law answers.
+/// Kind of the answers of a law.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Answer {
     /// A force in N.
@@ -38,14 +38,11 @@ pub enum Answer {
     Twist,
 }
 
-/// Largest angle of a turn in one control period, in rad: a velocity tells no more of it.
-const MOST_TURN: f64 = 1.5;
-
 /// The law: a callable that begins an episode and returns one that is asked in every period.
 pub struct PythonLaw {
     /// Takes robot, start, goal and seed.
     pub begin: Arc<Py<PyAny>>,
-    /// What it answers.
+    /// Kind of its answers.
     pub answer: Answer,
 }
 
@@ -157,9 +154,9 @@ impl AtWork {
             Answer::Force => return answer,
             Answer::Velocity => Vector2::splat(answer),
             Answer::Twist => {
-                let (period, [speed, turn_rate]) = (situation.interval, answer);
-                let turn_rate = turn_rate.clamp(-MOST_TURN / period, MOST_TURN / period);
-                velocity_of(Twist { speed, turn_rate }, situation.heading, period)
+                let [speed, turn_rate] = answer;
+                let twist = Twist { speed, turn_rate };
+                velocity_of(twist, situation.heading, situation.interval)
             }
         };
         let (mass, ..) = self.robot;

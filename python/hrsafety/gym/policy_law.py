@@ -154,6 +154,13 @@ class PolicyLaw:
                 "of their speed, and is shown that speed; in an environment it is the whole"
             )
             yield ResultWarning("other_environment", "robot.reference_speed_share", message)
+        fastest = getattr(robot, "max_turn_rate", None)
+        if self.max_turn_rate is not None and fastest is not None and self.max_turn_rate > fastest:
+            message = (
+                f"max_turn_rate of the policy is {self.max_turn_rate:g} rad/s, the robot turns by {fastest:g} rad/s at "
+                "most: its turns are not those of its environment"
+            )
+            yield ResultWarning("other_environment", "law.max_turn_rate", message)
 
     def velocity(self, situation: Situation) -> Array:
         """Return the velocity that the policy wants, in m/s.

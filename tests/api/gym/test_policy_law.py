@@ -83,6 +83,8 @@ def test_a_policy_of_wheels_drives_as_in_the_environment() -> None:
         np.testing.assert_array_equal(shown, observation, err_msg=f"step {index}")
         observation, *_ = env.step(swerving(observation))
     assert len(seen) == 80
+    slow = nav.DifferentialDriveRobot(reference_speed_share=1.0, max_turn_rate=1.0)
+    assert doubts(law, time_limit=8.0, body=slow) == {("other_environment", "robots[0].law.max_turn_rate")}
     with pytest.raises(InvalidParameterError, match="two wheels"):
         nav.simulate(scenarios.circle_crossing(0, law=law))
     for wrong in ({"action": "unicycle"}, {"max_turn_rate": 2.0}):

@@ -31,9 +31,6 @@ pub trait Tuned: Sized {
     fn tuned(&self, numbers: &[f64]) -> Result<Self>;
 }
 
-/// Largest turn in a control period that a velocity tells a robot with two wheels, in rad: less than a quarter turn.
-const MOST_TURN: f64 = 1.5;
-
 /// Numbers of a law by the names of its fields, and the law made of arguments: of numbers, and of others that are read
 /// in a way of their own.
 macro_rules! numbers {
@@ -293,10 +290,9 @@ impl<P: TwistPlanner> Law<f64> for SteeredLaw<P> {
             rates: [rate, turn_rate],
         });
         let wanted = if self.wheels {
-            let most = MOST_TURN / situation.interval;
             let twist = Twist {
                 speed: ahead,
-                turn_rate: turn_rate.clamp(-most, most),
+                turn_rate,
             };
             velocity_of(twist, heading, situation.interval)
         } else {

@@ -10,6 +10,7 @@ use crate::shield::person::Person;
 use crate::shield::walls::StaticObstacles;
 use crate::shield::{Shield, ShieldLimits, Status};
 use navigation_world::robots::differential::{DifferentialLimits, Twist};
+use navigation_world::robots::drives::MOST_TURN;
 use numeric::error::Result;
 use numeric::lanes::Vector2;
 use numeric::order::sort_pairs;
@@ -27,9 +28,6 @@ const MOST_STEPS: f64 = 4.0;
 
 /// Price of the time that a turn takes: a robot that turns at once is sooner there than one that drives backwards.
 const HEADING_WEIGHT: f64 = 1.5;
-
-/// Most that the robot turns within a period, in rad: below a right angle a velocity tells the twist.
-const MOST_TURN: f64 = 1.5;
 
 /// The shield of a robot with two wheels.
 #[derive(Clone, Copy, Debug, PartialEq)]

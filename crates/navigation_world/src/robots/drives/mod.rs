@@ -13,7 +13,7 @@ pub use omni::OmniRobot;
 pub use point_mass::{IdealHolonomic, PointMass};
 pub use two_wheels::TwoWheels;
 pub use two_wheels::{PoseFusion, SteeringLaw};
-pub use velocity::velocity_of;
+pub use velocity::{MOST_TURN, velocity_of};
 pub use virtual_velocity::VirtualVelocity;
 
 use crate::robots::HolonomicRobot;

@@ -12,10 +12,14 @@ const STILL: f64 = 1e-12;
 /// Speed that tells the direction of a robot that turns in place, in m/s.
 const TOKEN: f64 = 1e-7;
 
-/// The velocity that commands a twist to a robot with a heading, for a control period in s.
+/// Largest turn within a control period that a velocity tells a robot with a heading, in rad: below a right angle.
+pub const MOST_TURN: f64 = 1.5;
+
+/// The velocity that commands a twist to a robot with a heading, for a control period in s; of faster turns
+/// [`MOST_TURN`].
 #[must_use]
 pub fn velocity_of(twist: Twist, heading: f64, period: f64) -> Vector2<f64> {
-    let turn = twist.turn_rate * period;
+    let turn = (twist.turn_rate * period).clamp(-MOST_TURN, MOST_TURN);
     if twist.speed.abs() < TOKEN && twist.turn_rate == 0.0 {
         return Vector2::zeros();
     }
