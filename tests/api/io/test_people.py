@@ -456,10 +456,10 @@ def crossing_rows(folder: Path, head: str, more: Any) -> Path:
     ],
 )
 def test_rows_that_a_table_marks_as_not_seen_are_not_seen(names: str, cells: Any, tmp_path: Path) -> None:
-    near = lambda x: abs(x) < 1.05  # noqa: E731  # 21 of 80 rows
-    path = crossing_rows(tmp_path, f"t_s,ped_id,x_m,y_m,{names}", lambda x, _: cells(near(x)))
+    near = 1.05  # 21 of 80 rows
+    path = crossing_rows(tmp_path, f"t_s,ped_id,x_m,y_m,{names}", lambda x, _: cells(abs(x) < near))
     found = loaded(path)
-    assert (np.abs(found.position[:, 0]) > 1.05).all()
+    assert (np.abs(found.position[:, 0]) > near).all()
     assert (len(found), found.details["lost_rows"]) == (4 * 59, 4 * 21)
     assert "lost_rows" in [each.code for each in found.warnings]
     taken = loaded(path, columns={name: "-" for name in names.split(",")})
@@ -467,9 +467,15 @@ def test_rows_that_a_table_marks_as_not_seen_are_not_seen(names: str, cells: Any
     assert "lost_rows" not in taken.details
 
 
-def test_a_column_that_is_no_mark_leaves_rows_as_they_are(tmp_path: Path) -> None:
-    found = loaded(crossing_rows(tmp_path, "t_s,ped_id,x_m,y_m,visible", lambda *_: "0.7"))
-    assert (len(found), found.warnings) == (320, ())
+@pytest.mark.parametrize(("name", "cell"), [("visible", "0.7"), ("lost", ""), ("occluded", "2")])
+def test_a_mark_in_unknown_words_leaves_rows_as_they_are_and_says_so(name: str, cell: str, tmp_path: Path) -> None:
+    path = crossing_rows(tmp_path, f"t_s,ped_id,x_m,y_m,{name}", lambda x, _: cell if x > 0.0 else "1")
+    found = loaded(path)
+    assert len(found) == 320
+    (doubt,) = found.warnings
+    assert (doubt.code, doubt.subject) == ("assumed", "position")
+    assert f"{name} of people.csv holds more than true and false" in doubt.message
+    assert loaded(path, columns={name: "-"}).warnings == ()
 
 
 def test_a_height_taken_for_a_coordinate_is_doubted(tmp_path: Path) -> None:

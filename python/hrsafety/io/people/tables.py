@@ -244,6 +244,7 @@ def table_columns(
         words=[TableColumn(place[each], each) for each in (*marks, "label") if each in place],
     )
     marked = [_marked(name, table.words[:, index]) for index, name in enumerate(marks)]
+    unread = [header.names[place[name]] for name, rows in zip(marks, marked, strict=True) if rows is None]
     return PeopleColumns(
         clock=table.numbers[:, 0],
         frame=table.numbers[:, -1] if both else None,
@@ -257,22 +258,34 @@ def table_columns(
         lines=table.lines,
         unit=unit,
         details={"delimiter": DELIMITERS[header.delimiter], "decimal": table.decimal},
-        unseen=np.any([np.zeros(len(table.lines), dtype=np.bool_), *marked], axis=0),
+        unseen=np.any(
+            [np.zeros(len(table.lines), dtype=np.bool_), *(each for each in marked if each is not None)], axis=0
+        ),
         notes=[
+            *(_of_marks(document, name) for name in unread),
             *_of_boxes(document, header),
             *(_of_height(document, header, table.numbers[:, [1, 2, 5 if moving else 3]]) if more else ()),
         ],
     )
 
 
-def _marked(role: str, cells: npt.NDArray[np.str_]) -> npt.NDArray[np.bool_]:
-    """Return in which rows a column says that nobody was seen; in none if it holds anything but true and false."""
+def _marked(role: str, cells: npt.NDArray[np.str_]) -> npt.NDArray[np.bool_] | None:
+    """Return in which rows a column says that nobody was seen; ``None`` if it holds anything but true and false."""
     different, index = np.unique(cells, return_inverse=True)
     flags = [_FLAGS.get(each.strip().lower()) for each in different.tolist()]
     if None in flags:
-        return np.zeros(len(cells), dtype=np.bool_)
+        return None
     said = np.array(flags, dtype=np.bool_)[index.ravel()] if len(flags) else np.zeros(0, dtype=np.bool_)
     return ~said if role == "seen" else said
+
+
+def _of_marks(document: Document, name: str) -> ResultWarning:
+    """Return the doubt about a column that may mark rows in which nobody was seen, in words that are not known."""
+    return assumed(
+        "position",
+        f"{name} of {document.name} holds more than true and false (1 and 0, yes and no): all rows count as sights; "
+        f'write which are, or leave the column out, as columns={{"{name}": "-"}} does',
+    )
 
 
 def _of_boxes(document: Document, header: Header) -> Iterator[ResultWarning]:
