@@ -14,7 +14,7 @@ const WIDTH: usize = 8;
 const ROUNDING: f64 = 1e-15;
 /// Whoever turns by no more than this in rad drives straight: no place of the outline is farther off than nanometres.
 const STRAIGHT: f64 = 1e-9;
-/// Shares of its reach at which the outline counts as reached.
+/// Factor on the reach of an outline within which an arc may meet it.
 const ROUNDED: f64 = 1.0 + 1e-9;
 
 /// Coordinates of points side by side.
@@ -231,13 +231,13 @@ impl<R: Number> Around<R> {
         after & before & ahead
     }
 
-    /// Whether arcs come as near to the origin of the body as a corner, told which ends are.
+    /// Mask of arcs that come as near to the origin of the body as its farthest corner, given that of their ends.
     #[inline(always)]
     fn reaches(&self, center: Vector2<f64>, reach: f64, ends: R::Mask) -> R::Mask {
         let away = center.norm();
-        let between = (self.radius - away)
-            .abs()
-            .le(self.radius.like(reach * ROUNDED));
+        // Radii of slight turns are large, and their difference is rounded.
+        let within = self.radius * (4.0 * ROUNDING) + reach * ROUNDED;
+        let between = (self.radius - away).abs().le(within);
         let origin = [self.radius.like(-center.x), self.radius.like(-center.y)];
         between & (ends | self.holds(origin, self.radius.like(away)))
     }
