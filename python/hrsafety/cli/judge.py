@@ -181,8 +181,10 @@ def _body(found: Judgement) -> str:
 def _said(found: Judgement) -> str:
     """Return the verdict in a sentence."""
     counts = found.counts
+    unknown = sum(each.kind == "apart" for each in found.contacts)
+    open_fault = f", {unknown} not known" if unknown else ""
     contacts = (
-        f"{_number(counts['contact'], 'contact')} ({counts['at_fault']} at fault)"
+        f"{_number(counts['contact'], 'contact')} ({counts['at_fault']} at fault{open_fault})"
         if counts["contact"]
         else "no contact"
     )
@@ -257,11 +259,11 @@ def _contacts(found: Judgement) -> Iterator[str | ReportTable]:
             decimal(each.end),
             "wall" if each.person is None else _who(each.person),
             ReportCell(each.kind.replace("_", " "), "bad"),
-            "yes" if each.at_fault else "",
+            "yes" if each.at_fault else "not known" if each.kind in ("apart", "possible_contact") else "no",
             decimal(each.speed),
             decimal(each.clearance, 3),
             decimal(each.error, 3),
-            f"{each.earliest:.2f} to {each.latest:.2f}",
+            f"{'?' if each.kind == 'apart' else f'{each.earliest:.2f}'} to {each.latest:.2f}",
         )
         for each in every
     ]

@@ -50,9 +50,10 @@ class Controller:
     him, or after 2 s if a scan sees his place to be empty, or after ``age_limit``. Measurements older than what is
     known of a person count for nothing.
 
-    Who was not measured is not away: give ``people={}`` where somebody looked and nobody was there. Without ``people``,
-    ``gone`` or a scan from the start, or for more than 1 s, nothing is guaranteed (``unmeasured``), but by a shield
-    with `Unseen` people, and with ``people=0``, which says that nobody can be there.
+    Who was not measured is not away: give ``people={}`` where somebody looked and nobody was there. Without ``people``
+    or ``gone`` from the start, or for more than 1 s, nothing is guaranteed (``unmeasured``), but by a shield with
+    `Unseen` people, and with ``people=0``, which says that nobody can be there. A scan alone is no look: the law is
+    told of at most eight of its points, those within the ``reach`` of the lidar, and people may be behind them.
 
     Names are those of a tracker that keeps them. A new name is one more person. Where three updates in a row have no
     name in common, or there is no room, who is new counts as the nearest of those who were not measured and can have
@@ -181,7 +182,9 @@ class Controller:
         if shield is None:
             stands = len(self._rules["obstacles"]) > self._capacity or any(maps_of(self._law))
             return (*units, *of_filter(self._law, measured=True, walls=stands or lidar))
-        found = of_controller(shield, self._rules["robot"], person_speed=speed, lidar=lidar)
+        rules = {"control_period": self._rules["control_period"], "person_speed": speed}
+        reach = None if self._lidar is None else self._lidar.reach
+        found = of_controller(shield, self._rules["robot"], **rules, lidar=lidar, reach=reach)
         return (*units, *of_order(self._law), *found)
 
     def _units(self) -> tuple[ResultWarning, ...]:
@@ -299,7 +302,7 @@ class Controller:
             found = {field: getattr(last, field) for field in (*_OF_PEOPLE, "renamed")}
         else:
             # Who was gone before tells of no look.
-            if people is not None or scan is not None or any(present[slot] for slot in departed):
+            if people is not None or any(present[slot] for slot in departed):
                 self._looked = now
             if self._measured is not None:
                 self._measured.forget(names)

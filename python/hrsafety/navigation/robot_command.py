@@ -105,8 +105,9 @@ class Command:
         How many beams of the last scan read NaN: there may be something in their directions. What was seen there
         before counts on, ever older.
     unmeasured : bool
-        Whether nobody looked for people: neither ``people`` (be it ``{}``), ``gone`` nor a scan was told for more than
-        1 s, or ever. Whoever came meanwhile is not known. Never with room for nobody, or a shield with `Unseen` people.
+        Whether nobody looked for people: neither ``people`` (be it ``{}``) nor ``gone`` was told for more than 1 s, or
+        ever; a scan shows a law few of its points. Whoever came meanwhile is not known. Never with room for nobody, or
+        a shield with `Unseen` people.
     refuted : tuple of str
         Names of the fields that tell of an assumption of the shield that the measurements of this update refute:
         ``"faster"``, ``"accelerated"``, ``"velocity_off"`` (if the shield assumes anything of velocities),

@@ -324,11 +324,13 @@ def test_people_for_whom_nobody_looked_are_not_away() -> None:
     assert stale.unmeasured
 
 
-def test_scans_are_measurements_and_unseen_people_need_none() -> None:
+def test_scans_alone_are_no_look_and_unseen_people_need_none() -> None:
     lidar = nav.Lidar(beams=90, range_max=12.0)
     robot = Driven(lidar=lidar)
     assert robot.told(people=None).unmeasured
-    assert not robot.told(people=None, scan=np.full(90, np.inf)).unmeasured
+    empty = robot.told(people=None, scan=np.full(90, np.inf))
+    assert (empty.unmeasured, empty.status) == (True, "not_guaranteed")
+    assert robot.told(people={}, scan=np.full(90, np.inf)).status == "kept"
     law = nav.SafeNavigation(
         Ahead(), map=nav.StaticMap.from_polylines([[(0, 5), (90, 5)]]), shield=nav.Shield(unseen=nav.Unseen())
     )

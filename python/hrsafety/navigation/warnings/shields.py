@@ -78,6 +78,13 @@ class Motion:
         period = self.control_period
         return (1.0 + math.ceil(self.robot.max_speed / (self.robot.guaranteed_acceleration * period) - 1e-9)) * period
 
+    def farthest(self, shield: Shield, person_speed: float) -> float:
+        """Return how far from the center of the robot whoever it can meet before it rests is at most, in m."""
+        speed = person_speed if shield.person_speed is None else shield.person_speed
+        own = 0.5 * self.robot.max_speed * (self.control_period + self.plan_duration)
+        errors = shield.position_error + shield.margin
+        return float(self.robot.radius + own + speed * (shield.latency + self.plan_duration) + errors)
+
 
 @dataclass(frozen=True, slots=True)
 class Mover:
@@ -267,7 +274,13 @@ def of_built(shield: Shield, built: AsBuilt) -> Iterator[ResultWarning]:
 
 
 def of_controller(
-    shield: Shield, robot: HolonomicRobot | DifferentialDriveRobot, *, person_speed: float, lidar: bool
+    shield: Shield,
+    robot: HolonomicRobot | DifferentialDriveRobot,
+    *,
+    person_speed: float,
+    control_period: float,
+    lidar: bool,
+    reach: float | None,
 ) -> Iterator[ResultWarning]:
     """Warn of what a shield on a robot does not cover: people who are faster, and what a lidar does not show.
 
@@ -279,8 +292,12 @@ def of_controller(
         The robot.
     person_speed : float
         Largest speed of people in m/s.
+    control_period : float
+        Time between updates in s.
     lidar : bool
         Whether the robot has one.
+    reach : float or None
+        Of the lidar in m.
 
     Yields
     ------
@@ -288,7 +305,7 @@ def of_controller(
         Codes ``"shield_assumes_less"`` and ``"shield_sees_less"``.
     """
     # How the robot carries out what it is told is its own: no motion steps here.
-    motion = Motion(robot, 1.0, 0.0)
+    motion = Motion(robot, control_period, 0.0)
     yield from of_surroundings(shield, [Mover("people", person_speed)], measurement=None, motion=motion, walls=False)
     if shield.unseen is not None and not lidar:
         message = (
@@ -297,12 +314,14 @@ def of_controller(
         )
         yield ResultWarning(SEES_LESS, "lidar", message, safe_side=True)
     if lidar:
+        told = "its active region" if reach is None else f"{reach:.4g} m"
+        least = motion.farthest(shield, person_speed)
         yield ResultWarning(
             SEES_LESS,
             "lidar",
-            "the shield keeps off at most eight points of a scan, those within the reach of the lidar: what lies "
-            "between two beams, behind others or farther away is not there for it; give a reach beyond its "
-            "braking distance, and tell of people by people=",
+            f"the shield keeps off at most eight points of a scan, those within the reach of the lidar ({told}): what "
+            "lies between two beams, behind others or farther away is not there for it; whoever can come near before "
+            f"the robot is at rest is up to {least:.3g} m away: give reach={least:.3g}, and tell of people by people=",
         )
 
 
