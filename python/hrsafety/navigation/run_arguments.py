@@ -14,7 +14,7 @@ from hrsafety.errors import InvalidParameterError, Shown
 from hrsafety.navigation.batch import gain_sets
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.laws.force_laws import Law
-from hrsafety.navigation.laws.python_law import PythonLaw, as_law
+from hrsafety.navigation.laws.python_law import ANSWERS, PythonLaw, as_law
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.scenario_arrays import Numbers, Scenarios
 
@@ -98,7 +98,7 @@ def named_laws(laws: object) -> dict[str, Law]:
     InvalidParameterError
         If there is none, or one is of another kind.
     """
-    single = isinstance(laws, Law | str) or callable(laws) or hasattr(laws, "command") or hasattr(laws, "velocity")
+    single = isinstance(laws, Law | str) or callable(laws) or any(hasattr(laws, each) for each in ANSWERS)
     given = listed("laws", "be a law, a sequence of laws or a mapping of names to laws", [laws] if single else laws)
     found = [(key, as_law(each, "laws" if single else f"laws[{shown}]")) for key, shown, each in given]
     if isinstance(laws, Mapping):

@@ -286,6 +286,17 @@ def test_a_shield_takes_twists():
     assert kept.position[-1, 0] > 0.9
 
 
+def test_a_law_of_twists_is_one_law_wherever_laws_are_taken():
+    one = Steered((0.5, 0.1))
+    assert nav.simulate_many([WHEELED], one).law_names == ("Steered",)
+    table = nav.compare({"empty": WHEELED}, {"one": one, "other": Steered((0.4, 0.0))})
+    assert table.outcome.shape == (2, 1)
+    plotting = pytest.importorskip("hrsafety.plotting")
+    pytest.importorskip("matplotlib")
+    runs = {"one": nav.simulate(WHEELED, one), "kept": nav.simulate(WHEELED, nav.SafeNavigation(one))}
+    assert plotting.comparison_paths(runs).axes
+
+
 def test_twists_need_two_wheels():
     with pytest.raises(nav.InvalidParameterError, match="robot must have two wheels under a law that answers twists"):
         nav.simulate(C1, Steered((0.5, 0.0)))

@@ -54,7 +54,7 @@ def looks_of(runs: Runs) -> dict[str, style.Properties]:
     found: dict[str, style.Properties] = {}
     for name, run in runs.items():
         kind = type(run.law)
-        styles = PLANNER_STYLES if kind.PLANS else FORCE_STYLES
+        styles = PLANNER_STYLES if getattr(run.law, "PLANS", False) else FORCE_STYLES
         number = seen.get(kind, 0)
         seen[kind] = number + 1
         color = LAW_COLORS.get(kind, style.NEUTRAL)
