@@ -182,6 +182,9 @@ def _is_user(module: object) -> bool:
     return process is None or process.parent_process() is None
 
 
+_INDEX = re.compile(r"\[\d+\]")
+
+
 def gathered(found: Iterable[tuple[str, Iterable[ResultWarning]]], among: str) -> tuple[ResultWarning, ...]:
     """Return the first warning of each kind with the number of the others.
 
@@ -195,7 +198,8 @@ def gathered(found: Iterable[tuple[str, Iterable[ResultWarning]]], among: str) -
     Returns
     -------
     tuple of ResultWarning
-        One for each code, in the order in which they were found, with the name before subject and message.
+        One for each code and part that it is about, whatever its index, in the order in which they were found, with the
+        name before subject and message.
 
     Examples
     --------
@@ -204,18 +208,19 @@ def gathered(found: Iterable[tuple[str, Iterable[ResultWarning]]], among: str) -
     >>> print(*gathered([("first", [doubt]), ("second", [doubt])], "scenarios"))
     warning: first: heading is 90 rad (1 more of this kind in these scenarios)
     """
-    first: dict[str, ResultWarning] = {}
-    others: dict[str, int] = {}
+    first: dict[tuple[str, str], ResultWarning] = {}
+    others: dict[tuple[str, str], int] = {}
     for name, told in found:
         for each in dict.fromkeys(told):
-            if each.code in first:
-                others[each.code] = others.get(each.code, 0) + 1
-                if first[each.code].safe_side and not each.safe_side:
-                    first[each.code] = replace(first[each.code], safe_side=False)
+            kind = (each.code, _INDEX.sub("", each.subject))
+            if kind in first:
+                others[kind] = others.get(kind, 0) + 1
+                if first[kind].safe_side and not each.safe_side:
+                    first[kind] = replace(first[kind], safe_side=False)
             else:
-                first[each.code] = replace(each, subject=f"{name}.{each.subject}", message=f"{name}: {each.message}")
-    more = {code: f" ({count} more of this kind in these {among})" for code, count in others.items()}
-    return tuple(replace(each, message=each.message + more.get(each.code, "")) for each in first.values())
+                first[kind] = replace(each, subject=f"{name}.{each.subject}", message=f"{name}: {each.message}")
+    more = {kind: f" ({count} more of this kind in these {among})" for kind, count in others.items()}
+    return tuple(replace(each, message=each.message + more.get(kind, "")) for kind, each in first.items())
 
 
 class Range(NamedTuple):

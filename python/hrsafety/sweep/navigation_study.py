@@ -15,7 +15,7 @@ from hrsafety import navigation as nav
 from hrsafety._arguments import Array, flag, instance, positive, sequence, word
 from hrsafety._records import dataclass
 from hrsafety.errors import HrsafetyError, InvalidParameterError, Shown, SimulationError
-from hrsafety.navigation.batch import gain_sets
+from hrsafety.navigation.batch import check_scenarios, gain_sets
 from hrsafety.navigation.gains.worlds import doubts_of, runs_of_sets
 from hrsafety.navigation.laws.known import LAWS
 from hrsafety.navigation.laws.python_law import as_law
@@ -236,6 +236,8 @@ class NavigationStudy(Study):
         if kind is nav.World:
             own = {"integrator": self.integrator, "step": self.step, "hold": self.hold}
             refuse_in_worlds(own | {"stop_on_contact": self.stop_on_contact})
+        elif scenes:
+            check_scenarios(scenes)
         if self.scenario is not None and not callable(self.scenario):
             raise InvalidParameterError("scenario", "be callable or None", self.scenario)
         if (self.scenario is None) == (not scenes):
@@ -356,10 +358,10 @@ class NavigationStudy(Study):
                 continue
             numbers = tuple(values[name] for name in others if name in self._law_units)
             of_laws.setdefault(numbers, (law, []))[1].extend(made)
-        told: dict[tuple[str, bool], ResultWarning] = {}
+        told: dict[tuple[str, str, bool], ResultWarning] = {}
         for law, scenes in of_laws.values():
             for each in self._of_law(law, scenes):
-                told.setdefault((each.code, each.safe_side), each)
+                told.setdefault((each.code, each.subject.rpartition(".")[2], each.safe_side), each)
         return (*_impossible(refused, len(distinct)), *told.values())
 
     def _of_law(self, law: nav.Law, scenes: list[Any]) -> tuple[ResultWarning, ...]:
