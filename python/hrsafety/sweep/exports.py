@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     import polars
     import xarray
 
-__all__ = ["to_csv", "to_npz", "to_pandas", "to_parquet", "to_polars", "to_xarray"]
+__all__ = ["require_polars", "to_csv", "to_npz", "to_pandas", "to_parquet", "to_polars", "to_xarray"]
 
 # Array of an NPZ file and metadata of a Parquet file that hold units and provenance.
 NPZ_TEXT = "_hrsafety"
@@ -65,7 +65,8 @@ class Stored(Protocol):
     def lazy(self, column: Column, shape: tuple[int, ...]) -> LazyColumn: ...
 
 
-def _polars() -> Any:
+def require_polars() -> Any:
+    """Return Polars, or say how it is installed."""
     try:
         import polars
     except ModuleNotFoundError:
@@ -93,14 +94,14 @@ def description(result: Stored, columns: Sequence[Column]) -> str:
 
 
 def _schema(columns: Sequence[Column]) -> dict[str, Any]:
-    pl = _polars()
+    pl = require_polars()
     kinds = {"number": pl.Float64, "integer": pl.Int64, "flag": pl.Boolean}
     return {each.name: pl.Enum(each.words) if each.words else kinds[each.kind] for each in columns}
 
 
 def _frame(stored: Mapping[str, npt.NDArray[Any]], schema: Mapping[str, Any], columns: Sequence[Column]) -> Any:
     """Return a chunk as a data frame."""
-    pl = _polars()
+    pl = require_polars()
     series = {}
     for column in columns:
         values = stored[column.name]
@@ -113,7 +114,7 @@ def _frame(stored: Mapping[str, npt.NDArray[Any]], schema: Mapping[str, Any], co
 
 def to_polars(result: Stored, columns: Sequence[Column]) -> polars.DataFrame:
     """Return a data frame, see `SweepResult.to_polars`."""
-    pl = _polars()
+    pl = require_polars()
     schema = _schema(columns)
     frames = [_frame(stored, schema, columns) for stored in result.stored_chunks(columns)]
     frame: polars.DataFrame = pl.concat([pl.DataFrame(schema=schema), *frames], rechunk=True)
@@ -159,7 +160,7 @@ def _title(column: Column) -> str:
 
 def to_parquet(result: Stored, columns: Sequence[Column], path: Path) -> Path:
     """Write a Parquet file, see `SweepResult.to_parquet`."""
-    pl = _polars()
+    pl = require_polars()
     from polars.io.plugins import register_io_source
 
     schema = _schema(columns)

@@ -71,6 +71,9 @@ class SweepShares(Table):
     high: Array
     warnings: tuple[ResultWarning, ...] = field(default=())
 
+    def _telling(self) -> tuple[str, ...]:
+        return (*self.by[:4], self.name, "share", "low", "high")  # as many as are printed
+
     def columns(self) -> Columns:
         """Return the columns by name: those of the groups, the word, count, rows, share, low and high."""
         return {**self.group, self.name: self.word, **{name: getattr(self, name) for name in _OWN}}

@@ -248,3 +248,33 @@ def test_impacts_have_shares_of_their_status_and_tables_carry_the_doubts(tmp_pat
     assert table.warnings == result.warnings != ()
     table.to_csv(tmp_path / "shares.csv")
     assert (tmp_path / "shares.csv.warnings.csv").read_text().splitlines()[1].startswith(result.warnings[0].code)
+
+
+def test_printed_shares_have_both_ends_of_their_intervals() -> None:
+    axes = [sweep.Axis(name=name, values=[0.01, 0.02]) for name in ("measurement_scale", "measurement_latency")]
+    seeds = sweep.Axis(name="seed", low=0, high=4, scale="integer")
+    study = sweep.NavigationStudy(scenarios={name: scenarios.configuration(name) for name in ("c2", "n2")})
+    shown = repr(
+        sweep.run(sweep.Grid([*axes, seeds]), study).shares("outcome", by=[each.name for each in axes] + ["scenario"])
+    )
+    assert all(name in shown.split() for name in ("share", "low", "high"))
+
+
+def test_robots_that_no_sweep_runs_are_refused_with_the_study() -> None:
+    scene = nav.Scenario(start=(0.0, 0.0), goal=(2.0, 0.0), robot=nav.DifferentialDriveRobot())
+    with pytest.raises(InvalidParameterError, match=r"scenarios\[0\].robot must be a HolonomicRobot"):
+        sweep.NavigationStudy(scenarios=scene)
+
+
+def test_every_number_of_a_shield_that_is_too_small_is_told() -> None:
+    law = nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield(position_error=0.001))
+    axes = [
+        sweep.Axis(name="measurement_scale", values=[0.05]),
+        sweep.Axis(name="measurement_latency", values=[0.1]),
+        sweep.Axis(name="seed", values=[0.0, 1.0]),
+    ]
+    found = sweep.run(
+        sweep.Grid(axes), sweep.NavigationStudy(scenarios=scenarios.configuration("c2"), law=law)
+    ).warnings
+    subjects = {each.subject.rpartition(".")[2] for each in found if each.code == "shield_assumes_less"}
+    assert {"position_error", "latency"} <= subjects

@@ -18,6 +18,7 @@ from hrsafety.cli.sweep.file import SweepFile, load
 from hrsafety.cli.sweep.pictures import make
 from hrsafety.errors import InvalidParameterError, MissingExtraError
 from hrsafety.sweep.estimates import ADVICE, size_words, time_words
+from hrsafety.sweep.exports import require_polars
 from hrsafety.sweep.room import free_space
 
 __all__ = ["sweep_file"]
@@ -44,8 +45,8 @@ def sweep_file(options: argparse.Namespace) -> None:
         output.planned_folder(options.out)
         output.require_page("sweep")
     output.check_json(options)
-    if options.table is not None:
-        output.target("--table", options.table, _FORMATS)
+    if options.table is not None and output.target("--table", options.table, _FORMATS).suffix.lower() == ".parquet":
+        require_polars()  # before the work begins
     if options.workers is not None and options.workers < 1:
         raise InvalidParameterError("--workers", "be at least 1", options.workers)
     if options.workers is not None and options.scheduler is not None:
