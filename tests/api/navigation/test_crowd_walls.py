@@ -256,10 +256,12 @@ def test_goals_and_starts_inside_walls_are_named() -> None:
     block = nav.Rectangle(center=(4.0, 0.0), length=2.0, width=2.0)
     robot = nav.Robot(start=(0, 0), goal=(4.0, 0.5))
     within = nav.Person(start=(3.5, 0.0), route=[(8, 0), (4.0, -0.5)])
-    place = nav.World(people=[within], robots=[robot], walls=[block])
+    bound = replace(within, start=(-3, 0), route=[(4.0, 0.0)])
+    place = nav.World(people=[within, bound], robots=[robot], walls=[block])
     assert [(each.code, each.subject) for each in place.warnings] == [
         ("start_in_wall", "people[0].start"),
         ("goal_in_wall", "people[0].route[1]"),
+        ("goal_in_wall", "robots[0].goal"),
     ]
     assert "1 more of this kind" in place.warnings[1].message
     assert "walls[0]" in place.warnings[0].message
