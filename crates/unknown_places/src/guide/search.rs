@@ -76,6 +76,15 @@ struct Link {
     half: f32,
 }
 
+/// A node under search.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    /// Least time found so far in s.
+    time: f32,
+    /// Its price, infinite where there is no node.
+    cost: f32,
+}
+
 /// Nodes that a link crosses along an axis at most.
 const STRIDE: usize = 2;
 
@@ -87,8 +96,7 @@ pub struct Search {
     goal: Vector2<f64>,
     plan: TimeToGo,
     settled: Vec<u64>,
-    /// Price of each node, and infinite where there is none.
-    cost: Vec<f32>,
+    nodes: Vec<Node>,
     queue: Buckets,
     links: Vec<Link>,
     /// Square of the distance of each node, and so many more if it is unknown.
@@ -122,7 +130,7 @@ impl Search {
             goal: Vector2::zeros(),
             plan: TimeToGo::with_room(nodes),
             settled: Vec::new(),
-            cost: vec![f32::INFINITY; nodes],
+            nodes: Vec::with_capacity(nodes),
             queue: Buckets::default(),
             links: Vec::new(),
             ground: vec![1; nodes],
@@ -216,18 +224,18 @@ impl Search {
         for price in &mut table[self.unknown.unsigned_abs() as usize..] {
             *price += more;
         }
-        self.cost.clear();
+        self.nodes.clear();
         let priced = self.ground.iter();
-        self.cost
-            .extend(priced.map(|ground| table[ground.unsigned_abs() as usize]));
+        self.nodes.extend(priced.map(|ground| Node {
+            time: f32::INFINITY,
+            cost: table[ground.unsigned_abs() as usize],
+        }));
     }
 
     /// Puts the goal into the queue, for the least distance that is tried.
     fn begin(&mut self) {
         self.price();
         let size = self.plan.size;
-        self.plan.time.clear();
-        self.plan.time.resize(size * size, f32::INFINITY);
         self.plan.next.resize(size * size, NONE);
         self.settled.clear();
         self.settled.resize((size * size).div_ceil(64), 0);
@@ -255,8 +263,8 @@ impl Search {
     }
 
     fn seed(&mut self, node: usize, time: f32) {
-        if time < self.plan.time[node] {
-            self.plan.time[node] = time;
+        if time < self.nodes[node].time {
+            self.nodes[node].time = time;
             self.plan.next[node] = index(node);
             self.queue.push(time, index(node));
         }
@@ -273,7 +281,7 @@ impl Search {
 
     #[inline]
     fn is_node(&self, node: usize) -> bool {
-        self.cost[node] < f32::INFINITY
+        self.nodes[node].cost < f32::INFINITY
     }
 
     fn least_square(&self) -> i16 {
@@ -337,7 +345,7 @@ impl Search {
             if self.settled[word] & bit != 0 {
                 continue;
             }
-            let time = self.plan.time[node];
+            let Node { time, cost } = self.nodes[node];
             if time > self.until {
                 break;
             }
@@ -346,7 +354,7 @@ impl Search {
             if self.until.is_infinite() && robot.contains(&node) {
                 self.until = time + self.options.beyond as f32;
             }
-            let (column, cost) = (node % size, self.cost[node]);
+            let column = node % size;
             let inside = inner.contains(&column) && inner.contains(&(node / size));
             for link in &self.links {
                 let there = node as i64 + link.step;
@@ -358,9 +366,10 @@ impl Search {
                     }
                 }
                 let there = there as usize;
-                let reached = time + link.half * (cost + self.cost[there]);
-                if reached < self.plan.time[there] {
-                    self.plan.time[there] = reached;
+                let other = &mut self.nodes[there];
+                let reached = time + link.half * (cost + other.cost);
+                if reached < other.time {
+                    other.time = reached;
                     self.plan.next[there] = index(node);
                     self.queue.push(reached, index(there));
                 }
@@ -384,16 +393,16 @@ impl Search {
 
     /// Gives what was found for what was found before, whose room it takes over.
     pub fn exchange(&mut self, plan: &mut TimeToGo) {
-        for (times, settled) in self.plan.time.chunks_mut(64).zip(&self.settled) {
-            if *settled == 0 {
-                times.fill(f32::INFINITY);
-            } else if *settled != u64::MAX {
-                for (bit, time) in times.iter_mut().enumerate() {
-                    if settled >> bit & 1 == 0 {
-                        *time = f32::INFINITY;
-                    }
+        self.plan.time.clear();
+        for (nodes, settled) in self.nodes.chunks(64).zip(&self.settled) {
+            let known = nodes.iter().enumerate();
+            self.plan.time.extend(known.map(|(bit, node)| {
+                if settled >> bit & 1 == 0 {
+                    f32::INFINITY
+                } else {
+                    node.time
                 }
-            }
+            }));
         }
         self.plan.ahead.clear();
         self.plan.ahead.resize(self.plan.time.len(), NONE);
