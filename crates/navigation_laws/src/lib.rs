@@ -304,10 +304,6 @@ pub fn send(law: &mut dyn Law<f64>, goal: Vector2<f64>) -> Result<()> {
 
 /// A law for robots side by side, each with a scene and gains of its own.
 pub trait LaneLaw<R: Real>: Law<R> {
-    /// A run begins in a lane, which becomes that of a law made for its scenario and its gains. The
-    /// scenarios of all lanes have the same robot and the same rules.
-    fn enter(&mut self, lane: usize, fresh: Self);
-
     /// Whether the law receives all obstacles, by their places in the list. Other laws receive only those in whose
     /// active regions the robots are.
     fn is_told_of_all(&self) -> bool {
@@ -398,4 +394,16 @@ pub trait LaneFamily: LawFamily {
         gains: &[R],
         scenario: &Scenario,
     ) -> Result<Self::Law<R, RECORD>>;
+    /// A run begins in a lane of a law at work, with its gains among those of all lanes. The scenarios of all lanes
+    /// have the same robot and the same rules.
+    ///
+    /// # Errors
+    /// The law cannot work in the scenario with these gains.
+    fn enter<R: Real, const RECORD: bool>(
+        &self,
+        law: &mut Self::Law<R, RECORD>,
+        lane: usize,
+        gains: &[R],
+        scenario: &Scenario,
+    ) -> Result<()>;
 }

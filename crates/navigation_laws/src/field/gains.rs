@@ -70,6 +70,17 @@ pub struct GainLanes<R> {
 }
 
 impl<R: Real> GainLanes<R> {
+    /// The four gains of every lane, in the order of [`Gains`].
+    #[must_use]
+    pub(crate) fn of(gains: &[R]) -> Self {
+        Self {
+            attractive: gains[0],
+            repulsive: gains[1],
+            detour: gains[2],
+            ratio: gains[3],
+        }
+    }
+
     /// The first sets, one a lane; the last set fills lanes that are left over.
     #[must_use]
     pub fn gather(first: Gains, rest: &[Gains]) -> Self {

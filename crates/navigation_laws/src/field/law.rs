@@ -108,13 +108,24 @@ impl LaneFamily for VirtualForceField {
         gains: &[R],
         scenario: &Scenario,
     ) -> Result<ForceFieldLaw<R, RECORD>> {
-        let gains = GainLanes {
-            attractive: gains[0],
-            repulsive: gains[1],
-            detour: gains[2],
-            ratio: gains[3],
-        };
-        Ok(ForceFieldLaw::new(self, gains, scenario))
+        Ok(ForceFieldLaw::new(self, GainLanes::of(gains), scenario))
+    }
+
+    fn enter<R: Real, const RECORD: bool>(
+        &self,
+        law: &mut ForceFieldLaw<R, RECORD>,
+        lane: usize,
+        gains: &[R],
+        scenario: &Scenario,
+    ) -> Result<()> {
+        law.gains = GainLanes::of(gains);
+        law.goal.set_lane(lane, scenario.goal);
+        let count = law.latched.len().max(scenario.obstacles.len());
+        law.latched.resize(count, R::zero());
+        for side in &mut law.latched {
+            side.set(lane, 0.0);
+        }
+        Ok(())
     }
 }
 
@@ -362,16 +373,6 @@ impl<R: Real, const RECORD: bool> ForceFieldLaw<R, RECORD> {
 }
 
 impl<R: Real, const RECORD: bool> LaneLaw<R> for ForceFieldLaw<R, RECORD> {
-    fn enter(&mut self, lane: usize, fresh: Self) {
-        self.gains = fresh.gains;
-        self.goal.set_lane(lane, fresh.goal.lane(lane));
-        let count = self.latched.len().max(fresh.latched.len());
-        self.latched.resize(count, R::zero());
-        for side in &mut self.latched {
-            side.set(lane, 0.0);
-        }
-    }
-
     fn is_told_of_all(&self) -> bool {
         self.rules.hysteresis.is_finite()
     }

@@ -6,7 +6,7 @@ use navigation_world::arguments::{Arguments, Named};
 use navigation_world::world::geometry::RobotState;
 use navigation_world::world::scenario::Scenario;
 use numeric::error::{Result, not_negative};
-use numeric::lanes::{Real, Vector2};
+use numeric::lanes::{Planar, Real, Vector2};
 
 /// A field with its gains, by which it is known to a search.
 pub trait PairwiseFamily: Copy + Send + Sync {
@@ -123,5 +123,17 @@ impl<F: PairwiseFamily> LaneFamily for Pairwise<F> {
     ) -> Result<Self::Law<R, RECORD>> {
         let field = self.0.with_gains(gains, scenario);
         Ok(PairwiseLaw::new(field.into(), scenario))
+    }
+
+    fn enter<R: Real, const RECORD: bool>(
+        &self,
+        law: &mut Self::Law<R, RECORD>,
+        lane: usize,
+        gains: &[R],
+        scenario: &Scenario,
+    ) -> Result<()> {
+        law.field = self.0.with_gains(gains, scenario).into();
+        law.goal.set_lane(lane, scenario.goal);
+        Ok(())
     }
 }

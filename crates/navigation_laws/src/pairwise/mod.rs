@@ -146,12 +146,7 @@ impl<F: PairwiseField<f64>> PairwiseLaw<f64, F> {
     }
 }
 
-impl<R: Real, F: PairwiseField<R>> LaneLaw<R> for PairwiseLaw<R, F> {
-    fn enter(&mut self, lane: usize, fresh: Self) {
-        self.field = fresh.field;
-        self.goal.set_lane(lane, fresh.goal.lane(lane));
-    }
-}
+impl<R: Real, F: PairwiseField<R>> LaneLaw<R> for PairwiseLaw<R, F> {}
 
 impl<R: Real, F: PairwiseField<R>> Law<R> for PairwiseLaw<R, F> {
     #[inline(always)]

@@ -89,10 +89,6 @@ impl<R: Real, P: ScenePlanner> Law<R> for LanePlanners<P> {
 }
 
 impl<R: Real, P: ScenePlanner> LaneLaw<R> for LanePlanners<P> {
-    fn enter(&mut self, lane: usize, mut fresh: Self) {
-        self.planners[lane] = fresh.planners.swap_remove(lane);
-    }
-
     fn is_told_of_all(&self) -> bool {
         true
     }
@@ -152,6 +148,18 @@ impl<F: PlannerFamily<Planner: ScenePlanner>> LaneFamily for Planned<F> {
             planners: (0..R::WIDTH).map(planner).collect::<Result<_>>()?,
             mass: scenario.robot.mass,
         })
+    }
+
+    fn enter<R: Real, const RECORD: bool>(
+        &self,
+        law: &mut Self::Law<R, RECORD>,
+        lane: usize,
+        gains: &[R],
+        scenario: &Scenario,
+    ) -> Result<()> {
+        let numbers: Vec<f64> = gains.iter().map(|gain| gain.lane(lane)).collect();
+        law.planners[lane] = self.0.planner(&numbers, scenario)?;
+        Ok(())
     }
 }
 

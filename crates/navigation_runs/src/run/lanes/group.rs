@@ -72,11 +72,10 @@ fn side_by_side<F: LaneFamily, C: Recorder<Eight> + Default, const RECORD: bool>
                      lane: usize,
                      gains: &[Eight],
                      scenario: &Scenario| {
-        let fresh = family.with_gains::<Eight, RECORD>(gains, scenario)?;
-        match law {
-            Some(law) => law.enter(lane, fresh),
-            None => *law = Some(Box::new(fresh)),
+        if let Some(law) = law {
+            return family.enter(law, lane, gains, scenario);
         }
+        *law = Some(Box::new(family.with_gains(gains, scenario)?));
         Ok(())
     };
     // A job knows no family: families with the same law share its code.
