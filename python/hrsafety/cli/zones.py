@@ -17,6 +17,7 @@ from hrsafety.pages.report import Report, ReportCell, ReportTable, Section
 from hrsafety.plausibility import ResultWarning
 from hrsafety.zones.checking import VERDICTS
 from hrsafety.zones.monitor_files import corners_of_text
+from hrsafety.zones.monitor_text import grown_shapes
 
 __all__ = ["FAILURES", "run_zones"]
 
@@ -269,6 +270,10 @@ def _check(options: argparse.Namespace) -> None:
     if mend is not None:
         zones.mended(options.file, found).write(mend)
         written.append(mend)
+        stops = {each.name for each in found.shapes}
+        for name in grown_shapes(found):
+            if name not in stops:
+                print(f"mended  {name} grows too: it lies around a zone that stops, and keeps its lead")
     if options.out is not None:
         place = output.folder(options.out)
         written += [output.write_csv(place / "worst_attack.csv", *_steps(found.worst))]

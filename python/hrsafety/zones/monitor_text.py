@@ -11,17 +11,27 @@ import numpy as np
 from hrsafety._arguments import Array
 from hrsafety._yaml.documents import YamlDocument, read_yaml
 from hrsafety.zones.monitor_files import node_of
-from hrsafety.zones.polygons import trimmed
+from hrsafety.zones.polygons import ANGLES, distance_outside, from_supports, supports, trimmed
 
 __all__ = ["mended", "zone_text"]
 
 CORNERS = 24
 """Most corners of a shape that is mended."""
+ROUNDING = 5e-4
+"""Distance in m that corners lose in files."""
 
 
 def shown_corners(corners: Array) -> str:
     """Return corners as the collision monitor reads them."""
     return "[" + ", ".join(f"[{x:.4f}, {y:.4f}]" for x, y in corners) + "]"
+
+
+def _reach(shape: Array | float) -> float:
+    return shape if isinstance(shape, float) else float(np.linalg.norm(shape, axis=1).max())
+
+
+def _rounded(radius: float) -> float:
+    return float(np.ceil(1e3 * radius) / 1e3)
 
 
 def zone_text(found: Any) -> str:
@@ -92,8 +102,9 @@ def zone_text(found: Any) -> str:
 def mended(path: str | PathLike[str], found: Any) -> YamlDocument:
     """Return a file of a collision monitor with its stopping shapes made large enough, all else as it was.
 
-    Each shape becomes the hull of itself and the one that its commands need; ``source_timeout`` becomes at most the
-    reaction time. Commands without a range, and shapes that would reach beyond sight, stay as they are.
+    Each shape becomes the hull of itself and the one that its commands need; one around it that slows the robot or
+    limits its speed grows with it and keeps its lead. ``source_timeout`` becomes at most the reaction time. Commands
+    without a range, and shapes that would reach beyond sight, stay as they are.
 
     Parameters
     ----------
@@ -135,18 +146,14 @@ def mended(path: str | PathLike[str], found: Any) -> YamlDocument:
     document = read_yaml(Path(path))
     node = node_of(document.root)
     changes: dict[tuple[str | int, ...], Any] = {}
-    for shape in found.shapes:
-        if shape.needed is None or not shape.missing > 0.0:
+    for name, shape in grown_shapes(found).items():
+        keys = (*node.path, *name.split("."))
+        if isinstance(shape, float):
+            changes[*keys, "radius"] = shape
             continue
-        keys = (*node.path, *shape.name.split("."))
-        section = document.at(keys)
-        if "radius" in section and "points" not in section:
-            changes[*keys, "radius"] = float(np.ceil(1e3 * np.linalg.norm(shape.needed, axis=1).max()) / 1e3)
-            continue
-        whole = trimmed(np.concatenate([shape.corners, shape.needed]), CORNERS)
-        old = section["points"].plain
+        old = document.at(keys)["points"].plain
         flat = isinstance(old, list) and not (old and isinstance(old[0], list))
-        new = shown_corners(whole) if isinstance(old, str) else whole.ravel().tolist() if flat else whole.tolist()
+        new = shown_corners(shape) if isinstance(old, str) else shape.ravel().tolist() if flat else shape.tolist()
         changes[*keys, "points"] = new
     reaction = found.conditions.reaction_time
     if not 0.0 < found.monitor.source_timeout <= reaction:
@@ -155,3 +162,32 @@ def mended(path: str | PathLike[str], found: Any) -> YamlDocument:
             if "source_timeout" in node[name]:
                 changes[*node.path, name, "source_timeout"] = reaction
     return document.changed(changes) if changes else document
+
+
+def grown_shapes(found: Any) -> dict[str, Array | float]:
+    """Return corners or radius of mended shapes by name: those that stop, then those that slow and lie around them."""
+    circles = {zone.name for zone in found.monitor.polygons if zone.type == "circle"}
+    grown = [each for each in found.shapes if each.needed is not None and each.missing > 0.0]
+    shapes: dict[str, Array | float] = {}
+    for each in grown:
+        points = np.concatenate([each.corners, each.needed])
+        shapes[each.name] = _rounded(_reach(each.needed)) if each.name in circles else trimmed(points, CORNERS)
+    for zone in found.monitor.polygons:
+        if zone.action not in ("slowdown", "limit"):
+            continue
+        if zone.type == "circle":
+            held = [each for each in grown if _reach(each.corners) <= zone.radius]
+            lead = max((_reach(shapes[each.name]) - _reach(each.corners) for each in held), default=0.0)
+            if lead > 0.0:
+                shapes[zone.name] = _rounded(zone.radius + lead)
+            continue
+        parts = [(f"{zone.name}.{each.name}", each.corners) for each in zone.ranges] or [(zone.name, zone.corners)]
+        for name, corners in parts:
+            if corners is None:  # a topic brings it
+                continue
+            held = [each for each in grown if distance_outside(corners, each.corners).max() <= ROUNDING]
+            leads = [supports(shapes[each.name]) - supports(each.corners) for each in held]
+            if leads:
+                lead = np.maximum(np.max(leads, axis=0), 0.0)
+                shapes[name] = trimmed(from_supports(ANGLES, supports(corners) + lead), CORNERS)
+    return shapes

@@ -10,7 +10,13 @@ import numpy.typing as npt
 from hrsafety._arguments import Array, own, points
 from hrsafety.errors import InvalidParameterError, Shown
 
-__all__ = ["area", "checked", "convex", "distance_outside", "from_supports", "inside", "simplified", "trimmed"]
+__all__ = [
+    *("ANGLES", "area", "checked", "convex", "distance_outside", "from_supports", "inside", "simplified", "supports"),
+    "trimmed",
+]
+
+ANGLES = np.arange(72.0) * (2.0 * math.pi / 72.0)
+"""Directions in rad in which the reach of shapes is taken."""
 
 
 def checked(name: str, value: object) -> Array:
@@ -182,10 +188,17 @@ def simplified(angles: Array, supports: Array, corners: int) -> npt.NDArray[np.i
 
 def trimmed(place: Array, corners: int) -> Array:
     """Return a convex polygon around points with at most so many corners, rounded outward to 1 mm."""
-    angles = np.arange(72.0) * (2.0 * math.pi / 72.0)
-    reach = np.max(np.stack([np.cos(angles), np.sin(angles)], axis=1) @ place.T, axis=1) + 1e-3
-    kept = simplified(angles, reach, corners)
-    return np.round(from_supports(angles[kept], reach[kept]), 3)
+    reach = supports(place) + 1e-3
+    kept = simplified(ANGLES, reach, corners)
+    return np.round(from_supports(ANGLES[kept], reach[kept]), 3)
+
+
+def supports(place: Array | float) -> Array:
+    """Return how far points, or a circle about the origin by its radius, reach along each of `ANGLES` in m."""
+    if isinstance(place, float):
+        return np.full(len(ANGLES), place)
+    found: Array = np.max(np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1) @ place.T, axis=1)
+    return found
 
 
 def _angle_between(first: float, second: float) -> float:

@@ -6,10 +6,12 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from hrsafety import zones
 from hrsafety.cli import main
+from hrsafety.zones.polygons import distance_outside
 
 ROBOT = (
     *("--footprint", "0.22", "--max-speed", "0.4", "--max-turn-rate", "0.5", "--deceleration", "2.5"),
@@ -63,6 +65,46 @@ def test_a_broken_file_fails_is_mended_and_replayed(tmp_path: Path, capsys: pyte
     again = zones.replay(monitor, conditions, list(found["worst"]["genes"].values()))
     assert again.contact_speed == found["worst"]["contact_speed_m_per_s"]
     assert main(["zones", "check", str(mended), *ROBOT, *CHECKED, "--fail-on", "any"]) == 0
+
+
+NESTED = """collision_monitor:
+  ros__parameters:
+    source_timeout: 0.1
+    polygons: ["Stop", "Slow", "Round", "Ahead", "Fast"]
+    Stop: {type: "polygon", points: "[[0.4, 0.3], [0.4, -0.3], [-0.3, -0.3], [-0.3, 0.3]]", action_type: "stop"}
+    Slow: {type: "polygon", points: "[[0.7, 0.4], [0.7, -0.4], [-0.4, -0.4], [-0.4, 0.4]]", action_type: "slowdown"}
+    Round: {type: "circle", radius: 0.6, action_type: "limit"}
+    Ahead: {type: "polygon", points: "[[0.9, 0.1], [0.9, -0.1], [0.2, -0.1], [0.2, 0.1]]", action_type: "slowdown"}
+    Fast:
+      type: "velocity_polygon"
+      action_type: "slowdown"
+      velocity_polygons: ["all"]
+      all: {points: "[[0.8, 0.3], [0.8, -0.3], [-0.3, -0.3], [-0.3, 0.3]]", linear_min: -1.0, linear_max: 1.0,
+        theta_min: -2.0, theta_max: 2.0}
+    observation_sources: ["scan"]
+    scan: {type: "scan"}
+"""
+
+
+def test_mended_zones_stay_in_those_that_lie_around_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file, mended = tmp_path / "cm.yaml", tmp_path / "mended.yaml"
+    file.write_text(NESTED)
+    main(["zones", "check", str(file), *ROBOT, *CHECKED, "--mend", str(mended)])
+    told = capsys.readouterr().out
+    for name in ("Slow", "Round", "Fast.all"):
+        assert f"{name} grows too: it lies around a zone that stops" in told
+    assert "Ahead grows" not in told
+    zone = {each.name: each for each in zones.load_monitor(mended).polygons}
+    stop, before = zone["Stop"].corners, zones.load_monitor(file).polygons[3].corners
+    assert stop is not None
+    assert stop[:, 0].max() > 0.6  # beyond what two of them were
+    slow, fast = zone["Slow"].corners, zone["Fast"].ranges[0].corners
+    assert slow is not None
+    assert distance_outside(slow, stop).max() == 0.0
+    assert distance_outside(fast, stop).max() <= 1e-3
+    assert slow[:, 0].max() - stop[:, 0].max() == pytest.approx(0.3, abs=5e-3)
+    assert zone["Round"].radius >= np.linalg.norm(stop, axis=1).max()
+    np.testing.assert_array_equal(zone["Ahead"].corners, before)
 
 
 def test_slow_people_keep_a_check_from_passing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
