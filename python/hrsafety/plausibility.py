@@ -413,6 +413,8 @@ RANGES: dict[str, Range] = {
     "load_force": Range(1.0, 1e5, "N", "touch to far above what breaks a skull", "kN given for N"),
     "load_pressure": Range(1e3, 1e9, "Pa", "touch to hard plastics", "N/cm^2 or N/mm^2 given for Pa"),
     "reaction_time": Range(0.002, 5.0, "s", "one cycle of a fast control to very slow ones", "ms given for s"),
+    "stopping_time": Range(0.0, 60.0, "s", "a fast truck that brakes gently", "ms given for s"),
+    "stopping_distance": Range(0.0, 500.0, "m", "a fast truck that brakes gently", "mm or cm given for m"),
     # Both of the next are 0 where there is none, which who asks passes over.
     "intrusion": Range(0.008, 5.0, "m", "ISO 13855 has 8 mm to 1.2 m", "mm or cm given for m, or turned into m twice"),
     "position_uncertainty": Range(

@@ -36,6 +36,11 @@ _QUANTITIES = {
     "uncertainty": "position_uncertainty",
     "deceleration": "robot_deceleration",
 }
+_STOPS = {
+    "stopping.speed": "approach_speed",
+    "stopping.time": "stopping_time",
+    "stopping.distance": "stopping_distance",
+}
 _NONE = ("intrusion", "uncertainty")
 """Distances of which 0 means that there is none."""
 
@@ -45,8 +50,8 @@ class StoppingData(Parameters):
     """Measured stops: times and distances over speed, load and extension.
 
     Values in between are linear; outside the table nothing is known (``outside_table``). A distance of more than speed
-    times time, or of less than a fifth of it, and a stop of more than 25 m/s^2 are doubted (`doubts`) by all that takes
-    these stops.
+    times time, or of less than a fifth of it, a stop of more than 25 m/s^2, and numbers as of ms, mm or mm/s are
+    doubted (`doubts`) by all that takes these stops.
 
     Parameters
     ----------
@@ -117,7 +122,7 @@ class StoppingData(Parameters):
 
     @property
     def doubts(self) -> tuple[ResultWarning, ...]:
-        """Stops that no robot makes: a way beyond speed times time, hardly any of it, or a time that no brake needs."""
+        """Stops that no robot makes: odd numbers, a way beyond speed times time or hardly any of it, an odd time."""
         time, distance = np.asarray(self.time), np.asarray(self.distance)
         speed = np.broadcast_to(np.reshape(np.asarray(self.speed), (-1, 1, 1)), time.shape)
         least, most = (share * speed * time for share in BRAKED)
@@ -133,7 +138,8 @@ class StoppingData(Parameters):
             f"a robot that brakes by {RANGES['robot_deceleration'].most:g} m/s^2 at most takes longer: is the time in "
             "another unit, or missing?",
         )
-        found = []
+        named = {f"stopping.{name}": getattr(self, name) for name in ("speed", "time", "distance")}
+        found = list(implausible(named, _STOPS))
         for beyond, why in zip((long, short, sudden), words, strict=True):
             held = (beyond > 0.0) & (speed > 0.0)
             if held.any():

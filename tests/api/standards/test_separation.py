@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hrsafety import standards
+from hrsafety import contact, standards
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.plausibility import HrsafetyWarning, ImplausibleWarning
 
@@ -151,6 +151,27 @@ def _doubted(**stops: object) -> list[str]:
         assert all(each.category is ImplausibleWarning for each in caught)
     assert all(each.code == "stops_inconsistent" and not each.safe_side for each in table.doubts)
     return [each.message for each in table.doubts]
+
+
+@pytest.mark.parametrize(
+    ("factors", "names"),
+    [
+        ({"time": 1e3, "distance": 1e3}, ["stopping.time"]),
+        ({"speed": 1e3, "distance": 1e3}, ["stopping.speed"]),
+        ({"speed": 1e3, "time": 1e-3}, ["stopping.speed"]),
+        ({"time": 1e3}, ["stopping.time"]),
+        ({"distance": 1e4}, ["stopping.distance"]),
+    ],
+)
+def test_stops_in_other_units_are_implausible(factors: dict[str, float], names: list[str]) -> None:
+    stops = {"speed": [0.0, 0.5, 1.0], "time": [0.0, 0.2, 0.3], "distance": [0.0, 0.05, 0.16]}
+    right = standards.StoppingData(**stops)
+    assert right.doubts == ()
+    wrong = {name: np.multiply(values, factors.get(name, 1.0)) for name, values in stops.items()}
+    found = standards.StoppingData(**wrong).doubts
+    assert [each.subject for each in found if each.code == "implausible"] == names
+    drive = contact.Drive(stopping=standards.StoppingData(**wrong), reaction_time=0.1)
+    assert {f"drive.{name}" for name in names} <= {each.subject for each in drive.doubts}
 
 
 def test_stops_that_no_robot_makes_are_told() -> None:
