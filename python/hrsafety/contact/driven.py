@@ -390,7 +390,14 @@ def driven_speed(hit: Contact, drive: Drive, limits: object = None, *, human_spe
     kinetic = allowed_of(found.given, walking)
     doubts = tuple(each for each in kinetic.warnings if (each.code, each.subject) != ("drive_not_given", "drive"))
     if status == "unfinished":
-        doubts = (*doubts, ResultWarning("unfinished", "drive", "loads with the drive are not known even when slow"))
+        doubts = (
+            *doubts,
+            ResultWarning(
+                "unfinished",
+                "drive",
+                "loads with the drive are not known even when slow: a shorter stop or damping of the drive may help",
+            ),
+        )
     return DrivenSpeed(
         speed=speed,
         governs=governs,

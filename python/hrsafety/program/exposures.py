@@ -40,7 +40,12 @@ NO_DRIVE = ResultWarning(
     "and braked presses harder; give [drive]",
 )
 NOT_PERMITTED = ResultWarning("not_permitted", "limits", "the limit set does not permit this contact")
-UNFINISHED = ResultWarning("unfinished", "covering", "a simulation of a contact did not end: no speed is allowed there")
+UNFINISHED = ResultWarning(
+    "unfinished",
+    "covering",
+    "a simulation of a contact did not end: no speed is "
+    "allowed there; give a thicker covering, or one with another damping",
+)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -360,9 +365,10 @@ class Exposer:
         speeds = np.where(unlimited, FASTEST, np.nan_to_num(found.speed, nan=0.0))
         body = float(row.limit.body_mass or math.inf)
         reduced = grid if math.isinf(body) else grid * body / (grid + body)
-        lost = () if (unlimited | np.isfinite(found.speed)).all() else (UNFINISHED,)
         known = {each.code for each in row.warnings} | {"drive_not_given"}
         more = tuple(each for each in found.warnings if each.code not in known)
+        ended = (unlimited | np.isfinite(found.speed)).all() or any(each.code == "unfinished" for each in more)
+        lost = () if ended else (UNFINISHED,)
         return replace(row, table=(reduced, speeds), warnings=(*row.warnings, *more, *lost))
 
 

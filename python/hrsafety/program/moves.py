@@ -225,7 +225,13 @@ def _line(arm: Arm, pose: Array, move: Move, link: str, path: str) -> tuple[Join
             rule = (
                 f"stay where the arm can keep the orientation of {link} (no_solution beyond {here:.3f} m of the line)"
             )
-            raise InvalidParameterError(f"{path}.to", rule, list(move.to), "out of reach, or through a singular pose")
+            remedy = "out of reach, or through a singular pose"
+            if free.sum() < 6:
+                remedy = (
+                    f"the arm has {free.sum()} joints that move, and to keep an orientation on any line takes 6: write "
+                    f"joint moves, or a line that these joints can draw; or {remedy}"
+                )
+            raise InvalidParameterError(f"{path}.to", rule, list(move.to), remedy)
         poses.append(found)
         nearest = min(nearest, ratio)
     rows = np.array(poses)

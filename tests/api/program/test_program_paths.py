@@ -205,6 +205,18 @@ def test_moves_that_are_refused(moves: list[dict[str, object]], message: str) ->
         program.ArmMotion.from_moves(chain(2), made, acceleration=2.0)
 
 
+@pytest.mark.parametrize("joints", [2, 3])
+def test_a_line_that_few_joints_cannot_draw_says_so(joints: int) -> None:
+    """Three joints about one axis keep no orientation off their plane."""
+    moves = [
+        program.Move(kind="joint", to=[0.3, 0.5, 0.2][:joints]),
+        program.Move(kind="linear", to=[0.3, 0.0, 0.2]),
+    ]
+    rule = rf"no_solution.*the arm has {joints} joints that move, and to keep an orientation on any line takes 6"
+    with pytest.raises(HrsafetyError, match=rule):
+        program.ArmMotion.from_moves(chain(joints), moves, acceleration=2.0)
+
+
 def test_a_line_near_a_singular_pose_is_doubted() -> None:
     arm = example()
     pose = POSE | {"wrist_2": 1e-4}

@@ -79,7 +79,8 @@ def drive_doubts(cell: Cell, driven: Driven | None) -> tuple[ResultWarning, ...]
     told: tuple[ResultWarning, ...] = ()
     if unknown:
         words = {"outside_table": "the stop was not measured from the planned speed"}
-        message = f"loads with the drive are not known: {words.get(driven.loads.status, 'a motion did not settle')}"
+        unsettled = "a motion did not settle; a shorter stop or damping of an elastic drive may help"
+        message = f"loads with the drive are not known: {words.get(driven.loads.status, unsettled)}"
         told = (ResultWarning("unfinished", "drive", message),)
     return (*driven.drive.doubts_with(cell.robot.payload_mass), *told)
 
