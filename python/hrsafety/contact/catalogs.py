@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from hrsafety._arguments import number, readable
 from hrsafety._display import displayed
 from hrsafety._words import meant
-from hrsafety.contact.compression import load_compression_test
+from hrsafety.contact.compression import compression_test
 from hrsafety.contact.materials import Material, material
 from hrsafety.errors import InvalidParameterError, Shown
 
@@ -112,7 +112,7 @@ def material_beside(given: Mapping[str, Any], folder: Path) -> Material:
     if not isinstance(given["file"], str):
         raise InvalidParameterError("material.file", "be a text in quotes", given["file"])
     sizes = {name: number(f"material.{name}", given[name]) for name in ("thickness", "area") if name in given}
-    return load_compression_test(folder / given["file"], **sizes, loading=given.get("loading"))
+    return compression_test(folder / given["file"], **sizes, loading=given.get("loading"))
 
 
 def _material(where: str, entry: Any, folder: Path) -> CatalogMaterial:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -15,7 +16,7 @@ from hrsafety.errors import FileError, Shown
 from hrsafety.io.cells import TableColumn, read_columns
 from hrsafety.io.headers import cells_of, delimiter_of, first_row, is_number
 from hrsafety.io.reader import Document
-from hrsafety.plausibility import issue
+from hrsafety.plausibility import ResultWarning, issue
 
 __all__ = ["load_compression_test"]
 
@@ -104,6 +105,16 @@ def load_compression_test(
     >>> foam.strain.round(3).tolist(), foam.stress.round(1).tolist()
     ([0.0, 0.05, 0.1, 0.3, 0.6], [0.0, 4000.0, 6000.0, 9000.0, 20000.0])
     """
+    found = compression_test(path, thickness, area, loading)
+    for told in found.warnings:
+        issue(told.message, stacklevel=3)
+    return found
+
+
+def compression_test(
+    path: str | os.PathLike[str], thickness: float | None = None, area: float | None = None, loading: str | None = None
+) -> StressTable:
+    """Return the material of a compression test as `load_compression_test` does, whose doubts only it carries."""
     if loading is not None:
         word("loading", loading, ("first", "last"))
     document = Document(path)
@@ -126,12 +137,14 @@ def load_compression_test(
     table = table[np.isfinite(table).all(axis=1)] * [each.scale for each in chosen]
     if len(table) < 2:
         raise document.error("no_rows", "hold at least two rows of numbers", len(table))
+    doubts: tuple[ResultWarning, ...] = ()
     if (line := _header(document)) != first_row(document)[0]:
         told = f"{document.name}: line {line + 1} is taken as the header, and the lines above it are left out"
-        issue(told, stacklevel=3)
+        # What stands above a header that names both axes holds no numbers of the test.
+        doubts = (ResultWarning("header_below_titles", "material", told, safe_side=True),)
     # Presses count down or up, and pull is the positive direction of many.
     strain, stress = (each if abs(each.max()) >= abs(each.min()) else -each for each in table.T)
-    return _material(document, *_loading(document, strain, stress, loading))
+    return replace(_material(document, *_loading(document, strain, stress, loading)), warnings=doubts)
 
 
 def _loading(document: Document, strain: Array, stress: Array, which: str | None) -> tuple[Array, Array]:

@@ -16,6 +16,7 @@ from hrsafety.contact.cell.robot import ContactRobot
 from hrsafety.contact.chance import Exceedance, chance_of
 from hrsafety.contact.covering import Covering, Region, covering_of
 from hrsafety.contact.least_thickness import LeastThickness, thickness_of
+from hrsafety.contact.materials import StressTable
 from hrsafety.contact.rows import HORIZON, TOLERANCE, Prepared, contact_row, limits_of, mass_of, spring_of
 from hrsafety.contact.sensitivities import sensitivities_of
 from hrsafety.contact.simulation import ContactBatch, ContactImpact, impact_of, impacts_of
@@ -175,9 +176,12 @@ class Contact:
         body = body_of(source, self.region, None if own is not None else self.body, given=tuple(arrays))
         shared, values = self._row(spring_of(body.region, arrays), body.mass, tolerance, **more)
         doubts = self.robot.warnings if isinstance(self.robot, ContactRobot) else ()
+        pad = covering_of(self.covering)
+        if pad is not None and isinstance(pad.material, StressTable):
+            doubts = (*doubts, *pad.material.warnings)
         if isinstance(limits, ContactLimit):
             doubts = (*doubts, *looser_than_published(limits))
-        return Prepared(shared, values | limits_of(limits), covering_of(self.covering), source, doubts)
+        return Prepared(shared, values | limits_of(limits), pad, source, doubts)
 
     def _at_rest(self, what: str) -> None:
         """Refuse supports where a result comes from the stored energy alone."""

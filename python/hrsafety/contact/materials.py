@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import field
 from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array, finite, vector
+from hrsafety._doubts import checked_doubts
 from hrsafety._records import dataclass
 from hrsafety._words import meant
 from hrsafety.errors import InvalidParameterError
+from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Avalle", "GibsonAshby", "Linear", "Material", "Rusch", "StressTable", "material"]
 
@@ -164,6 +167,8 @@ class StressTable(_Law):
     strain, stress : array_like
         Points from (0, 0) on, stress in Pa; the strain rises and the stress does not fall. Nothing is
         known beyond the last point.
+    warnings : sequence of ResultWarning
+        Doubts about the test that the points are of, which every result with this material has.
 
     Examples
     --------
@@ -176,9 +181,11 @@ class StressTable(_Law):
     keys: ClassVar[dict[str, str]] = {}
     strain: npt.ArrayLike
     stress: npt.ArrayLike
+    warnings: Sequence[ResultWarning] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
         """Take the points as arrays that cannot change."""
+        object.__setattr__(self, "warnings", checked_doubts("material.warnings", self.warnings))
         for name in ("strain", "stress"):
             points: Array = np.array(vector(f"material.{name}", getattr(self, name)))
             if not np.isfinite(points).all():

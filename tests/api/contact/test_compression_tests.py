@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hrsafety import contact, standards
+from hrsafety.cli import main
 from hrsafety.errors import HrsafetyError
 from hrsafety.plausibility import HrsafetyWarning
 
@@ -178,6 +179,24 @@ def test_titles_above_the_header_are_left_out_and_told(tmp_path: Path, form: str
         found = contact.load_compression_test(written(tmp_path, f"{TITLES[titles]}\n{header}", *columns), **sizes)
     assert found == plain
     assert caught[0].filename == __file__
+
+
+def test_a_header_below_titles_is_a_doubt_of_the_result(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], recwarn: pytest.WarningsRecorder
+) -> None:
+    written(tmp_path, "Foam A\ndisplacement_mm,force_N", 1e3 * THICKNESS * STRAIN, AREA * stress_of(STRAIN))
+    cell, out = tmp_path / "cell.toml", tmp_path / "out"
+    cell.write_text(
+        'speed = 0.1\n[robot]\nmass = 8.0\n[[coverings]]\nname = "pad"\nthickness = 0.02\narea = 1e-3\n'
+        f'material = {{law = "table", file = "press.csv", thickness = {THICKNESS}, area = {AREA}}}\n'
+        '[[contacts]]\nregion = "chest"\ncontact = "transient"\ncovering = "pad"\n'
+    )
+    main(["contact", str(cell), "--out", str(out)])
+    said = "press.csv: line 2 is taken as the header"
+    assert said in capsys.readouterr().err
+    for page in ("report.html", "report.json"):
+        assert said in (out / page).read_text(encoding="utf-8")
+    assert not recwarn.list
 
 
 def test_decanewtons_are_ten_newtons(tmp_path: Path) -> None:
