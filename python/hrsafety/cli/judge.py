@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from hrsafety import io, scenarios
 from hrsafety import navigation as nav
 from hrsafety.cli import output, terminal, verdict
 from hrsafety.cli.output import decimal
-from hrsafety.cli.recordings import in_options, is_given, loaded, told_in_options
+from hrsafety.cli.recordings import in_words, is_given, loaded, told_in_options
 from hrsafety.datasets import Recording
 from hrsafety.errors import InvalidParameterError
 from hrsafety.io.places.nav2 import body_of
@@ -37,9 +37,10 @@ FAILURES = {
     "possible_contact": "a contact that the error of the positions leaves open",
     "broken_assumption": "an assumption of the shield was broken",
     "violated_rule": "a rule of permission was violated",
-    "any": "any of these; assumptions only of a shield that is given",
+    "any": "any of these",
 }
 """Words of ``--fail-on``."""
+UNSHIELDED = "none was given: the log shows what one would have to assume, and no assumption can be broken"
 MOST = 20
 """Rows of a table before it is folded."""
 
@@ -52,7 +53,7 @@ def judge_log(options: argparse.Namespace) -> None:
     options : argparse.Namespace
         Of ``hrsafety judge``.
     """
-    verdict.failures_of(options.fail_on, tuple(FAILURES))  # a wrong word is told before the work
+    fail_on = verdict.failures_of(options.fail_on, tuple(FAILURES))  # a wrong word is told before the work
     output.check_targets(options)
     people = _people(options)
     with told_in_options():
@@ -66,7 +67,11 @@ def judge_log(options: argparse.Namespace) -> None:
     if options.time is not None:
         log = log.part(*options.time)
     given, told = _robot(options)
-    walls = log.map if options.map is None else _map(options.map)
+    if "shield" not in given and "broken_assumption" in fail_on:
+        rule = "name broken_assumption only with a shield, whose assumptions a log can break"
+        remedy = "give --robot FILE.toml with a table [safe.shield]"
+        raise InvalidParameterError("--fail-on", rule, options.fail_on, remedy)
+    walls = log.map if options.map is None else _map(options.map, options.unknown)
     goal = None if options.goal is None else tuple(options.goal)
     found = nav.metrics.judge(
         log,
@@ -78,8 +83,7 @@ def judge_log(options: argparse.Namespace) -> None:
         view=options.view,
         **given,
     )
-    doubts = (replace(each, message=in_options(each.message)) for each in (*found.warnings, *told))
-    found = replace(found, warnings=tuple(dict.fromkeys(doubts)))
+    found = replace(found, warnings=tuple(dict.fromkeys(in_words(_without_fits(*found.warnings, *told)))))
     report = _report(options, log, found)
     print(terminal.told(report))
     written: list[Path] = []
@@ -118,10 +122,17 @@ def _offsets(given: Sequence[str] | None) -> dict[str, float] | None:
     return found or None
 
 
-def _map(path: str) -> nav.StaticMap:
-    """Return the walls of a map; the robot touches nothing where the map is unknown."""
+def _without_fits(*found: ResultWarning) -> Iterator[ResultWarning]:
+    """Yield warnings without the remedy of noise that a judgement has in itself."""
+    for each in found:
+        have = "the judgement fits velocities over its window, and its errors hold the noise"
+        yield replace(each, message=each.message.replace("recording.smoothed(0.6) takes the noise out", have))
+
+
+def _map(path: str, unknown: Literal["free", "occupied"]) -> nav.StaticMap:
+    """Return the walls of a map; by default the robot touches nothing where the map is unknown."""
     try:
-        return io.load_map(path, unknown="free")
+        return io.load_map(path, unknown=unknown)
     except InvalidParameterError as error:
         if error.argument != "unknown":
             raise
@@ -218,6 +229,7 @@ def _report(options: argparse.Namespace, log: io.RobotLog, found: Judgement) -> 
         ("robot", f"{len(log)} poses in {log.duration:.2f} s, in frame {log.frame}; {_body(found)}"),
         ("people", f"{crowd}; radius {found.person_radius:g} m"),
         ("instants", f"every {found.step:g} s; velocities over {found.window:g} s keep what is slower than {wide}"),
+        *([] if found.shielded else [("shield", UNSHIELDED)]),
         ("error", f"{found.error:.3f} m of a clearance, from the noise of the log"),
         *([("delays", delays)] if delays else []),
         *factor,
@@ -345,7 +357,7 @@ def _assumptions(found: Judgement) -> Iterator[str | ReportTable]:
     ]
     yield ReportTable(headers=(names, units), rows=rows, left=(0, 1, 6, 8), printed=True)
     if not found.shielded:
-        yield "No shield was given: these are the assumptions of Shield() with its defaults."
+        yield f"No shield: {UNSHIELDED}."
 
 
 def _metrics(found: Judgement) -> Iterator[str | ReportTable]:

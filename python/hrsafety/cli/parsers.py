@@ -260,7 +260,7 @@ def _add_simulate(commands: Any) -> None:
     )
 
 
-def _add_people_file(parser: Any) -> None:
+def _add_people_file(parser: Any, *, smooth: bool = True) -> None:
     """Add what a file of recorded people may not say itself."""
     parser.add_argument("--format", metavar="NAME", help="format of the file [by its contents]")
     parser.add_argument("--fps", type=_number, metavar="F", help="frames per second of a file that counts frames")
@@ -275,6 +275,8 @@ def _add_people_file(parser: Any) -> None:
     )
     parser.add_argument("--classes", metavar="A,B,...", help="road users that are taken as people [pedestrian]")
     parser.add_argument("--relabel", action="store_true", help="exchange ids that were exchanged")
+    if smooth:
+        parser.add_argument("--smooth", type=_number, metavar="S", help="fit positions over S s, which takes noise out")
 
 
 def _add_people(commands: Any) -> None:
@@ -513,6 +515,9 @@ def _add_judge(commands: Any) -> None:
         "--person-radius", type=_number, default=0.25, metavar="M", help="radius of people in m [%(default)s]"
     )
     place.add_argument("--map", metavar="MAP.yaml", help="map of the map server")
+    place.add_argument(
+        "--unknown", choices=("free", "occupied"), default="free", help="what unknown cells of --map are [%(default)s]"
+    )
     place.add_argument("--frame", default="map", metavar="NAME", help="frame of the result [%(default)s]")
     place.add_argument(
         "--offset",
@@ -520,7 +525,7 @@ def _add_judge(commands: Any) -> None:
         action="append",
         help="seconds added to the stamps of a topic, or of people from a file (people=S); can be repeated",
     )
-    _add_people_file(parser.add_argument_group("what a file of people may not say"))
+    _add_people_file(parser.add_argument_group("what a file of people may not say"), smooth=False)
 
 
 def _add_benchmark(commands: Any) -> None:

@@ -16,7 +16,7 @@ from hrsafety import navigation as nav
 from hrsafety._records import dataclass
 from hrsafety.cli import output, terminal, verdict
 from hrsafety.cli.output import decimal
-from hrsafety.cli.recordings import loaded
+from hrsafety.cli.recordings import in_words, loaded
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.outcomes import OUTCOMES
 from hrsafety.navigation.tables.runs import RunTable
@@ -121,7 +121,7 @@ def _doubts(
     ]
     told = (*own, *gathered(of_runs, "runs"))
     codes = {each.code for each in told}
-    return (*told, *(each for each in summary.warnings if each.code not in codes))
+    return in_words((*told, *(each for each in summary.warnings if each.code not in codes)))
 
 
 def _how_they_ended(summary: RunTable, counts: verdict.Counts) -> str:

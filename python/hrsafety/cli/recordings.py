@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 import re
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,13 +19,19 @@ from hrsafety.errors import InvalidParameterError
 from hrsafety.pages.report import Report
 from hrsafety.plausibility import HrsafetyWarning, ResultWarning
 
-__all__ = ["convert", "in_options", "is_given", "loaded", "show", "told_in_options"]
+__all__ = ["convert", "in_words", "is_given", "loaded", "show", "told_in_options"]
 
 ARGUMENTS = ("format", "fps", "step_s", "unit", "scale", "homography", "columns", "classes")
 _OPTIONS = {each: f"--{each.replace('_', '-')}" for each in (*ARGUMENTS, "people", "frame")} | {
     "robot": "--robot-frame"
 }
 _ARGUMENT = re.compile(rf"(?<![\w-])({'|'.join(_OPTIONS)})=([\x22\x27]?\w?)")
+_REMEDIES = {
+    "recording.smoothed(0.6) takes": "--smooth 0.6 takes",
+    'unknown="occupied"': "--unknown occupied",
+    "recording.relabeled() and load_people(..., relabel=True) do": "--relabel does",
+    "load_people(..., fps=) or --fps": "--fps F",
+}
 _TOPICS = {"people": "people", "topic": "TOPIC"}
 
 
@@ -39,11 +46,17 @@ def loaded(path: str, options: argparse.Namespace) -> Recording:
         warnings.simplefilter("ignore", HrsafetyWarning)  # all of them are printed
         try:
             with told_in_options():
-                return io.load_people(path, relabel=options.relabel, **given)
+                found = io.load_people(path, relabel=options.relabel, **given)
         except InvalidParameterError as error:
             if error.argument in ARGUMENTS:
                 raise error.renamed(f"--{error.argument.replace('_', '-')}") from None
             raise
+    return found if getattr(options, "smooth", None) is None else found.smoothed(options.smooth)
+
+
+def in_words(found: Iterable[ResultWarning]) -> tuple[ResultWarning, ...]:
+    """Return warnings with the options of the command line in their remedies."""
+    return tuple(replace(each, message=in_options(each.message)) for each in found)
 
 
 def is_given(options: argparse.Namespace) -> bool:
@@ -53,6 +66,8 @@ def is_given(options: argparse.Namespace) -> bool:
 
 def in_options(text: str) -> str:
     """Return a message with the options of the command line in place of the arguments of Python."""
+    for python, option in _REMEDIES.items():
+        text = text.replace(python, option)
     text = re.sub(r'columns=\{"([^"]*)": "([^"]*)"\}', r"--columns '\1=\2'", text)
     text = _ARGUMENT.sub(lambda found: f"{_OPTIONS[found[1]]} {found[2]}".rstrip(), text)
     return re.sub(r"offset=\{\"?(\w+)\"?: seconds\}", lambda found: f"--offset {_TOPICS[found[1]]}=S", text)
@@ -89,7 +104,7 @@ def show(options: argparse.Namespace) -> None:
     report = _report(recording, options.file)
     print(terminal.told(report))
     output.say_written([], report, options)
-    output.report_warnings(recording.warnings, options.strict)
+    output.report_warnings(in_words(recording.warnings), options.strict)
 
 
 def convert(options: argparse.Namespace) -> None:
@@ -115,14 +130,14 @@ def convert(options: argparse.Namespace) -> None:
     report = _report(recording, options.file)
     print(terminal.told(report))
     output.say_written([place], report, options)
-    output.report_warnings((*recording.warnings, *lost), options.strict)
+    output.report_warnings((*in_words(recording.warnings), *lost), options.strict)
 
 
 def _report(recording: Recording, path: str) -> Report:
     return Report(
         title=f"Recorded people of {path}",
         facts=list(_facts(recording)),
-        warnings=recording.warnings,
+        warnings=in_words(recording.warnings),
         values=_values(recording),
         source=path,
     )

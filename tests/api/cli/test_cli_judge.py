@@ -80,7 +80,7 @@ def test_robot_and_shield_of_a_file(tmp_path: Path, capsys: pytest.CaptureFixtur
     told = capsys.readouterr().out
     assert "radius 0.31 m" in told
     assert "latency" in told
-    assert "No shield was given" not in told
+    assert "no assumption can be broken" not in told
     people = write_people(tmp_path, scene, origin=0.0)
     table = write_log(tmp_path, scene, "table")
     assert main(["judge", str(table), "--people", str(people), "--radius", "0.3", "--goal", "9", "1"]) == 0
@@ -191,3 +191,65 @@ def test_an_offset_is_named_as_the_option(
     told = capsys.readouterr().err
     assert "name their topic or file: --people" in told
     assert "people=" not in told
+
+
+def test_without_a_shield_there_is_no_assumption_to_break(
+    passing: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    values = tmp_path / "found.json"
+    people = tmp_path / "people.csv"
+    noise = np.random.default_rng(2).normal(0.0, 0.02, (121, 2))
+    rows = (f"{row / 10},ann,{8 + x},{0.8 + y}" for row, (x, y) in enumerate(noise))
+    people.write_text("\n".join(["t_s,ped_id,x_m,y_m", *rows]))
+    assert main(["judge", *passing, "--json", str(values)]) == 0
+    assert "no assumption can be broken" in capsys.readouterr().out
+    found = json.loads(values.read_text())
+    error = next(each for each in found["assumptions"] if each["name"] == "position_error")
+    assert (error["status"], error["limit"]) == ("not_assumed", None)
+    assert error["most"] > 0.02
+    assert found["counts"]["broken_assumption"] == 0
+    assert main(["judge", *passing, "--fail-on", "broken_assumption"]) == ERROR
+    assert "--fail-on must name broken_assumption only with a shield" in capsys.readouterr().err
+
+
+def test_doubts_use_the_clock_and_the_ids_of_the_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A person is lost on the way of the robot and goes on under another id."""
+    time = np.arange(121) / 10
+    log, people = tmp_path / "robot.csv", tmp_path / "people.csv"
+    log.write_text("\n".join(["t_s,x_m,y_m,yaw_rad", *(f"{t},{0.5 * t},0,0" for t in time)]))
+    rows = [f"{t},{7 if t <= 8.0 else 19},{8.0 - 0.5 * t},1.0" for t in time if not 8.0 < t < 8.5]
+    others = [f"{t},3,40,40" for t in time]
+    people.write_text("\n".join(["t_s,ped_id,x_m,y_m", *rows, *others]))
+    call = ["judge", str(log), "--people", str(people), "--radius", "0.3", "--time", "5", "12"]
+    assert main(call) == 0
+    told = capsys.readouterr().err
+    assert "person 19 may have been touched at 6.5 s (1 more" in told
+    assert "people[" not in told
+    assert "simulated=" not in told
+    assert "probably one person under two ids: 19 begins at 8.50 s" in told
+    assert "from where 7 ended at 8.00 s" in told
+
+
+def test_remedies_name_options(passing: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "map.pgm").write_bytes(b"P5\n40 40\n255\n" + bytes([254] * 800 + [205] * 800))
+    place = tmp_path / "map.yaml"
+    place.write_text(
+        "image: map.pgm\nresolution: 1.0\norigin: [-20.0, -20.0, 0.0]\nnegate: 0\n"
+        "occupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    )
+    assert main(["judge", *passing, "--map", str(place)]) == 0
+    assert "--unknown occupied keeps robots away" in capsys.readouterr().err
+    assert main(["judge", *passing, "--map", str(place), "--unknown", "occupied", "--fail-on", "wall_contact"]) == 3
+    noisy = tmp_path / "noisy.csv"
+    noise = np.random.default_rng(1).normal(0.0, 0.05, (400, 2))
+    rows = (f"{row / 50},1,{row / 50 + x},{y}" for row, (x, y) in enumerate(noise))
+    noisy.write_text("\n".join(["t_s,ped_id,x_m,y_m", *rows]))
+    capsys.readouterr()
+    assert main(["people", "info", str(noisy)]) == 0
+    assert "--smooth 0.6 takes the noise out" in capsys.readouterr().err
+    assert main(["people", "info", str(noisy), "--smooth", "0.6"]) == 0
+    assert "takes the noise out" not in capsys.readouterr().err
+    assert main(["judge", passing[0], "--people", str(noisy), "--radius", "0.3"]) == 0
+    told = capsys.readouterr().err
+    assert "recording.smoothed" not in told
+    assert "its errors hold the noise" in told

@@ -67,7 +67,7 @@ def test_doubts_are_printed_once_and_strict_counts_them(tmp_path: Path, capsys: 
     assert main(["people", "info", str(path), "--strict"]) == 4
     told = capsys.readouterr().err
     assert told.count("look like frames") == 1
-    assert "fps=" in told
+    assert "give the frames per second, --fps F" in told
     assert main(["people", "info", str(path), "--fps", "25", "--strict"]) == 0
 
 

@@ -150,7 +150,7 @@ def test_a_jump_of_the_pose_is_not_bridged() -> None:
     log = log_of(
         lambda t: (t, np.where(t < 4.95, 0.0, 0.5)), {1: lambda t: (12.0 - 0 * t, 3.0)}, pose_jumps=((4.9, 5.0, 0.5),)
     )
-    found = judge(log, robot_radius=0.3)
+    found = judge(log, robot_radius=0.3, shield=nav.Shield())
     assert found.metrics.max_speed == pytest.approx(1.0)
     assert found.scored in ((0.0, pytest.approx(4.9)), (pytest.approx(5.0), 10.0))
     assert "pose_jump" in {each.reason for each in found.not_judged}

@@ -14,7 +14,7 @@ from hrsafety.navigation.laws.shield import Shield
 
 __all__ = ["ShieldAssumption", "assumptions"]
 
-HELD, BROKEN, NOT_MEASURABLE = "held", "broken", "not_measurable"
+HELD, BROKEN, NOT_MEASURABLE, NOT_ASSUMED = "held", "broken", "not_measurable", "not_assumed"
 SURE = 3.0
 """Standard deviations of noise that are no breach."""
 ROUNDING = 1e-6
@@ -36,7 +36,7 @@ class ShieldAssumption(NamedTuple):
     name : str
         Of the assumption, as `Shield` calls it where it has a name there.
     status : str
-        ``"held"``, ``"broken"`` or ``"not_measurable"``.
+        ``"held"``, ``"broken"``, ``"not_measurable"``, or ``"not_assumed"`` of a value that no shield was given for.
     limit : float
         What is assumed, NaN without a number.
     quantile : float
@@ -65,7 +65,7 @@ class ShieldAssumption(NamedTuple):
 
 
 def assumptions(
-    both: Synchronized, log: Any, shield: Shield, *, deceleration: float | None, control_period: float | None
+    both: Synchronized, log: Any, shield: Shield | None, *, deceleration: float | None, control_period: float | None
 ) -> list[ShieldAssumption]:
     """Return the assumptions of a shield that concern this log.
 
@@ -75,11 +75,19 @@ def assumptions(
         Robot and people.
     log : Logged
         What they come from.
-    shield : Shield
-        What is assumed.
+    shield : Shield or None
+        What is assumed; ``None``: nothing, and what would have to be assumed is measured.
     deceleration, control_period : float or None
         Of the robot, in m/s^2 and s.
     """
+    if shield is None:
+        found = assumptions(both, log, Shield(), deceleration=deceleration, control_period=control_period)
+        return [
+            each._replace(limit=np.nan, status=NOT_ASSUMED, note="")
+            if np.isfinite(each.most)
+            else each._replace(limit=np.nan)
+            for each in found
+        ]
     return [
         *_of_people(both, shield),
         _latency(log, shield),

@@ -1,4 +1,4 @@
-"""Doubts about a log that contradicts itself or its map: people in walls, and twists that the poses do not have."""
+"""Doubts about a log that contradicts itself or its map: people in walls or under two ids, and odd twists."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 
 from hrsafety._arguments import Array
+from hrsafety.datasets import Recording
 from hrsafety.navigation.judging.synchronized import Flags, Synchronized
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["other_twists", "people_off_map"]
+__all__ = ["continued_tracks", "other_twists", "people_off_map"]
 
 IN_WALLS = 0.05
 """Share of the rows of a person that may lie in walls: doors that were closed, and false sights."""
@@ -85,6 +86,36 @@ def people_off_map(people: Any, both: Synchronized, walls: StaticMap | None) -> 
             message = f"{100.0 * share:.0f} % of the positions of people lie {where}: {remedy}?"
             yield ResultWarning("people_off_map", "people", message)
             return
+
+
+def continued_tracks(people: Any, lost: set[int | str | None]) -> Iterator[ResultWarning]:
+    """Yield which ways of people begin where another one leads that ends: probably those of one person.
+
+    Parameters
+    ----------
+    people : Recording or None
+        Of the log.
+    lost : set
+        Who is not seen while maybe near the robot: without any of them nothing that is near is left out.
+    """
+    if not isinstance(people, Recording):
+        return
+    ends, ids = people._track_ends(), people.people().tolist()
+    pairs = [(one, int(other)) for one, other in enumerate(ends.follower) if other >= 0]
+    if not pairs:
+        return
+    near = [each for each in pairs if lost & {ids[each[0]], ids[each[1]]}]
+    shown = [
+        f"{ids[other]} begins at {ends.begin[other]:.2f} s, {np.hypot(*(ends.first[other] - ends.last[one])):.2f} m "
+        f"from where {ids[one]} ended at {ends.end[one]:.2f} s"
+        for one, other in [*near, *(each for each in pairs if each not in near)][:3]
+    ]
+    more = f", and {len(pairs) - 3} more" if len(pairs) > 3 else ""
+    message = (
+        f"probably one person under two ids: {'; '.join(shown)}{more}; nobody is there in between, and each id is "
+        "judged by itself: give both one id"
+    )
+    yield ResultWarning("continued_track", "people", message, safe_side=not near)
 
 
 def _depths(walls: StaticMap, places: Array) -> Array:

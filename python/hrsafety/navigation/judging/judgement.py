@@ -16,7 +16,7 @@ from hrsafety._replay.record import Replay
 from hrsafety._tracks import WINDOW
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.judging.assumptions import ShieldAssumption, assumptions
-from hrsafety.navigation.judging.doubts import other_twists, people_off_map
+from hrsafety.navigation.judging.doubts import continued_tracks, other_twists, people_off_map
 from hrsafety.navigation.judging.permit import Passing, PermitRules, passings
 from hrsafety.navigation.judging.replay import replay_of
 from hrsafety.navigation.judging.synchronized import Logged, Synchronized, synchronized
@@ -48,6 +48,8 @@ MOVING = 0.1
 """Speed in m/s above which the direction of a way is known."""
 SIDEWAYS = 0.35
 """Angle in rad between way and heading that two wheels do not have most of the time."""
+LOST = ("person_lost_nearby", "out_of_view")
+"""Reasons of what is not judged of somebody who may be near."""
 ENOUGH = 0.95
 """Share of a log that must be judged."""
 
@@ -117,7 +119,7 @@ class Judgement(Played):
     contacts, possible_contacts : tuple of Touch
         With people and walls; those which the error decides.
     assumptions : tuple of ShieldAssumption
-        Of the shield.
+        Of the shield; without one what it would have to assume.
     moments : tuple of Moment
         The worst ones, worst first.
     passings : tuple of Passing
@@ -137,7 +139,7 @@ class Judgement(Played):
     walls : StaticMap or None
         The map.
     shielded : bool
-        Whether a shield was given: only its assumptions count as failures.
+        Whether a shield was given: without one there are no assumptions to break.
     warnings : tuple of ResultWarning
         Of the log, the metrics and the judgement.
     """
@@ -188,8 +190,7 @@ class Judgement(Played):
             "broken_assumption": sum(each.status == "broken" for each in self.assumptions),
             "violated_rule": rules.count("violated"),
         }
-        held = 0 if self.shielded else found["broken_assumption"]
-        return found | {"any": sum(found.values()) - held}
+        return found | {"any": sum(found.values())}
 
 
 def judge(
@@ -229,7 +230,7 @@ def judge(
     person_radius : float
         Of everybody in m.
     shield : Shield or None
-        Assumptions that are compared with the log; those of ``Shield()`` when ``None``.
+        Assumptions that are compared with the log; without one nothing is assumed that could be broken.
     rules : PermitRules or None
         Thresholds of the rules of permission.
     goal : tuple of float, or None
@@ -277,8 +278,7 @@ def judge(
     most = count("moments", moments, least=0, most=1000)
     target = None if goal is None else finite_pair("goal", goal)
     walls = None if map is None else instance("map", map, StaticMap)
-    given_shield = shield is not None
-    shield = Shield() if shield is None else instance("shield", shield, Shield)
+    shield = None if shield is None else instance("shield", shield, Shield)
     rules = PermitRules() if rules is None else instance("rules", rules, PermitRules)
     _check_log(log)
     both = synchronized(log, step=step, window=window)
@@ -317,6 +317,7 @@ def judge(
         *getattr(walls, "warnings", ()),
         *metrics.warnings,
         *_doubts(parts, share, possible),
+        *continued_tracks(log.people, {each.person for each in parts if each.reason in LOST}),
         *_circled(outline),
         *_sideways(both, robot),
         *people_off_map(log.people, both, walls),
@@ -349,7 +350,7 @@ def judge(
         person_radius=person_radius,
         footprint=None if outline is None else outline.footprint,
         walls=walls,
-        shielded=given_shield,
+        shielded=shield is not None,
         warnings=tuple(dict.fromkeys(told)),
     )
 
@@ -421,7 +422,8 @@ def _metrics(
         unseen=unseen,
         **more,
     )
-    episode._set(_resampled=True)
+    ids = tuple(both.ids[there].tolist())
+    episode._set(_resampled=True, _begin=float(both.time[begin]), _ids=ids)
     found, scored = evaluate(episode), (float(both.time[begin]), float(both.time[end]))
     values: dict[str, Any] = dict(found.to_dict())
     touched = [each for each in walls[1] if each.begin <= scored[1] and each.end >= scored[0]]
@@ -439,7 +441,7 @@ def _metrics(
 
 def _doubts(parts: Sequence[NotJudged], share: float, possible: Sequence[Touch]) -> list[ResultWarning]:
     told = []
-    lost = [each for each in parts if each.reason in ("person_lost_nearby", "out_of_view")]
+    lost = [each for each in parts if each.reason in LOST]
     if lost:
         first, people = lost[0], len({each.person for each in lost})
         message = (

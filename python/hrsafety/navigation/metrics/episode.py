@@ -175,6 +175,16 @@ class Episode(Parameters):
     heading: npt.ArrayLike = ()
     _native: _hrsafety.CrowdEpisode = field(init=False, repr=False, compare=False)
     _resampled: bool = field(init=False, repr=False, default=False)
+    _begin: float = field(init=False, repr=False, compare=False, default=0.0)
+    _ids: tuple[object, ...] = field(init=False, repr=False, compare=False, default=())
+
+    def _named(self, person: int) -> str:
+        """Return what doubts call a person: by the id of a log that this is a part of."""
+        return f"person {self._ids[person]}" if self._ids else f"people[{person}]"
+
+    def _time(self, instant: int) -> str:
+        """Return an instant as doubts tell it, by the clock of that log."""
+        return f"{self._begin + instant * self.step:.10g}"
 
     def __post_init__(self) -> None:
         """Check the values and keep copies of the arrays."""

@@ -103,9 +103,9 @@ def _ends_doubt(episode: Episode, own: Array) -> tuple[ResultWarning, ...]:
     others = int((gaps < 0.0).any(axis=0).sum()) - 1
     more = f" ({others} more people likewise)" if others else ""
     message = (
-        f"people[{worst}] may have been touched at {row * episode.step:g} s{more}, out of sight before the first or "
-        f"after the last place that is known, with people up to {episode.person_speed:g} m/s; metrics take the person "
-        "to be away then; simulated=True says that this is so"
+        f"{episode._named(worst)} may have been touched at {episode._time(row)} s{more}, out of sight before the first "
+        f"or after the last place that is known, with people up to {episode.person_speed:g} m/s; metrics take the "
+        f"person to be away then{_remedy(episode, 'this is so')}"
     )
     return (ResultWarning("not_scored", "people", message),)
 
@@ -157,19 +157,24 @@ def _warning(episode: Episode, changed: Mapping[str, Any], unseen: Flags, gaps: 
     if np.isnan(np.asarray(episode.people)[:, worst]).any(axis=1).all():
         when = "is never seen"
     else:
-        when = f"is not seen from {first * episode.step:g} to {last * episode.step:g} s"
+        when = f"is not seen from {episode._time(first)} to {episode._time(last)} s"
     others = int(unseen.any(axis=0).sum()) - 1
     more = f" ({others} more people are not seen at times)" if others else ""
     touched = bool((gaps < 0.0).any())
     may = (
-        f"may have been touched at {row * episode.step:g} s"
+        f"may have been touched at {episode._time(row)} s"
         if touched
         else f"may have come within {gaps[row, worst]:.3g} m of the robot"
     )
     open_ones = ", ".join(changed)
     message = (
-        f"people[{worst}] {when}{more} and {may}, with people up to {episode.person_speed:g} m/s: {open_ones} "
-        f"{'is' if len(changed) == 1 else 'are'} not scored, contacts are counted where people are seen only; "
-        "simulated=True says that who has no position is away"
+        f"{episode._named(worst)} {when}{more} and {may}, with people up to {episode.person_speed:g} m/s: {open_ones} "
+        f"{'is' if len(changed) == 1 else 'are'} not scored, contacts are counted where people are seen only"
+        f"{_remedy(episode, 'who has no position is away')}"
     )
     return ResultWarning("not_scored", "people", message)
+
+
+def _remedy(episode: Episode, meant: str) -> str:
+    """Return what tells that people are away; of those in a log nobody can say it."""
+    return "" if episode._ids else f"; simulated=True says that {meant}"
