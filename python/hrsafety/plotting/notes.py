@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import textwrap
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, ParamSpec, TypeVar
 from weakref import WeakSet
@@ -19,7 +18,8 @@ R = TypeVar("R")
 
 MOST_WARNINGS = 2  # more are counted
 _LINE = 0.19  # in
-_CHARACTERS_PER_INCH = 12.5  # of the small font
+_LEFT = 0.1  # in, beside a note
+_POINTS_PER_INCH = 72.0
 _EDGE = 0.08  # in
 
 
@@ -92,7 +92,7 @@ def add_warnings(figure: Figure, *results: object) -> None:
         share += _legend_height(figure) / height
         engine.set(rect=(0.0, share, 1.0, 1.0 - share))  # type: ignore[call-arg]  # constrained layout has a rectangle
     look: style.Properties = {"fontsize": style.SMALL_FONT_SIZE, "color": style.CONTACT_COLOR, "va": "bottom"}
-    left = 0.1 / float(figure.get_figwidth())
+    left = _LEFT / float(figure.get_figwidth())
     note = figure.text(left, 0.5 * _EDGE / height, "\n".join(words), linespacing=1.15, **look)
     note.set_in_layout(False)
 
@@ -114,5 +114,29 @@ def warning_lines(results: Iterable[object], width: float) -> list[str]:
     if len(shown) > MOST_WARNINGS:
         named = ", ".join(filter(None, kinds)) or "warnings"
         shown[MOST_WARNINGS:] = [f"and {len(shown) - MOST_WARNINGS} more ({named}): see .warnings of the result"]
-    limit = max(int(_CHARACTERS_PER_INCH * width), 20)
-    return [line for each in shown for line in textwrap.wrap(each.replace("$", r"\$"), limit)]
+    room = max(width, 2.0) - 2.0 * _LEFT
+    return [line.replace("$", r"\$") for each in shown for line in _wrapped(each, room)]
+
+
+def _wrapped(text: str, room: float) -> Iterator[str]:
+    """Yield the lines of a text in the small font that are at most so many inch wide; longer words are broken."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import text_to_path
+
+    font = FontProperties(size=style.SMALL_FONT_SIZE)
+
+    def fits(part: str) -> bool:
+        return text_to_path.get_text_width_height_descent(part, font, ismath=False)[0] <= _POINTS_PER_INCH * room
+
+    line = ""
+    for word in text.split():
+        if line and not fits(f"{line} {word}"):
+            yield line
+            line = ""
+        line = f"{line} {word}" if line else word
+        while not fits(line) and len(line) > 1:
+            end = next((end for end in range(len(line) - 1, 0, -1) if fits(line[:end])), 1)
+            yield line[:end]
+            line = line[end:]
+    if line:
+        yield line

@@ -95,3 +95,14 @@ def test_a_note_begins_with_what_may_be_unsafe_and_names_the_others() -> None:
         "warning: careful 0",
         "warning: careful 1",
     ]
+
+
+@pytest.mark.parametrize("width", [2.0, 4.0, 8.0])
+@pytest.mark.parametrize("text", ["WWW MMM " * 30, "W" * 200, "/robot/odometry " * 20, "a $ sign, " * 40])
+def test_lines_of_a_note_are_as_wide_as_the_picture(text: str, width: float) -> None:
+    figure = Figure(figsize=(width, 2.0))
+    notes.add_warnings(figure, SimpleNamespace(warnings=[ResultWarning("x", "y", text)]))
+    box = figure.texts[-1].get_window_extent()
+    assert box.x0 >= 0.0
+    assert box.x1 <= figure.bbox.width
+    assert "".join(figure.texts[-1].get_text().replace("\\$", "$").split()) == "".join(f"warning: {text}".split())
