@@ -24,7 +24,7 @@ pytest.importorskip("jinja2")
 from hrsafety import arms, contact, standards
 from hrsafety.cli import main
 from hrsafety.cli.cell import report as cell_report
-from hrsafety.cli.cell.page import rounded
+from hrsafety.cli.cell.page import END_WORDS, THICKNESS_WORDS, rounded
 from hrsafety.cli.file_kinds import starter
 from hrsafety.cli.verdict import OF_VERDICTS
 from hrsafety.contact import load_cell
@@ -580,3 +580,12 @@ def test_every_example_loads() -> None:
     for path in EXAMPLES.glob("contact_*.toml"):
         cell = load_cell(str(path))
         assert all(isinstance(pad, contact.Covering) for pad in cell.coverings.values())
+
+
+def test_the_words_of_the_table_of_results_say_what_they_mean(judged: Any) -> None:
+    values, page = judged(SMALL)
+    rows = [row for result in values["results"] for row in result["rows"]]
+    assert "found" not in re.findall(r"<small>([^<]*)</small>", page)
+    assert "horizon" not in re.findall(r"<small>([^<]*)</small>", page)
+    assert {row["end"] for row in rows} <= {None, *END_WORDS}
+    assert "found" in {row["least_thickness_status"] for row in rows} <= {None, *THICKNESS_WORDS}

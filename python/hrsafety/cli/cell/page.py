@@ -33,6 +33,14 @@ STATUS_WORDS = {
     "push_above_half_limit": "the drive alone presses too hard",
     "outside_table": "no stop was measured from a faster speed",
 }
+END_WORDS = {
+    "released": "",
+    "horizon": "pressed until the end of the simulation",
+    "no_impact": "no impact",
+    "unfinished": "the simulation did not end",
+}
+"""How a contact at the planned speed ended."""
+THICKNESS_WORDS = {"found": "", "bare_is_enough": "bare is enough", "none_up_to_1_m": "none up to 1 m"}
 LOOKS = {"not_permitted": "bad", "exceeds": "bad", "not_checked": "unsure", "within_limits": "good"}
 """Class of style of each verdict: red, yellow, green."""
 CONTACT_WORDS = {"quasi_static": "clamped", "transient": "free (transient)"}
@@ -76,6 +84,8 @@ def html(
         svg=Markup,
         verdict_words=VERDICT_WORDS,
         status_words=STATUS_WORDS,
+        end_words=END_WORDS,
+        thickness_words=THICKNESS_WORDS,
         contact_words=CONTACT_WORDS,
         looks=LOOKS,
         left_out=left_out_words(values["not_judged"]),
