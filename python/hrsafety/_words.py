@@ -1,10 +1,23 @@
-"""Which word was meant."""
+"""Which word was meant, and words and numbers as they are printed."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 
-__all__ = ["meant", "nearest"]
+__all__ = ["meant", "nearest", "some", "unsigned_zero"]
+
+_ZERO = re.compile(r"(?<![\w.\-])-(0(?:\.0*)?)(?![\d.eE])")
+
+
+def some(count: int, one: str, many: str = "", *, form: str = "") -> str:
+    """Return a count with its word, in the plural unless it is one; ``form`` is that of the number."""
+    return f"{count:{form}} {one if count == 1 else many or one + 's'}"
+
+
+def unsigned_zero(text: str) -> str:
+    """Return a text in which no number that was rounded to zero has a minus sign."""
+    return _ZERO.sub(r"\1", text)
 
 
 def meant(value: object, words: Iterable[str]) -> str | None:

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import hrsafety
+from hrsafety._words import some
 from hrsafety.cli import terminal
 from hrsafety.pages.report import Report, ReportTable, Section
 
@@ -41,7 +42,7 @@ def _facts() -> Iterator[tuple[str, str]]:
     numpy = importlib.metadata.version("numpy")
     yield "hrsafety", f"{hrsafety.__version__} in {Path(hrsafety.__file__).parent}"
     yield "python", f"{platform.python_version()}, numpy {numpy}"
-    yield "machine", f"{platform.system()} {platform.machine()}, {_cores()} cores for this process"
+    yield "machine", f"{platform.system()} {platform.machine()}, {some(_cores(), 'core')} for this process"
 
 
 def _cores() -> int:

@@ -13,6 +13,7 @@ import numpy as np
 
 from hrsafety import io, scenarios
 from hrsafety import navigation as nav
+from hrsafety._words import some
 from hrsafety.cli import output, terminal, verdict
 from hrsafety.cli.output import decimal
 from hrsafety.cli.recordings import in_words, is_given, loaded, told_in_options
@@ -186,7 +187,7 @@ def _body(found: Judgement) -> str:
     """Return by what the robot is judged."""
     if found.footprint is None:
         return f"radius {found.robot_radius:g} m"
-    return f"footprint of {len(found.footprint.corners)} corners, within {found.robot_radius:.3g} m"
+    return f"footprint of {some(len(found.footprint.corners), 'corner')}, within {found.robot_radius:.3g} m"
 
 
 def _said(found: Judgement) -> str:
@@ -195,7 +196,7 @@ def _said(found: Judgement) -> str:
     unknown = sum(each.kind == "apart" for each in found.contacts)
     open_fault = f", {unknown} not known" if unknown else ""
     contacts = (
-        f"{_number(counts['contact'], 'contact')} ({counts['at_fault']} at fault{open_fault})"
+        f"{some(counts['contact'], 'contact')} ({counts['at_fault']} at fault{open_fault})"
         if counts["contact"]
         else "no contact"
     )
@@ -205,14 +206,10 @@ def _said(found: Judgement) -> str:
     rules = [word for each in found.passings for word in each.kept.values()]
     if rules:
         open_ones = sum(word in ("not_judged", "not_measurable") for word in rules)
-        kept, violated = _number(rules.count("kept"), "rule"), rules.count("violated")
-        passed = _number(len(found.passings), "passing")
+        kept, violated = some(rules.count("kept"), "rule"), rules.count("violated")
+        passed = some(len(found.passings), "passing")
         parts.append(f"{passed}: {kept} kept, {violated} violated, {open_ones} open")
     return f"{', '.join(parts)}; {100.0 * found.judged_share:.1f} % of the log judged"
-
-
-def _number(count: int, word: str) -> str:
-    return f"{count} {word}{'' if count == 1 else 's'}"
 
 
 def _report(options: argparse.Namespace, log: io.RobotLog, found: Judgement) -> Report:
@@ -223,10 +220,10 @@ def _report(options: argparse.Namespace, log: io.RobotLog, found: Judgement) -> 
         for topic, each in log.delay.items()
     )
     factor = [] if log.time_factor is None else [("clock", f"simulated, {log.time_factor:.3g} s in a second")]
-    crowd = "nobody" if log.people is None else f"{len(log.people.people())}, {len(log.people)} positions"
+    crowd = "nobody" if log.people is None else f"{len(log.people.people())}, {some(len(log.people), 'position')}"
     facts = [
         ("log", f"{options.log} ({log.source.format}, SHA-256 {log.source.sha256[:16]})"),
-        ("robot", f"{len(log)} poses in {log.duration:.2f} s, in frame {log.frame}; {_body(found)}"),
+        ("robot", f"{some(len(log), 'pose')} in {log.duration:.2f} s, in frame {log.frame}; {_body(found)}"),
         ("people", f"{crowd}; radius {found.person_radius:g} m"),
         ("instants", f"every {found.step:g} s; velocities over {found.window:g} s keep what is slower than {wide}"),
         *([] if found.shielded else [("shield", UNSHIELDED)]),

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from hrsafety import datasets, scenarios
 from hrsafety import navigation as nav
 from hrsafety._records import dataclass
+from hrsafety._words import some
 from hrsafety.cli import output, terminal, verdict
 from hrsafety.cli.output import decimal
 from hrsafety.cli.recordings import in_words, loaded
@@ -128,7 +129,7 @@ def _how_they_ended(summary: RunTable, counts: verdict.Counts) -> str:
     """Return in one sentence what came of all runs."""
     arrived = len(summary) - counts["any"]
     return (
-        f"{arrived} of {len(summary)} runs arrived without a contact, {counts['contact']} had one "
+        f"{arrived} of {some(len(summary), 'run')} arrived without a contact, {counts['contact']} had one "
         f"({counts['moving_contact']} with the robot moving, {int((summary.contacts_toward > 0).sum())} toward "
         f"somebody), {counts['timed_out']} timed out, "
         f"{counts['stopped']} stopped"
@@ -165,7 +166,11 @@ def _heading(
     single = len(recording.momentary(float(recording.time_s[0]), duration=max(recording.duration, 1.0) + 1.0))
     left_out = f", {single} of them at one instant only and left out" if single else ""
     center = f"({flow.center[0]:.2f}, {flow.center[1]:.2f}) m"
-    yield "people", f"{options.people}: {len(recording.people())} people in {recording.duration:.1f} s{left_out}"
+    yield (
+        "people",
+        f"{options.people}: {some(len(recording.people()), 'person', 'people')} in {recording.duration:.1f} s"
+        + left_out,
+    )
     yield "flow", f"through {center} at {math.degrees(flow.angle):.0f} degrees, spread {flow.spread:.2f} m"
     yield "robot", f"from {way[0]} to {way[1]} m, {math.dist(scenario.start, scenario.goal):.2f} m across the flow"
     yield "law", output.law_words(law)

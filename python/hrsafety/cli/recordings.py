@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from hrsafety import io
+from hrsafety._words import some
 from hrsafety.cli import output, terminal
 from hrsafety.datasets import Recording
 from hrsafety.errors import InvalidParameterError
@@ -153,7 +154,7 @@ def _facts(recording: Recording) -> Iterator[tuple[str, str]]:
         f"{rate:.8g} a second, by the {recording.frame_rate_from}" if rate is not None else "none: the file has times"
     )
     yield "frames", told
-    yield "people", f"{len(recording.people())}, {len(recording)} rows"
+    yield "people", f"{len(recording.people())}, {some(len(recording), 'row')}"
     yield "time", f"{recording.duration:.10g} s, one row of a person every {recording.sampling_period:.4g} s"
     low, high = recording.position.min(axis=0), recording.position.max(axis=0)
     yield "area", f"x {low[0]:.2f} to {high[0]:.2f} m, y {low[1]:.2f} to {high[1]:.2f} m"
@@ -164,7 +165,7 @@ def _facts(recording: Recording) -> Iterator[tuple[str, str]]:
     if recording.walls:
         yield "walls", f"{len(recording.walls)} rings and lines"
     if recording.robot is not None:
-        yield "robot", f"{len(recording.robot.time_s)} instants"
+        yield "robot", some(len(recording.robot.time_s), "instant")
     for name, value in recording.details.items():
         if isinstance(value, str | int | float) and not isinstance(value, bool):
             yield name.replace("_", " "), str(value)

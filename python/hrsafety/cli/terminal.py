@@ -13,6 +13,8 @@ import sys
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, TextIO
 
+from hrsafety._words import unsigned_zero
+
 if TYPE_CHECKING:
     from rich.console import Console
 
@@ -78,13 +80,13 @@ def table(headers: Sequence[Sequence[str]], rows: Iterable[Sequence[object]], *,
     str
         Lines without a final newline.
     """
-    cells = [[str(cell) for cell in row] for row in rows]
+    cells = [[unsigned_zero(str(cell)) for cell in row] for row in rows]
     return (_drawn if can_draw(sys.stdout) else _aligned)(headers, cells, left)
 
 
 def told(report: Report) -> str:
     """Return what the terminal shows of a report: its facts, and the tables that are printed."""
-    parts = ["\n".join(f"{name:<15}{words}" for name, words in report.facts)]
+    parts = ["\n".join(f"{name:<15}{unsigned_zero(words)}" for name, words in report.facts)]
     for each in report.printed:
         rows = list(each.rows)
         more = [each.more] if each.most is not None and len(rows) > each.most else []

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from hrsafety import io, zones
+from hrsafety._words import some
 from hrsafety.cli import output, progress, terminal, verdict
 from hrsafety.cli.parsers import UsageError
 from hrsafety.errors import InvalidParameterError
@@ -146,7 +147,7 @@ def _design_report(found: zones.ZoneSet) -> Report:
     blind = zones.blind_range(given.leg_radius, beam_step=given.beam_step, points=found.min_points)
     sides = "faces that move outward: the robot touches nobody" if found.faults_only else "every side until it stands"
     facts = [
-        ("zones", f"{len(found.zones)}, slowest first, {found.min_points} points stop the robot"),
+        ("zones", f"{len(found.zones)}, slowest first, the robot stops for {some(found.min_points, 'point')}"),
         ("clear", sides),
         ("people", f"up to {given.person_speed:g} m/s, legs of radius {given.leg_radius:g} m or more"),
         ("stop", f"{stop.travel:.3f} m in {stop.time:.3f} s from {given.max_speed:g} m/s, reaction included"),
@@ -290,12 +291,12 @@ def _said(found: zones.ZoneCheck) -> str:
     if found.verdict == "broken":
         worst = found.worst
         return (
-            f"broken: {found.broken.count} of {found.broken.runs} attacks by chance and {found.searched_broken} of "
-            f"{found.searched} searched ones touched somebody while the robot moved toward the person, the worst at "
-            f"{worst.contact_speed:.2f} m/s"
+            f"broken: {found.broken.count} of {some(found.broken.runs, 'attack')} by chance and "
+            f"{found.searched_broken} of {found.searched} searched ones touched somebody while the robot moved toward "
+            f"the person, the worst at {worst.contact_speed:.2f} m/s"
         )
     tried = (
-        f"none of {found.broken.runs} attacks by chance (at most {100.0 * found.broken.high:.2g} %, 95 %) and "
+        f"none of {some(found.broken.runs, 'attack')} by chance (at most {100.0 * found.broken.high:.2g} %, 95 %) and "
         f"{found.searched} searched ones"
     )
     if found.verdict == "not_covered":
@@ -323,11 +324,14 @@ def _check_report(found: zones.ZoneCheck, options: argparse.Namespace) -> Report
         "do, which the attacks tell."
     )
     facts = [
-        ("file", f"{found.monitor.source or options.file}, {len(found.monitor.polygons)} zones"),
+        ("file", f"{found.monitor.source or options.file}, {some(len(found.monitor.polygons), 'zone')}"),
         ("robot", _robot_words(given)),
         ("people", f"up to {given.person_speed:g} m/s, legs of radius {given.leg_radius:g} m or more"),
         ("by chance", str(found.broken)),
-        ("searched", f"{found.searched_broken} of {found.searched} attacks of CMA-ES, from the worst by chance"),
+        (
+            "searched",
+            f"{found.searched_broken} of {some(found.searched, 'attack')} of CMA-ES, from the worst by chance",
+        ),
         ("verdict", WORDS[found.verdict]),
     ]
     for name, command in found.uncovered:

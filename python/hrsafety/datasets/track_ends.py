@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._tracks import Ways
+from hrsafety._words import some
 from hrsafety.plausibility import ResultWarning
 
 __all__ = ["LOST", "TrackEnds", "ends_doubts", "lost_doubts", "track_ends"]
@@ -176,7 +177,7 @@ def lost_doubts(
     told = []
     if least:
         who, (when, _) = min(least.items(), key=lambda each: each[1][1])
-        more = f" ({len(least) - 1} more people likewise)" if len(least) > 1 else ""
+        more = f" ({some(len(least) - 1, 'more person', 'more people')} likewise)" if len(least) > 1 else ""
         message = (
             f"{named(who)} may have been touched at {when - start_time:.4g} s{more}, out of sight before the first or "
             f"after the last row, with people up to {REACH:g} m/s: whom nobody sees is taken to be away"

@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from hrsafety._records import dataclass
+from hrsafety._words import unsigned_zero
 from hrsafety.pages import Picture, written
 from hrsafety.plausibility import ResultWarning, unsafe_doubts
 
@@ -167,8 +168,13 @@ class Report:
             A complete HTML document.
         """
         good = "unsure" if self.good and unsafe_doubts(self.warnings) else self.good
+        shown = replace(
+            self,
+            facts=[(name, unsigned_zero(words)) for name, words in self.facts],
+            sections=[Section(each.heading, [_unsigned(block) for block in each.blocks]) for each in self.sections],
+        )
         when = {} if self.made is None else {"made": self.made}
-        return written(template, title=self.title, report=self, good=good, **when, **content)
+        return written(template, title=self.title, report=shown, good=good, **when, **content)
 
     def json(self, *, sort: bool = False) -> str:
         """Return title, every value and the warnings as JSON, in their order or in that of their names.
@@ -183,6 +189,21 @@ class Report:
         ]
         shown = {"source": self.source, "facts": dict(self.facts), "verdict": self.said, "tables": tables}
         return json_text({"title": self.title, **(self.values or shown), "warnings": self.messages}, sort=sort)
+
+
+def _unsigned(block: Any) -> Any:
+    """Return a block of a page without the sign of zeros in its words and cells."""
+    if isinstance(block, str):
+        return unsigned_zero(block)
+    if not isinstance(block, ReportTable):
+        return block
+
+    def cell(value: object) -> object:
+        if isinstance(value, ReportCell):
+            return value._replace(text=unsigned_zero(value.text))
+        return unsigned_zero(value) if isinstance(value, str) else value
+
+    return replace(block, rows=[[cell(value) for value in row] for row in block.rows])
 
 
 def json_text(values: Mapping[str, Any], *, sort: bool = False) -> str:

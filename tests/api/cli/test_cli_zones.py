@@ -54,7 +54,9 @@ def test_a_broken_file_fails_is_mended_and_replayed(tmp_path: Path, capsys: pyte
     file.write_text(DEFAULT)
     call = ["zones", "check", str(file), *ROBOT, *CHECKED]
     assert main([*call, "--fail-on", "broken", "--mend", str(mended), "--json", str(values)]) == 3
-    assert "--fail-on broken: exit code 3" in capsys.readouterr().out
+    told = capsys.readouterr().out
+    assert "--fail-on broken: exit code 3" in told
+    assert f"{file}, 1 zone\n" in told
     assert main(call) == 0
     assert "--fail-on broken makes it 3" in capsys.readouterr().out
     assert "# as delivered" in mended.read_text()

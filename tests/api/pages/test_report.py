@@ -15,7 +15,9 @@ from hypothesis import strategies as st
 
 pytest.importorskip("jinja2")
 
+from api.browsers import tab
 from hrsafety import pages
+from hrsafety._words import some
 from hrsafety.cli import main, terminal
 from hrsafety.pages.report import Report, ReportCell, ReportTable, Section, json_text
 from hrsafety.plausibility import ResultWarning
@@ -155,3 +157,37 @@ def test_json_reads_back_as_it_was_but_for_what_is_not_finite(values: dict[str, 
         return None if isinstance(value, float) and not math.isfinite(value) else value
 
     assert json.loads(json_text(values)) == plain(values)
+
+
+def test_no_zero_has_a_sign_and_one_is_no_plural() -> None:
+    rows = [("-0.00", ReportCell("-0.000", "bad"), "-0.001", "1-0", "2e-0", "(-0.0, -0)")]
+    table = ReportTable(headers=(("a", "b", "c", "d", "e", "f"),), rows=rows, printed=True)
+    made = report(facts=[("gap", "-0.000 m")], sections=[Section("", [table, "from -0.0 to -0.5 m"])])
+    told = terminal.told(made).splitlines()
+    assert told[0].split() == ["gap", "0.000", "m"]
+    assert told[-1].split() == ["0.00", "0.000", "-0.001", "1-0", "2e-0", "(0.0,", "0)"]
+    page = made.page()
+    assert "from 0.0 to -0.5 m" in page
+    assert ">0.000</td>" in page
+    assert "-0.000" not in page
+    assert [some(count, "zone") for count in (0, 1, 2)] == ["0 zones", "1 zone", "2 zones"]
+    assert some(1, "person", "people") == "1 person"
+    assert some(1200, "row", form=",") == "1,200 rows"
+
+
+def test_the_verdict_stands_above_the_warnings() -> None:
+    page = report(warnings=[DOUBT]).page()
+    assert page.index("Within limits") < page.index("an edge")
+
+
+def test_rows_of_wide_tables_are_cards_on_a_narrow_screen(tmp_path: Path) -> None:
+    names = tuple(f"a long title {index}" for index in range(11))
+    table = ReportTable(headers=(names,), rows=[tuple(f"{index}.000" for index in range(11))])
+    place = tmp_path / "page.html"
+    place.write_text(report(sections=[Section("", [table])]).page(), encoding="utf-8")
+    size = "(() => { const t = document.querySelector('table.cards'); return [t.scrollWidth, innerWidth]; })()"
+    with tab(420, 900) as opened:
+        opened.open(place.as_uri(), state=None)
+        width, whole = opened.value(size)
+    assert whole == 420
+    assert width <= whole

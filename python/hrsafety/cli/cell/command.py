@@ -9,6 +9,7 @@ from importlib import resources
 from pathlib import Path
 
 from hrsafety import contact
+from hrsafety._words import some
 from hrsafety.cli import output, progress, terminal, verdict
 from hrsafety.cli.cell import page as cell_page
 from hrsafety.cli.cell import pictures as cell_pictures
@@ -65,7 +66,7 @@ def _said(study: contact.ContactStudy) -> str:
         doubts = ", ".join(study.fields["speed_over_distance"]["doubts"])
         return f"the separation distance is {VERDICT_WORDS[study.verdict]} ({doubts})"
     doubts = f" ({', '.join(study.fields['doubts'])})" if study.verdict == "not_checked" else ""
-    return f"{VERDICT_WORDS[study.verdict]}: {len(rows)} of {len(study.verdicts)} contacts{doubts}"
+    return f"{VERDICT_WORDS[study.verdict]}: {len(rows)} of {some(len(study.verdicts), 'contact')}{doubts}"
 
 
 def _start(path: str) -> None:

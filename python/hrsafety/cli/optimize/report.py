@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 from hrsafety import navigation as nav
+from hrsafety._words import some
 from hrsafety.cli.optimize import record as optimize_record
 from hrsafety.cli.optimize.file import GainStudy
 from hrsafety.cli.optimize.found import METRIC_UNITS, MOST_COLUMNS, MOST_PATHS, NOT_EVERYWHERE, FoundGains, gain_words
@@ -58,7 +59,7 @@ def _facts(found: FoundGains, reached: str) -> Iterator[tuple[str, str]]:
     yield (
         "counted",
         f"{search.evaluations:,} gain sets, {search.failures:,} of them with a contact or without arrival; "
-        f"{search.episodes:,} runs in {found.seconds:.2f} s{since}",
+        f"{some(search.episodes, 'run', form=',')} in {found.seconds:.2f} s{since}",
     )
     if search.valid:
         yield "best gains", gain_words(best.law.gains)
@@ -87,7 +88,7 @@ def _sections(found: FoundGains, pictures: Mapping[str, Picture]) -> Iterator[Se
     name = found.sets[0].name
     yield Section(f"{name} gains, scenario by scenario", [scenario_table(found), *([noise] if noisy else [])])
     paths = [pictures[f"paths-{name}"] for name in study.names[:MOST_PATHS]]
-    rest = [f"Of {count} scenarios the first {len(paths)} are drawn."] if count > len(paths) else []
+    rest = [f"Of {some(count, 'scenario')} the first {len(paths)} are drawn."] if count > len(paths) else []
     yield Section("Paths", [*paths, *rest])
     near = flatness.near_best_share
     share = (
@@ -144,7 +145,7 @@ def search_words(search: nav.GainSearch) -> str:
         return f"{settings.method.replace('_', ' ')}, {search.evaluations:,} gain sets"
     grid = " x ".join(str(count) for count in settings.grid)
     return (
-        f"grid {grid}, {settings.refinements} refinements to the {settings.survivors} best, "
+        f"grid {grid}, {some(settings.refinements, 'refinement')} to the {settings.survivors} best, "
         f"{len(search.local)} local searches"
     )
 
@@ -198,7 +199,7 @@ def scenario_table(found: FoundGains) -> ReportTable:
         rows=rows,
         left=(0, 1),
         most=MOST_ROWS,
-        summary=f"All {len(rows)} scenarios",
+        summary=f"All {some(len(rows), 'scenario')}",
         printed=True,
         more=f"and {len(rows) - MOST_ROWS} more scenarios in results.json",
     )

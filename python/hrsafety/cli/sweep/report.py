@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from hrsafety._bounds import MOST_ROWS_AT_ONCE
+from hrsafety._words import some
 from hrsafety.cli import output
 from hrsafety.cli.sweep.file import SweepFile
 from hrsafety.cli.sweep.summary import Summary, summarized
@@ -32,8 +33,8 @@ def design_words(result: SweepResult) -> str:
     """Return the design in a line."""
     settings = result.design.settings()
     seed = f", seed {settings['seed']}" if "seed" in settings else ""
-    cases = f", {len(result.cases)} cases each" if result.cases else ""
-    return f"{_KINDS[settings['kind']]} of {settings['rows']:,} rows{seed}{cases}"
+    cases = f", {some(len(result.cases), 'case')} each" if result.cases else ""
+    return f"{_KINDS[settings['kind']]} of {some(settings['rows'], 'row', form=',')}{seed}{cases}"
 
 
 def axis_words(axis: Axis) -> str:
@@ -41,8 +42,8 @@ def axis_words(axis: Axis) -> str:
     if axis.values is not None:
         if len(axis.values) <= MOST_LISTED:
             return ", ".join(f"{value:g}" for value in axis.values)
-        return f"{len(axis.values)} values from {min(axis.values):g} to {max(axis.values):g}"
-    number = f"{axis.size} values " if axis.size is not None else ""
+        return f"{some(len(axis.values), 'value')} from {min(axis.values):g} to {max(axis.values):g}"
+    number = f"{some(axis.size, 'value')} " if axis.size is not None else ""
     scale = {"linear": "", "log": ", logarithmic", "integer": ", whole numbers"}[axis.scale]
     return f"{number}{axis.low:g} to {axis.high:g}{scale}"
 
@@ -63,7 +64,7 @@ def report_of(study: str, described: SweepFile, result: SweepResult, seconds: fl
     """
     summary = summarized(result)
     cases = f" ({', '.join(result.cases)})" if result.cases else ""
-    chunks = "1 chunk" if result.chunk_count == 1 else f"{result.chunk_count:,} chunks"
+    chunks = some(result.chunk_count, "chunk", form=",")
     source = result.provenance
     shown = [each for each in summary.numbers if each.column.name in described.show]
     rest = [each for each in summary.numbers if each.column.name not in described.show]
@@ -88,7 +89,7 @@ def report_of(study: str, described: SweepFile, result: SweepResult, seconds: fl
             *((each.label, each.shares()) for each in summary.words),
             ("begun", f"{source['created']} with hrsafety {source['version']}, fingerprint {source['fingerprint']}"),
         ],
-        said=f"{len(result):,} rows",
+        said=f"{some(len(result), 'row', form=',')}",
         sections=[
             *([] if by is None else [Section("Outcomes", _outcomes(by, shares, result))]),
             Section("Columns", blocks),

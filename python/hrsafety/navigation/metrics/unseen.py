@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array
+from hrsafety._words import some
 from hrsafety.navigation.metrics.between import until_arrival, wrapped
 from hrsafety.navigation.metrics.episode import Episode
 from hrsafety.navigation.metrics.sights import last_sight, next_sight, seen_instants, track_ends
@@ -101,7 +102,7 @@ def _ends_doubt(episode: Episode, own: Array) -> tuple[ResultWarning, ...]:
     if gaps[row, worst] >= 0.0:
         return ()
     others = int((gaps < 0.0).any(axis=0).sum()) - 1
-    more = f" ({others} more people likewise)" if others else ""
+    more = f" ({some(others, 'more person', 'more people')} likewise)" if others else ""
     message = (
         f"{episode._named(worst)} may have been touched at {episode._time(row)} s{more}, out of sight before the first "
         f"or after the last place that is known, with people up to {episode.person_speed:g} m/s; metrics take the "
@@ -159,7 +160,11 @@ def _warning(episode: Episode, changed: Mapping[str, Any], unseen: Flags, gaps: 
     else:
         when = f"is not seen from {episode._time(first)} to {episode._time(last)} s"
     others = int(unseen.any(axis=0).sum()) - 1
-    more = f" ({others} more people are not seen at times)" if others else ""
+    more = (
+        f" (so {'is' if others == 1 else 'are'} {some(others, 'more person', 'more people')} at times)"
+        if others
+        else ""
+    )
     touched = bool((gaps < 0.0).any())
     may = (
         f"may have been touched at {episode._time(row)} s"
