@@ -51,7 +51,7 @@ def test_who_is_lost_while_the_robot_drives_over_the_place_is_no_success() -> No
 def test_who_is_never_seen_is_no_success() -> None:
     found = nav.metrics.evaluate(PATH, np.full((61, 2, 2), np.nan), **RULES)
     assert not found.success
-    assert "people[0] is never seen (1 more people are not seen at times)" in found.warnings[0].message
+    assert "people[0] is never seen (1 more person is not seen at times)" in found.warnings[0].message
     unscored = {name for name, value in found.to_dict().items() if isinstance(value, float) and math.isnan(value)}
     assert {"min_clearance", "min_time_to_collision", "comfort_share", "personal_share", "social_work"} <= unscored
     assert found.path_length == pytest.approx(5.8)  # the way itself is known

@@ -160,11 +160,7 @@ def _warning(episode: Episode, changed: Mapping[str, Any], unseen: Flags, gaps: 
     else:
         when = f"is not seen from {episode._time(first)} to {episode._time(last)} s"
     others = int(unseen.any(axis=0).sum()) - 1
-    more = (
-        f" (so {'is' if others == 1 else 'are'} {some(others, 'more person', 'more people')} at times)"
-        if others
-        else ""
-    )
+    more = f" ({some(others, 'more person is', 'more people are')} not seen at times)" if others else ""
     touched = bool((gaps < 0.0).any())
     may = (
         f"may have been touched at {episode._time(row)} s"
