@@ -23,6 +23,7 @@ __all__ = [
     "canonical",
     "checked",
     "integer",
+    "lines",
     "located",
     "missing",
     "number",
@@ -251,6 +252,11 @@ def numbers(path: str, value: Any) -> list[float]:
 def pairs(path: str, value: Any) -> list[tuple[float, float]]:
     """Check an array of pairs of numbers."""
     return [pair(f"{path}[{index}]", entry) for index, entry in enumerate(_array(path, value, "pairs [x, y]"))]
+
+
+def lines(path: str, value: Any) -> list[list[tuple[float, float]]]:
+    """Check an array of polylines, arrays of pairs of numbers."""
+    return [pairs(f"{path}[{index}]", entry) for index, entry in enumerate(_array(path, value, "polylines"))]
 
 
 _SEGMENT: Keys = MappingProxyType({"duration": number, "velocity": pair, "acceleration": pair})

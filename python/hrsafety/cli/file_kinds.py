@@ -92,7 +92,7 @@ KINDS = {
     "sweep": FileKind("sweep", "sweep", ("axes", "design"), _sweep),
     "foam": FileKind("foam design", "foam", ("foams", "closing_speed"), _foam, "plausibility of the foams"),
     "gains": FileKind("gain study", "optimize", ("scenarios", "search"), _gains, "ranges of the search"),
-    "world": FileKind("world", "ros", ("people", "sources", "walls"), _world),
+    "world": FileKind("world", "ros", ("people", "sources", "map"), _world),
     "scenario": FileKind("scenario", "simulate", ("start", "goal", "obstacles"), _scenario),
 }
 """Kinds by name, in the order in which they are recognized; ``hrsafety init`` has a file to start from of each."""

@@ -25,12 +25,12 @@ from hrsafety.live.settings import RANGES, LiveSettings, laws
 from hrsafety.navigation.controller import Controller, Sighting
 from hrsafety.navigation.crowd.agents import Person
 from hrsafety.navigation.crowd.world import World
+from hrsafety.navigation.maps.outlines import standing
 from hrsafety.navigation.place import Place
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot
 from hrsafety.navigation.run import Run
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.simulation import simulate
-from hrsafety.ros.bridge import map_of
 from hrsafety.ros.floor import Crowd, largest_step, walk
 
 __all__ = ["PERIOD", "LiveWorld"]
@@ -73,7 +73,7 @@ class LiveWorld:
             raise InvalidParameterError("world.robots", "be one robot", len(world.robots))
         self._world, self._pace = world, pace
         (self._robot,) = world.robots
-        self.walls = map_of(world)
+        self.walls = standing(world.walls)
         self.settings = LiveSettings.of(self._robot, self.walls)
         self.told = threading.Condition()
         self.state = ""

@@ -13,6 +13,7 @@ from hrsafety._arguments import Pair, assign, instance, pair, sequence
 from hrsafety._doubts import checked_doubts
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
+from hrsafety.navigation.maps.outlines import checked_shapes, standing
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles.base import Obstacle
 from hrsafety.navigation.place import Place
@@ -53,9 +54,10 @@ class Scenario(Place):
         Noise and age of the measured positions; ``None``: everything is known exactly.
     seed : int
         Seed of the noise, 0 <= seed < 2**64.
-    walls : StaticMap or None
-        What stands beside the obstacles. Contacts with it count in runs (``map_contact_time``); laws know of it what
-        they have a map of, or what a lidar sees, and runs carry the warning ``"unknown_wall"`` where that is less.
+    walls : StaticMap, sequence of Disc, Rectangle or sequence of points, or None
+        What stands beside the obstacles, as in a `World`; kept as a map. Contacts with it count in runs
+        (``map_contact_time``); laws know of it what they have a map of, or what a lidar sees, and runs carry the
+        warning ``"unknown_wall"`` where that is less.
     doubts : sequence of ResultWarning
         Why the obstacles may not be what they seem to, such as `Recording.warnings` of people who were recorded; the
         warnings of the scenario and of its runs hold them.
@@ -122,10 +124,13 @@ class Scenario(Place):
         assign(self, "obstacles", given)
         assign(self, "_native", native)
 
-    def _standing(self, walls: StaticMap) -> _hrsafety.StaticMap:
+    def _standing(self, walls: object) -> _hrsafety.StaticMap:
         """Return the native walls; the robot must not start in contact with them."""
         outline = self.robot.footprint
-        known = instance("walls", walls, StaticMap)
+        if not isinstance(walls, StaticMap):
+            walls = standing(checked_shapes("walls", walls))
+            self._set(walls=walls)
+        known = walls
         if outline is not None:
             if float(outline.clearance(known, [self.start], [self.heading])[0]) > 0.0:
                 return known._native

@@ -13,8 +13,7 @@ from hrsafety._arguments import Pair, Parameters, flag, instance, not_negative, 
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.crowd.world import World
-from hrsafety.navigation.maps.static_map import StaticMap
-from hrsafety.navigation.obstacles.standing import Disc, Rectangle
+from hrsafety.navigation.maps.outlines import standing
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.ros import messages
@@ -27,7 +26,7 @@ from hrsafety.ros.record import BusRecord
 from hrsafety.ros.scanner import Scanner
 from hrsafety.ros.steering import Steering
 
-__all__ = ["Bridge", "Settings", "map_of"]
+__all__ = ["Bridge", "Settings"]
 
 _TICK = 0.01
 _ODOMETRY, _SCAN, _PEOPLE, _VERDICT = 0.02, 0.05, 0.1, 1.0
@@ -115,15 +114,6 @@ class Settings(Parameters):
         instance("topic", self.topic, str)
 
 
-def map_of(world: World) -> StaticMap:
-    """Return the walls of a world as a map."""
-    if isinstance(world.walls, StaticMap):
-        return world.walls
-    solid = [wall for wall in world.walls if isinstance(wall, (Disc, Rectangle))]
-    lines = [wall for wall in world.walls if isinstance(wall, tuple)]
-    return StaticMap.from_obstacles(solid) + StaticMap.from_polylines(lines)
-
-
 class Bridge:
     """A world on a bus: it publishes what a robot among its people measures, and moves the robot as it is told.
 
@@ -159,7 +149,7 @@ class Bridge:
         self._radius = robot.body.radius
         self._base = MovingBase(limits_of(robot.body), Pose(*robot.start, robot.heading))
         self._commands = Commands(self._base.limits, self.settings.delay, self._warn)
-        self._map = map_of(world)
+        self._map = standing(world.walls)
         self._scanner = Scanner(replace(self.settings.lidar, map=self._map))
         self._step = self.settings.period if self.settings.lockstep else _SCAN
         self._part = largest_step(world, self._step, at_most=_SCAN)

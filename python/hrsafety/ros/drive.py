@@ -13,10 +13,10 @@ from hrsafety._arguments import Array, instance
 from hrsafety.errors import HrsafetyError, InvalidParameterError
 from hrsafety.navigation.controller import Controller
 from hrsafety.navigation.crowd.world import World
+from hrsafety.navigation.maps.outlines import standing
 from hrsafety.navigation.robot_command import Command, Sighting
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.ros.base import STANDING, PlanarTwist
-from hrsafety.ros.bridge import map_of
 from hrsafety.ros.bus import EVENTS, SENSOR, Bus, Message, Quality
 from hrsafety.ros.messages import Pose, pose_in, seconds, stamp, transform_in, twist_in
 from hrsafety.ros.steering import STAMPED, TWIST
@@ -122,7 +122,7 @@ class LawNode:
 
     def _made(self, start: tuple[float, float] | None) -> Controller:
         (robot,) = self._world.robots
-        walls = map_of(self._world)
+        walls = standing(self._world.walls)
         sizes = [*(each.radius for each in self._world.people), *(each.radius for each in self._world.sources)]
         return Controller(
             robot.law,  # type: ignore[arg-type]  # checked at construction

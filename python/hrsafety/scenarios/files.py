@@ -16,6 +16,7 @@ from hrsafety._display import displayed
 from hrsafety._keys import Keys, checked, located, parsed
 from hrsafety.errors import InvalidParameterError
 from hrsafety.io.people.tracks import load_track, track_doubts
+from hrsafety.navigation.maps.outlines import checked_shapes, standing
 from hrsafety.navigation.obstacles.moving_rectangle import Mobile
 from hrsafety.scenarios.laws import law_of, safe_of
 
@@ -48,6 +49,7 @@ TOP: Keys = MappingProxyType(
         "heading": kind.number,
         "rest_time": kind.number,
         "seed": kind.integer,
+        "walls": kind.lines,
         "robot": kind.table,
         "obstacles": kind.tables,
         "measurement": kind.table,
@@ -112,7 +114,8 @@ def load(path: str | PathLike[str]) -> ScenarioFile:
 
     The file is TOML. At its top stand ``start`` and ``goal`` (required, [x, y] in m) and
     ``control_period``, ``time_limit``, ``arrival_tolerance``, ``heading``, ``rest_time``,
-    ``seed`` of `Scenario`. Tables, all optional:
+    ``seed`` of `Scenario`, and ``walls``, an array of polylines, each an array of points [x, y] in m, which the law
+    knows. Tables, all optional:
 
     - ``[robot]`` with ``type``, ``"holonomic"`` when left out or ``"differential_drive"``, and the
       fields of `HolonomicRobot` or `DifferentialDriveRobot`; ``footprint`` is an array of corners [x, y] in m, a text
@@ -182,6 +185,10 @@ def read_scenario(described: Mapping[str, Any], folder: Path) -> ScenarioFile:
     law = law_of(fields.pop("law", {"type": "virtual_force_field"}))
     if "safe" in fields:
         law = safe_of(law, fields.pop("safe"))
+    if "walls" in fields:
+        with located(""):
+            fields["walls"] = known = standing(checked_shapes("walls", fields["walls"]))
+        law = law.replaced(map=known) if isinstance(law, nav.SafeNavigation) else nav.SafeNavigation(law, map=known)
     if "robot" in fields:
         fields["robot"] = _robot(fields["robot"])
     if "measurement" in fields:

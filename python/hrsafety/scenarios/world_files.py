@@ -59,7 +59,7 @@ _SOURCE: Keys = MappingProxyType(
     _TRAITS | {"low": kind.pair, "high": kind.pair, "rate": kind.number, "arrivals": kind.word}
 )
 _OWN: Keys = MappingProxyType(
-    {"people": kind.tables, "sources": kind.tables, "walls": _listed, "map": kind.word, "step": kind.number}
+    {"people": kind.tables, "sources": kind.tables, "walls": kind.lines, "map": kind.word, "step": kind.number}
 )
 
 

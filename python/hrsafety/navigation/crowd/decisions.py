@@ -11,7 +11,8 @@ from hrsafety import _hrsafety
 from hrsafety._arguments import Array, Pair, instance, numbers, pair, points, positive, sequence
 from hrsafety.errors import InvalidParameterError, ShapeError, SimulationError
 from hrsafety.navigation.crowd.pedestrians import Pedestrian
-from hrsafety.navigation.crowd.world import WallShape, native_walls
+from hrsafety.navigation.crowd.world import WallShape
+from hrsafety.navigation.maps.outlines import native_walls
 
 __all__ = ["decide"]
 

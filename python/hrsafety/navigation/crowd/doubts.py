@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -14,8 +13,10 @@ from hrsafety._arguments import Array, Pair
 from hrsafety._tracks import gaps_of_paths
 from hrsafety.navigation.crowd.agents import FASTEST_DRAWN, Person, Robot, Source, middle_of
 from hrsafety.navigation.laws.shield import Shield
+from hrsafety.navigation.maps.outlines import Shape, standing
 from hrsafety.navigation.maps.static_map import StaticMap
-from hrsafety.navigation.obstacles.moving import MovingDisc
+from hrsafety.navigation.obstacles.moving import Human, MovingDisc
+from hrsafety.navigation.obstacles.ways import through, way
 from hrsafety.navigation.robots.bodies import NUMBERS
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
@@ -137,9 +138,10 @@ def of_walls(
     sources: Sequence[Source],
     robots: Sequence[Robot],
     native: _hrsafety.CrowdWorld,
-    walls: Sequence[object],
+    walls: Sequence[Shape] | StaticMap,
+    time_limit: float,
 ) -> tuple[ResultWarning, ...]:
-    """Return a warning about starts, goals and recordings in walls, the first of each kind with how many follow.
+    """Return a warning about starts, goals and ways in walls, the first of each kind with how many follow.
 
     Parameters
     ----------
@@ -147,13 +149,15 @@ def of_walls(
         Who is in the world.
     native : CrowdWorld
         The world as the core has it.
-    walls : sequence
-        Its walls; polylines are tuples of points.
+    walls : sequence of Disc, Rectangle or tuple of points, or StaticMap
+        Its walls.
+    time_limit : float
+        In s.
 
     Returns
     -------
     tuple of ResultWarning
-        With the codes ``"start_in_wall"``, ``"goal_in_wall"`` and ``"recording_in_wall"``.
+        With the codes ``"start_in_wall"``, ``"goal_in_wall"``, ``"recording_in_wall"`` and ``"way_through_wall"``.
     """
     acting = [(f"people[{index}]", person) for index, person in enumerate(people) if person.reacts]
     # A center keeps a tenth of its radius off walls; on a line its side is not known.
@@ -178,12 +182,13 @@ def of_walls(
         (owner, (ResultWarning("goal_in_wall", name, f"{said}: nobody passes a wall to get there"),))
         for owner, name, said in _in_walls(goals, native)
     ]
-    through = [
-        (f"people[{index}]", tuple(_through_walls(person.recording, native, walls)))
+    map = standing(walls) if len(acting) < len(people) else StaticMap()
+    crossing = [
+        (f"people[{index}]", tuple(_through_walls(person, time_limit, map)))
         for index, person in enumerate(people)
-        if person.recording is not None
+        if not person.reacts
     ]
-    return (*gathered(inside, "starts"), *gathered(behind, "goals"), *gathered(through, "recordings"))
+    return (*gathered(inside, "starts"), *gathered(behind, "goals"), *gathered(crossing, "people"))
 
 
 def of_scans(
@@ -298,37 +303,13 @@ def of_maps(robots: Sequence[Robot]) -> Iterator[ResultWarning]:
     yield from dict.fromkeys(doubt for robot in robots for map in maps_of(robot.law) for doubt in map.warnings)
 
 
-def _through_walls(
-    recording: tuple[Sequence[float], Sequence[Pair]], native: _hrsafety.CrowdWorld, walls: Sequence[object]
-) -> Iterator[ResultWarning]:
-    """Yield a doubt about a recorded person who is inside a wall, or walks through a line of one."""
-    time, places = np.array(recording[0], dtype=np.float64), np.array(recording[1], dtype=np.float64)
-    inside = [(row, wall) for row, (gap, wall) in enumerate(native.nearest_walls(places.tolist())) if gap < 0.0]
-    found = inside[0] if inside else None
-    for index, wall in enumerate(walls if found is None else ()):
-        if isinstance(wall, tuple) and found is None:
-            crossed = _crossings(places, np.array(wall, dtype=np.float64))
-            found = (int(np.argmax(crossed)), index) if crossed.any() else None
-    if found is not None:
-        row, number = found
-        message = (
-            f"recording leads through walls[{number}] at {time[row]:.4g} s: walls and recording do not fit together, "
-            "or are in different units or frames"
-        )
-        yield ResultWarning("recording_in_wall", "recording", message)
-
-
-def _crossings(places: Array, line: Array) -> np.ndarray[Any, np.dtype[np.bool_]]:
-    """Return which steps between places cross a polyline."""
-    begin, way = places[:-1, None], np.diff(places, axis=0)[:, None]
-    start, along = line[None, :-1], np.diff(line, axis=0)[None]
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        parallel = way[..., 0] * along[..., 1] - way[..., 1] * along[..., 0]
-        offset = start - begin
-        share = (offset[..., 0] * along[..., 1] - offset[..., 1] * along[..., 0]) / parallel
-        place = (offset[..., 0] * way[..., 1] - offset[..., 1] * way[..., 0]) / parallel
-        meets = (share >= 0.0) & (share <= 1.0) & (place >= 0.0) & (place <= 1.0)
-    return np.asarray(meets.any(axis=1), dtype=np.bool_)
+def _through_walls(person: Person, until: float, walls: StaticMap) -> Iterator[ResultWarning]:
+    """Yield a doubt about somebody who walks through walls as recorded or told."""
+    if person.recording is not None:
+        gone = np.array(person.recording[0], dtype=np.float64), np.array(person.recording[1], dtype=np.float64)
+        yield from through(gone, walls, "walls", recorded=True)
+    elif isinstance(person.mover, Human):
+        yield from through(way(person.mover, until), walls, "walls", recorded=person.mover.path is not None)
 
 
 def _in_walls(

@@ -25,7 +25,7 @@ from hrsafety.navigation.crowd.doubts import (
     of_walls,
 )
 from hrsafety.navigation.crowd.routes import Routes, of_routes
-from hrsafety.navigation.maps.outlines import outlines
+from hrsafety.navigation.maps.outlines import Shape, checked_shapes, native_walls, outlines
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles.base import Obstacle
 from hrsafety.navigation.obstacles.moving import Human, MovingDisc
@@ -34,7 +34,7 @@ from hrsafety.navigation.place import Place
 from hrsafety.navigation.scenario import Scenario
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["WallShape", "World", "native_walls"]
+__all__ = ["WallShape", "World"]
 
 _STEP = 0.01
 """Longest step of the world of a scenario, in s."""
@@ -43,32 +43,7 @@ ROUNDING = 1e-9
 _FARTHEST = 1e6
 """How far the robot of a scenario sees, in m."""
 
-Polyline = tuple[Pair, ...]
-WallShape = Disc | Rectangle | Polyline
-
-
-def _wall(name: str, given: object) -> WallShape:
-    """Return a wall: a shape as it is, points as pairs."""
-    if isinstance(given, (Disc, Rectangle)):
-        return given
-    rule = "be a Disc, a Rectangle or a sequence of points (x, y)"
-    points = sequence(name, rule, given)
-    return tuple(pair(f"{name}[{index}]", point) for index, point in enumerate(points))
-
-
-def _native_wall(name: str, wall: WallShape) -> _hrsafety.CrowdWall:
-    if isinstance(wall, tuple):
-        try:
-            return _hrsafety.CrowdWall.polyline(list(wall))
-        except InvalidParameterError as error:
-            raise error.renamed(f"{name}.{error.argument}") from None
-    return _hrsafety.CrowdWall.solid(wall._native)
-
-
-def native_walls(walls: object) -> list[_hrsafety.CrowdWall]:
-    """Return walls of all kinds as the core knows them."""
-    given = sequence("walls", "be a sequence of walls", walls)
-    return [_native_wall(f"walls[{index}]", _wall(f"walls[{index}]", wall)) for index, wall in enumerate(given)]
+WallShape = Shape
 
 
 def _all(name: str, kind: type, given: Iterable[object]) -> tuple[Any, ...]:
@@ -168,8 +143,7 @@ class World(Place):
         """Check the values."""
         self._as_numbers("step", "time_limit")
         known = self.walls if isinstance(self.walls, StaticMap) else None
-        walls = [] if known is not None else sequence("walls", "be a StaticMap or a sequence of walls", self.walls)
-        told = [_wall(f"walls[{index}]", wall) for index, wall in enumerate(walls)]
+        told = [] if known is not None else list(checked_shapes("walls", self.walls))
         movers, standing = _movers(self.obstacles)
         if known is not None and standing:
             known, standing = known + StaticMap.from_obstacles(standing), []
@@ -285,8 +259,8 @@ class World(Place):
             own = tuple(self.people), tuple(self.sources), tuple(self.robots)
             shapes = self.wall_shapes
             of_shields = of_robots(*own, self.step, walls=len(shapes) > 0)
-            in_walls = of_walls(*own, self._native, shapes) if shapes else ()
             known = self.walls if isinstance(self.walls, StaticMap) else None
+            in_walls = of_walls(*own, self._native, known or shapes, self.time_limit) if shapes else ()
             seen = of_sensors(own[0], own[2], self.step, known)
             numbers = *of_numbers(*own, self.time_limit), *of_gaps(own[0], self.doubts)
             found = (*self.doubts, *numbers, *in_walls, *seen, *of_shields)

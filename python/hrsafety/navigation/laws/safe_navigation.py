@@ -138,8 +138,6 @@ class SafeNavigation(Law):
             self._set(preferred_speed=number("preferred_speed", self.preferred_speed))
         if not (self.takeover is None or isinstance(self.takeover, bool)):
             raise InvalidParameterError("takeover", "be True, False or None", self.takeover)
-        guided = self.guide is not None and self.map is not None
-        helped = self.foresight is None and (guided or self.yielding is not None)
         guide = Guide() if self.guide is None else self.guide
         native = _hrsafety.guarded_law(
             self.law._native,
@@ -149,12 +147,20 @@ class SafeNavigation(Law):
             foresight=None if self.foresight is None else self.foresight._native,
             map=None if self.map is None else self.map._native,
             guide=None if self.guide is None else self.guide._native,
-            takeover=helped if self.takeover is None else self.takeover,
+            takeover=self._takes_over,
             takeover_rule=(guide.takeover_progress, guide.takeover_window),
             preferred_speed=self.preferred_speed,
             critical_distance=self._critical_distance(),
         )
         self._set(_native=native)
+
+    @property
+    def _takes_over(self) -> bool:
+        """Whether a guide or yielding takes over from a law that does not get on."""
+        if self.takeover is not None:
+            return self.takeover
+        guided = self.guide is not None and self.map is not None
+        return self.foresight is None and (guided or self.yielding is not None)
 
     def _critical_distance(self) -> float | None:
         given = self.critical_distance

@@ -3,19 +3,57 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
-from hrsafety._arguments import Pair
+from hrsafety import _hrsafety
+from hrsafety._arguments import Pair, pair, sequence
+from hrsafety.errors import InvalidParameterError
 from hrsafety.navigation.maps.parts import PolylineWall
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles.standing import Disc, Rectangle
 
-__all__ = ["Shape", "outlines"]
+__all__ = ["Shape", "checked_shapes", "native_walls", "outlines", "standing"]
 
 Shape = Disc | Rectangle | tuple[Pair, ...]
+
+
+def checked_shapes(name: str, given: object) -> tuple[Shape, ...]:
+    """Return walls as shapes, points as pairs."""
+    walls = sequence(name, "be a StaticMap or a sequence of walls", given)
+    return tuple(_shape(f"{name}[{index}]", wall) for index, wall in enumerate(walls))
+
+
+def _shape(name: str, given: object) -> Shape:
+    if isinstance(given, Disc | Rectangle):
+        return given
+    places = sequence(name, "be a Disc, a Rectangle or a sequence of points (x, y)", given)
+    wall = tuple(pair(f"{name}[{index}]", place) for index, place in enumerate(places))
+    try:
+        _hrsafety.CrowdWall.polyline(list(wall))
+    except InvalidParameterError as error:
+        raise error.renamed(f"{name}.{error.argument}") from None
+    return wall
+
+
+def native_walls(walls: object) -> list[_hrsafety.CrowdWall]:
+    """Return walls of all kinds as the core of worlds knows them."""
+    polyline, solid = _hrsafety.CrowdWall.polyline, _hrsafety.CrowdWall.solid
+    shapes = checked_shapes("walls", walls)
+    return [polyline(list(wall)) if isinstance(wall, tuple) else solid(wall._native) for wall in shapes]
+
+
+def standing(walls: Sequence[Any] | StaticMap) -> StaticMap:
+    """Return walls as a map, which knows distances of segments; a line without length is a disc of a nanometer."""
+    if isinstance(walls, StaticMap):
+        return walls
+    solid = [wall for wall in walls if isinstance(wall, Disc | Rectangle)]
+    lines = [np.asarray(wall, dtype=np.float64) for wall in walls if not isinstance(wall, Disc | Rectangle)]
+    dots = [(*line[0], 1e-9) for line in lines if not np.ptp(line, axis=0).any()]
+    drawn = [line for line in lines if np.ptp(line, axis=0).any()]
+    return StaticMap.from_obstacles(solid) + StaticMap.from_polylines(drawn) + StaticMap(discs=dots)
 
 
 def outlines(place: StaticMap) -> tuple[Shape, ...]:

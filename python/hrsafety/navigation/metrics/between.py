@@ -6,16 +6,15 @@ They are counted as contacts; what is doubtful is that everybody moves straight 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from hrsafety._arguments import Array
+from hrsafety.navigation.maps.outlines import standing
 from hrsafety.navigation.maps.static_map import StaticMap
-from hrsafety.navigation.metrics.episode import Episode, Wall
-from hrsafety.navigation.obstacles.standing import Disc, Rectangle
+from hrsafety.navigation.metrics.episode import Episode
 from hrsafety.navigation.robots.footprint import Footprint
 from hrsafety.navigation.trajectory import CONTACT_SPEED
 from hrsafety.plausibility import ResultWarning
@@ -280,7 +279,7 @@ def walls_between(episode: Episode, arrival_time: float, wall_clearance: float) 
     if not moves.any():
         return Between(0, np.inf)
     begin, end = own[:-1][moves], own[1:][moves]
-    walls = _map_of(episode.walls)
+    walls = standing(episode.walls)
     at_ends = np.minimum(walls.clearance(begin), walls.clearance(end))
     gap = np.array([walls.segment_clearance(*way) for way in zip(begin, end, strict=True)]) - episode.robot_radius
     hidden = (gap < 0.0) & (at_ends >= episode.robot_radius)
@@ -303,7 +302,7 @@ def first_wall_contact(episode: Episode, arrival_time: float) -> tuple[float, fl
         Time of the instant that shows it, or of the end of the step within which it happens.
     """
     own, _ = until_arrival(episode, arrival_time)
-    walls = _map_of(episode.walls)
+    walls = standing(episode.walls)
     if episode.footprint is not None:
         shown = np.flatnonzero(_outline_gaps(episode, walls, own) <= PASSED).tolist()
     else:
@@ -334,17 +333,6 @@ def _outline_gaps(episode: Episode, walls: StaticMap, places: Array, step: int |
         turn = (heading[step + 1] - heading[step] + np.pi) % (2.0 * np.pi) - np.pi
         heading = heading[step] + turn * np.linspace(0.0, 1.0, len(places))
     return episode.footprint.clearance(walls, places, heading)
-
-
-def _map_of(walls: Sequence[Wall] | StaticMap) -> StaticMap:
-    """Return walls as a map, which knows distances of segments; a line without length is a disc of a nanometer."""
-    if isinstance(walls, StaticMap):
-        return walls
-    solid = [wall for wall in walls if isinstance(wall, Disc | Rectangle)]
-    lines = [np.asarray(wall, dtype=np.float64) for wall in walls if not isinstance(wall, Disc | Rectangle)]
-    dots = [(*line[0], 1e-9) for line in lines if not np.ptp(line, axis=0).any()]
-    drawn = [line for line in lines if np.ptp(line, axis=0).any()]
-    return StaticMap.from_obstacles(solid) + StaticMap.from_polylines(drawn) + StaticMap(discs=dots)
 
 
 def doubts_between(

@@ -11,7 +11,7 @@ import numpy as np
 
 from hrsafety._arguments import Array
 from hrsafety.navigation.knowledge import late_cameras
-from hrsafety.navigation.laws.force_laws import Law, VirtualForceField
+from hrsafety.navigation.laws.force_laws import BorensteinKoren, GeCui, Khatib, Law, Masoud, VirtualForceField
 from hrsafety.navigation.laws.safe_navigation import SafeNavigation
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.maps.unknown import over_unknown
@@ -21,7 +21,7 @@ from hrsafety.navigation.scenario import Scenario
 from hrsafety.navigation.sensing.lidar import Lidar
 from hrsafety.navigation.warnings.filters import of_filter
 from hrsafety.navigation.warnings.scans import of_object, of_robot, unwatched
-from hrsafety.navigation.warnings.scenarios import BELOW_SAFE, GOAL_IN_REGION, IN_CRITICAL_REGION
+from hrsafety.navigation.warnings.scenarios import BELOW_SAFE, GOAL_IN_REGION, GOAL_NEAR_STOP, IN_CRITICAL_REGION
 from hrsafety.navigation.warnings.shields import ASSUMES_LESS, maps_of, of_hidden_ways, of_order, of_shield, shield_of
 from hrsafety.navigation.warnings.walls import unknown_walls
 from hrsafety.plausibility import ResultWarning, gathered
@@ -60,6 +60,7 @@ def of_run(
     by_regions = isinstance(brakes, VirtualForceField)
     of_map: Iterable[ResultWarning] = (each for map in maps_of(law) for each in map.warnings)
     about_regions = () if by_regions else (BELOW_SAFE, IN_CRITICAL_REGION)
+    about_regions = about_regions if _keeps_to_regions(law) else (*about_regions, GOAL_NEAR_STOP)
     # A law that cannot reach a goal in a region is refused, so whatever runs can.
     of_scene = (each for each in scenario.warnings if each.code not in (*about_regions, GOAL_IN_REGION))
     if scenario.walls is not None:
@@ -85,6 +86,13 @@ def of_run(
         *of_shield(scenario, shield, built, motion_step, walls=walls),
         *of_hidden_ways(scenario, shield, maps_of(law)),
     )
+
+
+def _keeps_to_regions(law: object) -> bool:
+    """Return whether a law is pushed away by active regions, without anything around it that takes over."""
+    if isinstance(law, SafeNavigation):
+        return law.foresight is None and not law._takes_over and _keeps_to_regions(law.law)
+    return isinstance(law, VirtualForceField | Masoud | GeCui | Khatib | BorensteinKoren)
 
 
 def _late(scenario: Scenario, built: AsBuilt, by_regions: bool) -> Iterator[ResultWarning]:

@@ -14,13 +14,23 @@ from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.obstacles.base import Obstacle
 from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.obstacles.moving_rectangle import Box, Mobile
-from hrsafety.navigation.obstacles.standing import Rectangle
+from hrsafety.navigation.obstacles.standing import Disc, Rectangle
+from hrsafety.navigation.obstacles.ways import through, way
 from hrsafety.navigation.regions import region_radii
 from hrsafety.navigation.robots.bodies import NUMBERS, DifferentialDriveRobot, HolonomicRobot, least_reach
 from hrsafety.navigation.sensing.measurement import Measurement
-from hrsafety.plausibility import ResultWarning, implausible
+from hrsafety.plausibility import ResultWarning, gathered, implausible
 
-__all__ = ["BELOW_SAFE", "GOAL_IN_REGION", "IN_CRITICAL_REGION", "circled", "found", "own_speed", "pieces"]
+__all__ = [
+    "BELOW_SAFE",
+    "GOAL_IN_REGION",
+    "GOAL_NEAR_STOP",
+    "IN_CRITICAL_REGION",
+    "circled",
+    "found",
+    "own_speed",
+    "pieces",
+]
 
 # A critical radius this far below the safe one is that one, typed with fewer digits; in m.
 ROUNDING = 1e-9
@@ -28,6 +38,7 @@ ROUNDING = 1e-9
 BELOW_SAFE = "region_below_safe"
 IN_CRITICAL_REGION = "start_in_critical_region"
 GOAL_IN_REGION = "goal_in_active_region"
+GOAL_NEAR_STOP = "goal_near_stop"
 CLOSED_IN = "closed_in"
 IMPLAUSIBLE = "implausible"
 
@@ -71,12 +82,13 @@ def found(scenario: Described) -> tuple[ResultWarning, ...]:
     -------
     tuple of ResultWarning
         Codes ``"region_below_safe"``, ``"start_in_critical_region"``, ``"goal_in_active_region"``,
-        ``"implausible"``, ``"goal_out_of_reach"``, ``"closed_in"``, ``"goal_in_wall"`` and
-        ``"circle_around_footprint"``, and those of its ``doubts``.
+        ``"goal_near_stop"``, ``"recording_in_wall"``, ``"way_through_wall"``, ``"implausible"``,
+        ``"goal_out_of_reach"``, ``"closed_in"``, ``"goal_in_wall"`` and ``"circle_around_footprint"``, and those of
+        its ``doubts``.
     """
     about_ends = (*_starts(scenario), *_goals(scenario))
     own = (*_regions(scenario), *about_ends, *of_units(scenario), *_reach(scenario), *_closed(scenario))
-    own = (*own, *circled("robot", scenario.robot), *_gaps(scenario))
+    own = (*own, *circled("robot", scenario.robot), *_gaps(scenario), *_through(scenario))
     return tuple(dict.fromkeys((*scenario.doubts, *own)))
 
 
@@ -86,6 +98,20 @@ def _gaps(scenario: Described) -> tuple[ResultWarning, ...]:
         f"obstacles[{index}]": each.path for index, each in enumerate(scenario.obstacles) if isinstance(each, Mobile)
     }
     return gaps_of_paths({name: path for name, path in moves.items() if path is not None}, scenario.doubts)
+
+
+def _through(scenario: Described) -> Iterator[ResultWarning]:
+    """Yield people who walk through walls, or through what stands in the scene."""
+    things = [each for each in scenario.obstacles if isinstance(each, Disc | Rectangle)]
+    solids = [] if scenario.walls is None else [("walls", scenario.walls)]
+    solids += [("an obstacle that stands", StaticMap.from_obstacles(things))] if things else []
+    people = [(f"obstacles[{index}]", each) for index, each in enumerate(scenario.obstacles) if isinstance(each, Human)]
+    found = []
+    for name, person in people if solids else ():
+        gone, recorded = way(person, scenario.time_limit), person.path is not None
+        told = [each for what, map in solids for each in through(gone, map, what, recorded=recorded)]
+        found.append((name, told[:1]))
+    yield from gathered(found, "people")
 
 
 def circled(name: str, robot: HolonomicRobot | DifferentialDriveRobot) -> Iterator[ResultWarning]:
@@ -237,6 +263,33 @@ def _goals(scenario: Described) -> Iterator[ResultWarning]:
                 f"goal is {distance:.4g} m from obstacles[{index}] ({type(obstacle).__name__}), inside its active "
                 f"region of {radius:.4g} m: force laws are refused, planners and safe navigation with a takeover may "
                 f"reach it; move it by {_up(radius - distance):g} m for the others",
+                safe_side=True,  # a doubt about arriving, and the run shows whether it does
+            )
+    yield from _near_stops(scenario)
+
+
+def _near_stops(scenario: Described) -> Iterator[ResultWarning]:
+    """Yield goals in the active region of a body that comes to a stop and stays there."""
+    for index, obstacle in enumerate(scenario.obstacles):
+        radius = obstacle.active_radius
+        if radius is None or not isinstance(obstacle, Mobile) or free_space.stands(obstacle):
+            continue
+        time, places = way(obstacle, scenario.time_limit)
+        last = places[-1] - places[-2:][0]
+        stays = time[-1] < scenario.time_limit if obstacle.stop is not None else math.hypot(*last) < ROUNDING
+        if obstacle.path is not None or not stays:
+            continue
+        gone = places[-1] - places[0]
+        distance = free_space.distance(obstacle, (scenario.goal[0] - gone[0], scenario.goal[1] - gone[1]))
+        if distance < radius - scenario.arrival_tolerance:
+            noise = " with this measurement" if scenario.measurement is not None else ""
+            yield ResultWarning(
+                GOAL_NEAR_STOP,
+                "goal",
+                f"goal is {distance:.4g} m from the place where obstacles[{index}] ({type(obstacle).__name__}) stops "
+                f"and stays, inside its active region of {radius:.4g} m{noise}: laws that keep to regions are pushed "
+                f"away and may never arrive; move it by {_up(radius - distance):g} m, or take safe navigation with a "
+                "takeover",
                 safe_side=True,  # a doubt about arriving, and the run shows whether it does
             )
 
