@@ -89,6 +89,10 @@ SCENE_UNITS: Mapping[str, str] = MappingProxyType(
 )
 _OF_SCENARIOS = ("entered_active", "force_evaluations")
 _MEASURED = MappingProxyType({"measurement_scale": "scale", "measurement_latency": "latency"})
+_REGIONS = ("critical_radius", "active_radius")
+"""Columns of the regions of each obstacle, which `_hrsafety.Scenario.regions` has in this order."""
+ALIKE = 1e-9
+"""Regions that differ by less are of one size, in m."""
 _OF_SCENES = ("rest_time", "obstacle_speed")
 """Columns and axes that only scenarios have."""
 ROWS_NOT_LOOKED_AT = "rows_not_looked_at"
@@ -136,7 +140,8 @@ class NavigationStudy(Study):
       where a scenario has none) and ``measurement_latency`` (without noise where a scenario has none);
       ``robot_mass``, ``robot_radius``, ``robot_max_speed``, ``robot_max_acceleration``, ``robot_max_deceleration``,
       and of two wheels ``robot_max_turn_rate`` and ``robot_max_turn_acceleration``; ``obstacle_speed``, which every
-      obstacle that walks straight takes on in its direction. The regions around obstacles stay as they are;
+      obstacle that walks straight takes on in its direction. Regions that were not given as radii are sized anew,
+      and the doubt ``regions_differ`` names the axes that do so;
     - of worlds of one robot those of them that are gains, ``control_period``, ``time_limit``, ``arrival_tolerance``,
       ``heading``, ``seed``, ``measurement_scale``, ``measurement_latency`` and of the robot;
     - with ``scenario``, any others: the function builds the scene from them.
@@ -167,8 +172,8 @@ class NavigationStudy(Study):
         ``energy``, ``path_length``, ``min_clearance``, ``entered_active``,
         ``contacts_moving``, ``contacts_toward``, ``contacts_away``, ``contacts_standing``, ``contacts_at_fault``,
         ``contacts_apart``, ``wall_contacts``, the four of the performance,
-        ``force_evaluations``, and, without ``scenario``, ``min_distance_0`` and so on. Worlds have neither these
-        nor ``entered_active``.
+        ``force_evaluations``, and, without ``scenario``, ``min_distance_0``, ``critical_radius_0``,
+        ``active_radius_0`` and so on. Worlds have neither these nor ``entered_active``.
 
     Raises
     ------
@@ -266,8 +271,10 @@ class NavigationStudy(Study):
         if self._in_worlds:
             return (*_FIRST, *(each for each in _LAST if each.name not in _OF_SCENARIOS))
         most = max((len(scene.obstacles) for scene in self.scenarios), default=0)
-        distances = (Column(name=f"min_distance_{index}", unit="m") for index in range(most))
-        return (*_FIRST, *distances, *_LAST)
+        of_each = (
+            Column(name=f"{what}_{index}", unit="m") for what in ("min_distance", *_REGIONS) for index in range(most)
+        )
+        return (*_FIRST, *of_each, *_LAST)
 
     def columns(self) -> tuple[Column, ...]:
         """Return what is found for each row, without axes and scenarios."""
@@ -324,7 +331,7 @@ class NavigationStudy(Study):
                 sets = gain_sets(part.law, part.gains)
                 table = runs_of_sets(part.scenes, part.law, sets, self.weights, threads=threads)
                 for name, values in found.items():
-                    values[part.rows] = _values(table, name).reshape(-1, each)[part.order]
+                    values[part.rows] = _values(table, part.scenes, name).reshape(-1, each)[part.order]
                 continue
             table = nav.simulate_batch(
                 part.scenes,
@@ -338,7 +345,8 @@ class NavigationStudy(Study):
                 threads=threads,
             )
             for name, values in found.items():
-                values[part.rows] = _values(table, name).reshape(-1, each)[part.order]
+                told = _values(table, part.scenes, name)
+                values[part.rows] = told.reshape(-1, each)[part.order]
         return {name: values.reshape(-1) for name, values in found.items()}
 
     def doubts(self, rows: dict[str, Array]) -> tuple[ResultWarning, ...]:
@@ -359,10 +367,37 @@ class NavigationStudy(Study):
             numbers = tuple(values[name] for name in others if name in self._law_units)
             of_laws.setdefault(numbers, (law, []))[1].extend(made)
         told: dict[tuple[str, str, bool], ResultWarning] = {}
+        sized = self._of_regions({name: rows[name] for name in others})
         for law, scenes in of_laws.values():
             for each in self._of_law(law, scenes):
                 told.setdefault((each.code, each.subject.rpartition(".")[2], each.safe_side), each)
-        return (*_impossible(refused, len(distinct)), *told.values())
+        return (*_impossible(refused, len(distinct)), *told.values(), *sized)
+
+    def _of_regions(self, rows: dict[str, Array]) -> Iterator[ResultWarning]:
+        """Warn of axes of the scene that size regions, by the ends of each: rows differ by two things at once."""
+        if self._in_worlds or self.scenario is not None:
+            return
+        first = {name: float(values.min()) for name, values in rows.items()}
+        found: dict[str, str] = {}
+        for name, values in rows.items():
+            try:
+                ends = [self._scenes({**first, name: end}, 1) for end in (first[name], float(values.max()))]
+            except InvalidParameterError:  # an error of the chunk that computes it
+                continue
+            for case, (one, other) in enumerate(zip(*ends, strict=True)):
+                for index, (low, high) in enumerate(zip(one._native.regions(), other._native.regions(), strict=True)):
+                    if not np.allclose(low, high, rtol=0.0, atol=ALIKE):
+                        where = f"{f'scenarios[{self.names[case]!r}].' if self.names else ''}obstacles[{index}]"
+                        sizes = (f"{word} {low[k]:.4g} to {high[k]:.4g} m" for k, word in enumerate(_REGIONS))
+                        found.setdefault(name, f"of {where} {', '.join(sizes)}")
+        if found:
+            name = next(iter(found))
+            message = (
+                f"regions are sized for {' and '.join(found)}, over {name} {found[name]}: rows differ by their regions "
+                "as well, which are columns of the result; give obstacles a critical_radius and an active_radius to "
+                "keep them"
+            )
+            yield ResultWarning("regions_differ", name, message)
 
     def _of_law(self, law: nav.Law, scenes: list[Any]) -> tuple[ResultWarning, ...]:
         """Return the warnings of scenes under a law."""
@@ -503,11 +538,20 @@ class _Batch(NamedTuple):
     order: npt.NDArray[np.int64] | slice
 
 
-def _values(table: RunTable, name: str) -> npt.NDArray[Any]:
-    """Return a column of a table of runs by its name in a sweep."""
+def _values(table: RunTable, scenes: Sequence[Any], name: str) -> npt.NDArray[Any]:
+    """Return a column of a table of runs, the scenes fastest, by its name in a sweep."""
     what, _, obstacle = name.rpartition("_")
+    if what in _REGIONS:
+        return np.resize(_radii(scenes, int(obstacle))[:, _REGIONS.index(what)], len(table))
     found: npt.NDArray[Any] = table.min_distance[:, int(obstacle)] if what == "min_distance" else getattr(table, name)
     return found
+
+
+def _radii(scenes: Sequence[nav.Scenario], obstacle: int) -> Array:
+    """Return both radii of the regions of an obstacle in each scene, NaN where there is no such obstacle."""
+    return np.array(
+        [[*scene._native.regions(), *[(math.nan, math.nan)] * (obstacle + 1)][obstacle] for scene in scenes]
+    )
 
 
 def _computed(column: Column) -> np.dtype[Any]:

@@ -106,6 +106,11 @@ def test_shares_of_outcomes_stand_on_page_and_terminal(tmp_path: Path, capsys: p
             (result["contacts_at_fault"][(result["detour_gain"] == gain) & (result["scenario"] == scene)] > 0).sum()
         )
         assert line[1].endswith(f"), {at_fault}")
+        rows = (result["detour_gain"] == gain) & (result["scenario"] == scene)
+        counts = [int((result[f"contacts_{what}"][rows] > 0).sum()) for what in ("moving", "standing")]
+        assert re.findall(r"\), (\d+)", line[1])[-3:-1] == [str(count) for count in counts]
+    assert "contact while it moves" in printed.out
+    assert "contact while it stands" in text
     assert (result["contacts_at_fault"] > 0).sum() < (result["outcome"] == "collided").sum()
     # Nobody diverges in a scenario, and 0 of 20 say up to 16.2 %, rounded outwards.
     assert "diverged" not in printed.out
@@ -186,8 +191,9 @@ def test_table_is_written_as_csv_whatever_the_case_of_its_ending(tmp_path: Path)
 
 def test_one_axis_gives_a_line_for_each_scenario(tmp_path: Path) -> None:
     assert main(["sweep", written(tmp_path / "a.toml", CROSSING), "--out", str(tmp_path / "out")]) == 0
-    assert images(tmp_path / "out") == 3
-    assert (tmp_path / "out" / "lines_arrival_time.png").exists()
+    assert images(tmp_path / "out") == 5
+    for name in ("arrival_time", "contacts_moving", "contacts_standing"):
+        assert (tmp_path / "out" / f"lines_{name}.png").exists()
 
 
 def test_file_says_what_the_call_would(tmp_path: Path) -> None:

@@ -94,6 +94,22 @@ def test_long_results_are_thinned_over_all_levels() -> None:
     np.testing.assert_array_equal(points["hic15"], again["hic15"])
 
 
+def test_values_that_are_not_drawn_are_counted() -> None:
+    study = sweep.FunctionStudy(
+        function=lambda a, b: {"y": np.where(a % 3 == 0, np.nan, a + b), "z": a},
+        results=[sweep.Column(name="y"), sweep.Column(name="z")],
+    )
+    sizes = (("a", 6), ("b", 6), ("b", 1))
+    first, second, one = (sweep.Axis(name=name, unit="m", values=[*range(size)]) for name, size in sizes)
+    line, plane = (sweep.run(sweep.Grid([first, each]), study) for each in (one, second))
+    pictures = [(plotting.sweep_lines, line, "2 of 6")]
+    pictures += [(draw, plane, "12 of 36") for draw in (plotting.sweep_map, plotting.sweep_scatter)]
+    for draw, result, words in (*pictures, (plotting.sweep_parallel, plane, "12 of 36")):
+        said = [axes.get_ylabel() for axes in draw(result, "y").axes]
+        assert any(each.endswith(f"\n{words} without value") for each in said)
+        assert not any("without value" in axes.get_ylabel() for axes in draw(result, "z").axes)
+
+
 @pytest.mark.parametrize(
     ("draw", "result", "column", "words"),
     [

@@ -175,3 +175,60 @@ def test_rows_beyond_the_thickness_are_told_by_what_finds_them(head: Any, words:
     deep = result["max_compression"] > impact.FOAM_1.thickness
     assert deep.any()
     assert (result["status"][deep] == "bottomed").all() == bool(words)
+
+
+WALKER = nav.Human(start=(0.6, 0.6), velocity=(1.0, 0.0))
+HELD = replace(WALKER, critical_radius=1.5, active_radius=3.0)
+MEETING = nav.Scenario(start=(4.0, 0.0), goal=(0.0, 0.0), obstacles=[WALKER], time_limit=20.0)
+SIZING: dict[str, tuple[float, float]] = {
+    "measurement_scale": (0.001, 0.05),
+    "measurement_latency": (0.0, 0.3),
+    "control_period": (0.02, 0.1),
+    "robot_max_speed": (0.3, 0.9),
+    "robot_max_deceleration": (0.5, 2.0),
+    "robot_radius": (0.2, 0.4),
+}
+OTHER: dict[str, tuple[float, float]] = {"time_limit": (10.0, 20.0), "seed": (0.0, 3.0), "detour_gain": (10.0, 40.0)}
+
+
+def resized(name: str, values: tuple[float, float], *scenes: nav.Scenario) -> tuple[sweep.SweepResult, list[str]]:
+    """Return a sweep over an axis, and what it says of regions."""
+    result = sweep.run(sweep.Grid([sweep.Axis(name=name, values=values)]), sweep.NavigationStudy(scenarios=scenes))
+    return result, [each.message for each in result.warnings if each.code == "regions_differ"]
+
+
+@pytest.mark.parametrize("name", [*SIZING, *OTHER])
+def test_axes_that_size_regions_are_named_and_the_radii_are_columns(name: str) -> None:
+    away = replace(MEETING, obstacles=())
+    result, doubts = resized(name, (SIZING | OTHER)[name], away, MEETING)
+    radii = result.to_numpy(["critical_radius_0", "active_radius_0"])
+    assert all(np.isnan(values[::2]).all() and np.isfinite(values[1::2]).all() for values in radii.values())
+    if name in OTHER:
+        assert not doubts
+        assert all(len(set(values[1::2].tolist())) == 1 for values in radii.values())
+        return
+    (doubt,) = doubts
+    assert f"sized for {name}, over {name} of scenarios['1'].obstacles[0] critical_radius " in doubt
+    for values in radii.values():
+        low, high = values[1::2]
+        assert abs(low - high) > 1e-3
+        assert f"{low:.4g} to {high:.4g} m" in doubt
+
+
+def test_regions_that_are_given_are_kept_without_a_doubt() -> None:
+    for name, values in SIZING.items():
+        result, doubts = resized(name, values, replace(MEETING, obstacles=[HELD]))
+        assert not doubts
+        assert set(result["active_radius_0"].tolist()) == {3.0}
+
+
+def test_radii_stand_beside_their_rows_whatever_varies_with_them() -> None:
+    scales = sweep.Axis(name="measurement_scale", values=[0.05, 0.001])
+    design = sweep.Grid([sweep.Axis(name="detour_gain", values=[10.0, 40.0]), scales])
+    result = sweep.run(design, sweep.NavigationStudy(scenarios=[MEETING, replace(MEETING, obstacles=[HELD])]))
+    own = [
+        replace(MEETING, measurement=nav.Measurement(scale=scale)).obstacles[0].active_radius
+        for scale in result["measurement_scale"][::2].tolist()
+    ]
+    assert result["active_radius_0"][::2].tolist() == own
+    assert set(result["active_radius_0"][1::2].tolist()) == {3.0}

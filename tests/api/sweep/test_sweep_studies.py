@@ -40,7 +40,17 @@ FUNCTION = sweep.FunctionStudy(function=sweep_functions.norms, results=NORMS)
 def without_units(table: nav.RunTable) -> dict[str, Any]:
     """Return the columns by the names that a sweep gives them; its units stand beside the names."""
     unit = re.compile(r"_(s|m|J|N_per_m2?|m_per_s)$")
-    return {unit.sub("", name): values for name, values in table.columns().items()}
+    found = {unit.sub("", name): values for name, values in table.columns().items()}
+    scenes = [table.scenarios[index] for index in table.scenario_index.tolist()]
+    for place in range(max(len(scene.obstacles) for scene in scenes)):
+        for name in ("critical_radius", "active_radius"):
+            own = (
+                getattr(each, name, None)
+                for scene in scenes
+                for each in (*scene.obstacles, *[None] * 9)[place : place + 1]
+            )
+            found[f"{name}_{place}"] = np.array([np.nan if radius is None else radius for radius in own])
+    return found
 
 
 def equal(found: sweep.SweepResult, expected: dict[str, Any]) -> None:

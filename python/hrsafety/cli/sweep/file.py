@@ -85,6 +85,8 @@ _SHOWN = frozenset(
         "performance_total",
         "arrival_time",
         "min_clearance",
+        "contacts_moving",
+        "contacts_standing",
         "peak_head_acceleration_g",
         "peak_contact_force",
         "max_compression",

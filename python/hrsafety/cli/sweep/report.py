@@ -27,6 +27,11 @@ MOST_LISTED = 8
 MOST_GROUPS = 24
 # Outcomes that the page tells of even if no run had them.
 _ALWAYS = ("arrived", "collided")
+_CONTACTS = {
+    "contacts_moving": "contact while it moves",
+    "contacts_standing": "contact while it stands",
+    "contacts_at_fault": "contact at fault",
+}
 
 
 def design_words(result: SweepResult) -> str:
@@ -137,8 +142,11 @@ def _outcomes(by: dict[str, int], shares: SweepShares | None, result: SweepResul
         if word in occurring or word in _ALWAYS
     }
     note = "Share of the rows with these values that ended so, its 95 % Wilson interval, and the count."
-    if any(each.name == "contacts_at_fault" for each in result.found):
-        told["contact at fault"] = _share_words(result.shares("contacts_at_fault", by), "some")
+    kept = {each.name for each in result.found}
+    for name, title in _CONTACTS.items():
+        if name in kept:
+            told[title] = _share_words(result.shares(name, by), "some")
+    if "contacts_at_fault" in kept:
         note += " A contact is at fault where the robot moves toward whom it touches."
     first = shares.word == shares.word[0]
     values = ([_shown(value) for value in shares.group[name][first].tolist()] for name in by)

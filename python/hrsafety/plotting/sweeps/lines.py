@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -44,7 +45,7 @@ def sweep_lines(result: SweepResult, column: str, *, title: str | None = None) -
     Returns
     -------
     matplotlib.figure.Figure
-        The picture; values that are not finite leave a gap. Of more than six cases the mean is
+        The picture; values that are not finite leave a gap and are counted. Of more than six cases the mean is
         drawn.
 
     Raises
@@ -75,7 +76,7 @@ def sweep_lines(result: SweepResult, column: str, *, title: str | None = None) -
     if len(result.cases) > 1:
         figure.legend(loc="outside lower center", ncols=MOST_CASES)
     label_axis(axes, axis, "x")
-    axes.set_ylabel(drawn.label)
+    axes.set_ylabel(drawn.label + without_value([line for _, line in by_case(result, values)]))
     label_constant(axes.yaxis, values)
     return figure
 
@@ -96,7 +97,7 @@ def sweep_map(result: SweepResult, column: str, *, title: str | None = None) -> 
     Returns
     -------
     matplotlib.figure.Figure
-        The picture; values that are not finite are left blank. Of more than six cases the mean
+        The picture; values that are not finite are left blank and counted. Of more than six cases the mean
         is drawn.
 
     Raises
@@ -148,7 +149,9 @@ def sweep_map(result: SweepResult, column: str, *, title: str | None = None) -> 
         if place + columns >= len(panels):
             axes.xaxis.set_tick_params(labelbottom=True)
             axes.set_xlabel(first.label)
-    label_constant(figure.colorbar(colors, ax=grid, label=drawn.label), shown)
+    label_constant(
+        figure.colorbar(colors, ax=grid, label=drawn.label + without_value([panel for _, panel in panels])), shown
+    )
     return figure
 
 
@@ -185,6 +188,12 @@ def by_case(result: SweepResult, values: Array) -> list[tuple[str, Array]]:
 def finite(values: Array, name: str) -> Array:
     """Return values of a column as numbers, NaN where they are not finite; too large ones are refused."""
     return blank_where_infinite(f"column {name!r}", values)
+
+
+def without_value(drawn: Sequence[Array]) -> str:
+    """Return the words for how many of the values of a picture are left blank, empty if none are."""
+    missing = sum(int(np.count_nonzero(~np.isfinite(values))) for values in drawn)
+    return f"\n{missing:,} of {sum(values.size for values in drawn):,} without value" if missing else ""
 
 
 def panels_beside(panels: int) -> int:

@@ -21,6 +21,7 @@ from hrsafety.plotting.sweeps.lines import (
     label_constant,
     panels_beside,
     varying_axes,
+    without_value,
 )
 from hrsafety.sweep import Axis, SweepResult
 
@@ -57,7 +58,7 @@ def sweep_scatter(result: SweepResult, column: str, *, most: int = MOST_POINTS, 
     Returns
     -------
     matplotlib.figure.Figure
-        The picture; values that are not finite are left out.
+        The picture; values that are not finite are left out and counted.
 
     Raises
     ------
@@ -89,6 +90,7 @@ def sweep_scatter(result: SweepResult, column: str, *, most: int = MOST_POINTS, 
     for axes in grid.flat[len(varying) :]:
         axes.set_visible(False)
     dense = len(cases) == 1 and np.count_nonzero(np.isfinite(points[column])) > DENSE
+    blank = without_value([values for _, values in cases])
     size = 14.0 if points[column].size < 500 else 4.0
     for place, (axes, axis) in enumerate(zip(grid.flat, varying, strict=False)):
         for index, (name, values) in enumerate(cases):
@@ -100,7 +102,7 @@ def sweep_scatter(result: SweepResult, column: str, *, most: int = MOST_POINTS, 
                 axes.scatter(along, values, s=size, alpha=0.5, linewidths=0, color=color, label=name)
         label_axis(axes, axis, "x")
         if place % columns == 0:
-            axes.set_ylabel(drawn.label + _part(points[column].size, len(result)))
+            axes.set_ylabel(drawn.label + _part(points[column].size, len(result)) + blank)
             label_constant(axes.yaxis, points[column])
     if len(cases) > 1:
         handles, labels = grid[0, 0].get_legend_handles_labels()
@@ -136,7 +138,7 @@ def sweep_parallel(result: SweepResult, column: str, *, most: int = MOST_LINES, 
     -------
     matplotlib.figure.Figure
         The picture: each axis from its lowest to its highest value, large values of the column
-        on top. Rows whose value is not finite are left out; of several cases the mean counts.
+        on top. Rows whose value is not finite are left out and counted; of several cases the mean counts.
 
     Raises
     ------
@@ -187,7 +189,8 @@ def sweep_parallel(result: SweepResult, column: str, *, most: int = MOST_LINES, 
     axes.spines[["left", "bottom"]].set_visible(False)
     of_cases = f", mean of {len(result.cases)} cases" if len(result.cases) > 1 else ""
     rows = len(result) // max(len(result.cases), 1)
-    bar = figure.colorbar(lines, ax=axes, label=drawn.label + of_cases + _part(len(values), rows))
+    words = drawn.label + of_cases + _part(len(values), rows) + without_value([values])
+    bar = figure.colorbar(lines, ax=axes, label=words)
     label_constant(bar, values)
     return figure
 
