@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import argparse
-import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from hrsafety import navigation as nav
 from hrsafety import scenarios
 from hrsafety.cli import output, terminal, verdict
 from hrsafety.cli.output import decimal
+from hrsafety.navigation.endings import robot_then
 from hrsafety.navigation.outcomes import OUTCOMES
-from hrsafety.navigation.trajectory import CONTACT_SPEED
 from hrsafety.pages.report import Report, ReportTable, Section
 
 if TYPE_CHECKING:
@@ -39,7 +36,7 @@ def simulate_file(options: argparse.Namespace) -> None:
     scenario, law = described.scenario, output.with_options(described.law, options)
     score = nav.evaluate(scenario, law, integrator=options.integrator, step=options.step, hold=options.hold)
     run = score.trajectory
-    found, said = output.warnings_of(scenario, run), _how_it_ended(run)
+    found, said = output.warnings_of(scenario, run), run.ending
     report = Report(
         title=f"Simulation of {Path(options.scenario).name}",
         facts=[
@@ -65,39 +62,6 @@ def simulate_file(options: argparse.Namespace) -> None:
         written.append(output.animation(run, options.animate))
     output.say_written(written, report, options)
     verdict.end(said, verdict.counted(run), found, options, 1)
-
-
-def _how_it_ended(run: nav.Trajectory) -> str:
-    """Return in one sentence what came of a run."""
-    if run.outcome == "arrived":
-        return f"arrived after {run.arrival_time:.2f} s without a contact"
-    left = math.dist(run.position[-1], run.scenario.goal)
-    arrived = math.isfinite(run.arrival_time)
-    end = f"arrived after {run.arrival_time:.2f} s" if arrived else f"ended {left:.2f} m from the goal"
-    if run.outcome == "collided":
-        times = np.append(run.contact_time, run.map_contact_time)
-        first = int(np.nanargmin(times))
-        if first == len(run.contact_time):
-            return f"contact with a wall at {times[first]:.2f} s with {run.map_contact_speed:.2f} m/s, then {end}"
-        kind = type(run.scenario.obstacles[first]).__name__
-        when = f"at {times[first]:.2f} s with {run.contact_speed[first]:.2f} m/s ({_robot_then(run, first)})"
-        return f"contact with obstacle {first} ({kind}) {when}, then {end}"
-    if run.outcome == "timed_out":
-        return f"timed out after {run.time[-1]:.2f} s, {left:.2f} m from the goal"
-    return f"stopped for good after {run.time[-1]:.2f} s, {left:.2f} m from the goal"
-
-
-def _robot_then(run: nav.Trajectory, index: int) -> str:
-    """Return what the robot did at the first contact with an obstacle."""
-    if run.contact_apart[index] and math.isnan(run.contact_time[index]):
-        return "appeared on it"
-    if math.isnan(run.contact_time[index]):
-        return ""
-    if run.contact_speed[index] <= CONTACT_SPEED:
-        did = "standing"
-    else:
-        did = "toward it" if run.contact_toward[index] else "away"
-    return f"{did}, at fault" if run.contact_at_fault[index] else did
 
 
 def _summary(score: nav.Performance) -> Iterator[tuple[str, str]]:
@@ -126,7 +90,7 @@ def _obstacle_table(run: nav.Trajectory) -> ReportTable:
             decimal(float(run.min_clearance[index]), 3),
             decimal(float(run.contact_time[index])),
             decimal(float(run.contact_speed[index])),
-            _robot_then(run, index),
+            robot_then(run, index),
         )
         for index, obstacle in enumerate(run.scenario.obstacles)
     ]

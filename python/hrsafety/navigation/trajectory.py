@@ -15,6 +15,7 @@ from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety._replay.played import Played
 from hrsafety._replay.record import Replay
+from hrsafety.navigation.endings import ending_of
 from hrsafety.navigation.knowledge import Sensing, sensing_of
 from hrsafety.navigation.laws.force_laws import Law
 from hrsafety.navigation.outcomes import Outcome
@@ -137,7 +138,8 @@ class Trajectory(Played, Table):
         Least distance d, and least distance between the surfaces, in m; infinite for an
         obstacle that was never present.
     contact_time, contact_speed : ndarray, shape (m,)
-        First contact with each obstacle in s and the robot's speed then in m/s; NaN without. A contact at the end of
+        First contact with each obstacle in s and the robot's speed then in m/s; NaN without. Those with walls are
+        ``map_contact_time`` and ``map_contact_speed``. A contact at the end of
         a motion step has its time; one within a step only, where robot and obstacle move straight at constant speed
         and their surfaces meet, the instant at which they do, and the speed at the end of the step. An obstacle that a
         recording puts elsewhere at once (faster than 100 m/s) is not on the way there.
@@ -291,6 +293,16 @@ class Trajectory(Played, Table):
     def outcomes(self) -> tuple[str, ...]:
         """How the run ended for each robot."""
         return tuple(each.outcome for each in self.robots)
+
+    @property
+    def ending(self) -> str:
+        """How the run ended for its robot in one sentence: contact or arrival, and why it did not get on if known."""
+        return ending_of(self)
+
+    def _shown(self) -> tuple[list[str], list[list[str]], str]:
+        header, cells, title = Table._shown(self)  # a class with slots is made twice, and super() takes the first
+        said = self.ending if isinstance(self.scenario, Scenario) else ""
+        return header, cells, f"{title}\n{said}" if said else title
 
     @property
     def contacts_moving(self) -> int:

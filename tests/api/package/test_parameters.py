@@ -36,7 +36,7 @@ VALUES: list[tuple[Any, dict[str, Any]]] = [
         nav.Scenario(
             start=(3.9, 0.6),
             goal=(0.0, 0.6),
-            obstacles=[nav.Disc(center=(2.45, 0.595), radius=0.1), nav.Human(start=(0.6, 0.6), velocity=(1.0, 0.0))],
+            obstacles=[nav.Disc(center=(2.45, 0.595), radius=0.1), nav.Human(start=(0.6, 0.6), velocity=(0.0, 1.0))],
             measurement=nav.Measurement(),
             seed=2**64 - 1,
         ),

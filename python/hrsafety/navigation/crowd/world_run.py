@@ -74,6 +74,8 @@ class WorldRun(Trajectory):
 
     def __getattr__(self, name: str) -> Any:
         """Find how the run ended for its robot, or say whose values are meant."""
+        if self._robot is None and isinstance(getattr(Trajectory, name, None), property):
+            self._refuse(name)  # asked for what one robot has
         if name not in _OF_ONE_ROBOT:
             raise AttributeError(f"'Trajectory' object has no attribute {name!r}", name=name, obj=self)
         if self._robot is None:

@@ -26,7 +26,7 @@ from hrsafety.navigation.warnings.shields import ASSUMES_LESS, maps_of, of_hidde
 from hrsafety.navigation.warnings.walls import unknown_walls
 from hrsafety.plausibility import ResultWarning, gathered
 
-__all__ = ["of_commands", "of_repeats", "of_run", "of_runs", "of_scenes", "of_way"]
+__all__ = ["keeps_to_regions", "of_commands", "of_repeats", "of_run", "of_runs", "of_scenes", "of_way"]
 
 UNKNOWN_MAP = "unknown_map"
 """Code of a law that does not know the walls of the laws that it is compared with."""
@@ -60,7 +60,7 @@ def of_run(
     by_regions = isinstance(brakes, VirtualForceField)
     of_map: Iterable[ResultWarning] = (each for map in maps_of(law) for each in map.warnings)
     about_regions = () if by_regions else (BELOW_SAFE, IN_CRITICAL_REGION)
-    about_regions = about_regions if _keeps_to_regions(law) else (*about_regions, GOAL_NEAR_STOP)
+    about_regions = about_regions if keeps_to_regions(law) else (*about_regions, GOAL_NEAR_STOP)
     # A law that cannot reach a goal in a region is refused, so whatever runs can.
     of_scene = (each for each in scenario.warnings if each.code not in (*about_regions, GOAL_IN_REGION))
     if scenario.walls is not None:
@@ -88,10 +88,10 @@ def of_run(
     )
 
 
-def _keeps_to_regions(law: object) -> bool:
+def keeps_to_regions(law: object) -> bool:
     """Return whether a law is pushed away by active regions, without anything around it that takes over."""
     if isinstance(law, SafeNavigation):
-        return law.foresight is None and not law._takes_over and _keeps_to_regions(law.law)
+        return law.foresight is None and not law._takes_over and keeps_to_regions(law.law)
     return isinstance(law, VirtualForceField | Masoud | GeCui | Khatib | BorensteinKoren)
 
 

@@ -23,9 +23,11 @@ from hrsafety.plausibility import ResultWarning, gathered, implausible
 
 __all__ = [
     "BELOW_SAFE",
+    "CLOSED_IN",
     "GOAL_IN_REGION",
     "GOAL_NEAR_STOP",
     "IN_CRITICAL_REGION",
+    "OUT_OF_REACH",
     "circled",
     "found",
     "own_speed",
@@ -40,6 +42,7 @@ IN_CRITICAL_REGION = "start_in_critical_region"
 GOAL_IN_REGION = "goal_in_active_region"
 GOAL_NEAR_STOP = "goal_near_stop"
 CLOSED_IN = "closed_in"
+OUT_OF_REACH = "goal_out_of_reach"
 IMPLAUSIBLE = "implausible"
 
 
@@ -349,7 +352,7 @@ def _reach(scenario: Described) -> Iterator[ResultWarning]:
     if away > reach:
         needed = math.ceil(away / scenario.robot.max_speed)
         yield ResultWarning(
-            "goal_out_of_reach",
+            OUT_OF_REACH,
             "goal",
             f"goal is {away:g} m away and the robot covers at most {reach:g} m at {scenario.robot.max_speed:g} m/s in "
             f"time_limit = {scenario.time_limit:g} s; give time_limit={needed} or more",
