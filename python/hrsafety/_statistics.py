@@ -208,6 +208,7 @@ class Mean:
         if self.runs == 1:
             return f"{self.value:.4g} (no interval), 1 run"
         few = ", too few for an interval to be relied on" if self.warnings else ""
+        few = ", all of them equal" if self.runs >= _FEW_RUNS and self.warnings else few
         return f"{self.value:.4g} ({self.low:.4g} to {self.high:.4g}), {self.runs} runs{few}"
 
     @property

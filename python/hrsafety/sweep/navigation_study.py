@@ -453,10 +453,16 @@ class NavigationStudy(Study):
         if alike.any():
             where = words[few][int(np.argmax(alike))]
             more = f" (so in {alike.sum() - 1} more of the scenarios)" if alike.sum() > 1 else ""
+            scene = study.scenarios[int(np.argmax(alike))] if study.scenarios else None
+            own = getattr(scene, "measurement", None)
+            why = "nothing there draws from it"
+            remedy = "noise (measurement_scale), or a scene that is drawn for each seed, makes them differ"
+            if "measurement_scale" in design.names or (own is not None and own.scale > 0.0):
+                why = "noise is there, but none of it reaches the robot, as under a law that ignores people"
+                remedy = run_warnings.ONE_RUN
             message = (
-                f"the {len(seeds)} rows over seed in {where} are the same run: nothing there draws from it, and shares "
-                "and intervals count one run as many; a measurement with noise (measurement_scale), or a scene that is "
-                f"drawn for each seed, makes them differ{more}"
+                f"the {len(seeds)} rows over seed in {where} are the same run: {why}, and shares and intervals count "
+                f"one run as many; {remedy}{more}"
             )
             yield ResultWarning("same_runs", "seed", message)
 

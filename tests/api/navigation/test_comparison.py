@@ -10,7 +10,7 @@ import pytest
 from scipy import stats
 
 from api.spoiled import names
-from hrsafety import InvalidParameterError, ShapeError, scenarios
+from hrsafety import InvalidParameterError, ShapeError, scenarios, sweep
 from hrsafety import navigation as nav
 from hrsafety.navigation.comparison import Metric
 from hrsafety.navigation.metrics import Mean, compare_paired, mean_interval, wilson
@@ -442,3 +442,36 @@ def test_worlds_that_draw_nothing_are_told() -> None:
 
     assert same(nav.simulate_many([world(seed) for seed in range(3)])) == []
     assert len(same(nav.simulate_many(world(0), seeds=3))) == 1
+
+
+def ahead(_situation: object) -> tuple[float, float]:
+    """Return a velocity that no person changes."""
+    return (-0.5, 0.0)
+
+
+def test_a_law_that_ignores_people_is_the_cause_of_runs_that_are_the_same() -> None:
+    noisy = replace(scenarios.configuration("c3"), measurement=nav.Measurement(scale=0.02))
+    causes = {}
+    for name, scene, seeds in (
+        ("noise", noisy, 5),
+        ("quiet", scenarios.configuration("c3"), 5),
+        ("twice", noisy, [3, 3]),
+    ):
+        found = nav.simulate_many({"c3": scene}, {"own": ahead}, seeds=seeds).warnings
+        (causes[name],) = [each.message for each in found if each.code == "same_runs"]
+    assert "there is noise, but none of it reaches what own does" in causes["noise"]
+    assert "makes them differ" not in causes["noise"]
+    assert "nothing there draws from the seeds" in causes["quiet"]
+    assert "seeds are repeated" in causes["twice"]
+    axes = [sweep.Axis(name="seed", low=0, high=4, scale="integer")]
+    (doubt,) = [
+        each.message
+        for each in sweep.run(sweep.Grid(axes), sweep.NavigationStudy(scenarios=noisy, law=ahead)).warnings
+        if each.code == "same_runs"
+    ]
+    assert "a law that ignores people" in doubt
+
+
+def test_a_mean_of_many_equal_numbers_is_not_said_to_be_of_few_runs() -> None:
+    found = nav.compare({"c3": scenarios.configuration("c3")}, dict.fromkeys(("one", "two"), FIELD["field"]), seeds=12)
+    assert str(found.difference("one", "two")) == "0 (0 to 0), 12 runs, all of them equal"

@@ -30,6 +30,8 @@ __all__ = ["keeps_to_regions", "of_commands", "of_repeats", "of_run", "of_runs",
 
 UNKNOWN_MAP = "unknown_map"
 """Code of a law that does not know the walls of the laws that it is compared with."""
+ONE_RUN = "one run says as much"
+"""Remedy for repeats under a law that no noise reaches."""
 MOST_TWINS = 100
 """So many pairs of scenes with runs of the same bits are compared."""
 
@@ -235,10 +237,18 @@ def of_repeats(table: Any) -> Iterator[ResultWarning]:
     row = first[alike][0]
     law, scene = table.law_names[table.law_index[row]], table.scenario_names[table.scenario_index[row]]
     more = f" ({alike.sum() - 1} more of this kind in these runs)" if alike.sum() > 1 else ""
+    noise = getattr(table.scenarios[table.scenario_index[row]], "measurement", None)
+    if np.flatnonzero(alike)[0] in group[order][1:][again]:
+        why, remedy = "seeds are repeated", "give each run a seed of its own"
+    elif noise is not None and noise.scale > 0.0:
+        why = f"there is noise, but none of it reaches what {law} does, as of a law that ignores people"
+        remedy = ONE_RUN
+    else:
+        why = "nothing there draws from the seeds"
+        remedy = "a measurement with noise, or a scene that is drawn for each seed, makes them differ"
     message = (
-        f"of the {counts[alike][0]} runs of {law} in {scene} some are the same run: seeds are repeated, or nothing "
-        "there draws from them, and shares and intervals count one run as many; a measurement with noise, or a scene "
-        f"that is drawn for each seed, makes them differ{more}"
+        f"of the {counts[alike][0]} runs of {law} in {scene} some are the same run: {why}, and shares and intervals "
+        f"count one run as many; {remedy}{more}"
     )
     yield ResultWarning("same_runs", "seeds", message)
 
