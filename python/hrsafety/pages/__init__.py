@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 from hrsafety import __version__
 from hrsafety._records import dataclass
+from hrsafety._words import unsigned_zero
 from hrsafety.errors import MissingExtraError
 
 if TYPE_CHECKING:
@@ -92,7 +93,7 @@ def shown(value: object, spec: str = ".2f") -> str:
         return value
     if value is None or not math.isfinite(value):  # type: ignore[arg-type]  # what is no number fails here
         return DASH
-    return format(value, spec)
+    return unsigned_zero(format(value, spec))
 
 
 def sentence(words: str) -> str:

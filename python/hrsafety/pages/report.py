@@ -171,6 +171,7 @@ class Report:
         shown = replace(
             self,
             facts=[(name, unsigned_zero(words)) for name, words in self.facts],
+            said=unsigned_zero(self.said),
             sections=[Section(each.heading, [_unsigned(block) for block in each.blocks]) for each in self.sections],
         )
         when = {} if self.made is None else {"made": self.made}

@@ -175,6 +175,21 @@ def test_no_zero_has_a_sign_and_one_is_no_plural() -> None:
     assert some(1200, "row", form=",") == "1,200 rows"
 
 
+@pytest.mark.parametrize(
+    ("value", "spec", "words"),
+    [
+        (-1e-4, ".3f", "0.000"),
+        (-1e-4, "+.3f", "0.000"),
+        (-0.0, ".4g", "0"),
+        (-0.01, ".2f", "-0.01"),
+        (-1e-9, ".2g", "-1e-09"),
+    ],
+)
+def test_numbers_of_pages_that_are_zero_have_no_sign(value: float, spec: str, words: str) -> None:
+    assert pages.shown(value, spec) == words
+    assert "<strong>0.0 m left.</strong>" in report(said="-0.0 m left").page()
+
+
 def test_the_verdict_stands_above_the_warnings() -> None:
     page = report(warnings=[DOUBT]).page()
     assert page.index("Within limits") < page.index("an edge")
