@@ -10,7 +10,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 from hypothesis.internal.conjecture import providers
 
 # Pictures are drawn without a display, here and in every process that a test starts.
@@ -23,7 +23,7 @@ os.environ["MPLCONFIGDIR"] = _MATPLOTLIB
 atexit.register(shutil.rmtree, _MATPLOTLIB, ignore_errors=True)
 
 # The same examples on every machine and in every run; a slow machine is not a failure.
-settings.register_profile("repeatable", derandomize=True, deadline=None)
+settings.register_profile("repeatable", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("repeatable")
 # Constants of whatever modules are loaded by then would be tried, too: examples would depend on the tests before.
 if hasattr(providers, "_get_local_constants"):
