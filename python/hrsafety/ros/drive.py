@@ -85,7 +85,6 @@ class LawNode:
         self._period = world.step if robot.control_period is None else robot.control_period
         self._lockstep, self._complete = lockstep, complete
         self.counts: Counter[str] = Counter()
-        self._origin = Pose(0.0, 0.0, 0.0)
         self._goal = robot.goal
         self._poses: deque[_Known] = deque(maxlen=64)
         self._scan: tuple[float, Array] | None = None
@@ -183,8 +182,8 @@ class LawNode:
         place = self._mounting(message.header.frame_id.lstrip("/"))
         if place is None or (self._lidar is None and not self._learn(message, len(ranges), place)):
             return
-        if self._lidar is None or len(ranges) != self._lidar.beams or self._lidar.mounting != place:
-            rule = "has another number of beams or place of the lidar than those before"
+        if self._lidar is None or not _fits(self._lidar, message) or self._lidar.mounting != place:
+            rule = "has other beams, or another place of the lidar, than those before"
             self._count("scan_refused", f"a scan {rule}: it is not used")
             return
         self._scan = (seconds(message.header.stamp), np.where(ranges >= self._lidar.range_max, np.inf, ranges))
@@ -194,20 +193,24 @@ class LawNode:
         """Return where a lidar is on the robot by its transforms, in m, m and rad; ``None`` where that is not known."""
         if not self._framed:
             return 0.0, 0.0, 0.0
-        place, at, passed = Pose(0.0, 0.0, 0.0), frame, set[str]()
-        while at != self._base:
-            parent, pose, upright = self._frames.get(at, ("", None, True))
-            if pose is None or at in passed:
-                rule = f"the place of the lidar is not known: no transforms lead from {frame!r} to {self._base!r}"
-            elif not upright:
-                rule = f"the lidar {frame!r} is tilted or upside down"
-            else:
-                passed.add(at)
-                place, at = pose @ place, parent
-                continue
-            self._count("lidar_place", f"scans are not used: {rule}")
+        place = self._place(frame, self._base)
+        if isinstance(place, str):
+            self._count("lidar_place", f"scans are not used: the place of the lidar is not known: {place}")
             return None
         return place.x, place.y, math.remainder(place.yaw, math.tau)
+
+    def _place(self, frame: str, root: str) -> Pose | str:
+        """Return where a frame is in another one by the transforms, or why that is not known."""
+        place, at, passed = Pose(0.0, 0.0, 0.0), frame, set[str]()
+        while at != root:
+            parent, pose, upright = self._frames.get(at, ("", None, True))
+            if pose is None or at in passed:
+                return f"no transforms lead from {frame!r} to {root!r}"
+            if not upright:
+                return f"{at!r} is tilted or upside down"
+            passed.add(at)
+            place, at = pose @ place, parent
+        return place
 
     def _learn(self, message: Any, beams: int, mounting: tuple[float, float, float]) -> bool:
         """Return whether the lidar of a scan is one that the controller can have."""
@@ -218,7 +221,7 @@ class LawNode:
             first = float(message.angle_min)
             view = math.tau if turns else width
             lidar = Lidar(beams=beams, field_of_view=view, angle_min=first, range_max=most, mounting=mounting)
-            if np.abs(lidar.bearings - (first + step * np.arange(beams))).max() > 0.5 * abs(step):
+            if not _fits(lidar, message):
                 raise InvalidParameterError("angle_increment", "divide a whole turn evenly", step)
             self._lidar = lidar
             self._controller = self._made(self._poses[-1].pose[:2] if self._poses else None)
@@ -231,12 +234,8 @@ class LawNode:
 
     def _hear_transforms(self, message: Any) -> None:
         for each in message.transforms:
-            if each.header.frame_id.lstrip("/") == "map" and each.child_frame_id.lstrip("/") == "odom":
-                move, turn = each.transform.translation, each.transform.rotation
-                self._origin = Pose(move.x, move.y, 2.0 * math.atan2(turn.z, turn.w))
-            else:
-                known = (each.header.frame_id.lstrip("/"), *transform_in(each.transform))
-                self._frames[each.child_frame_id.lstrip("/")] = known
+            known = (each.header.frame_id.lstrip("/"), *transform_in(each.transform))
+            self._frames[each.child_frame_id.lstrip("/")] = known
 
     def _hear_robot(self, message: Any) -> None:
         pose = pose_in(message.pose.pose)
@@ -247,8 +246,12 @@ class LawNode:
             )
             return
         self._base = message.child_frame_id.lstrip("/")
-        if message.header.frame_id.lstrip("/") != "map":
-            pose = self._origin @ pose
+        if self._framed:
+            origin = self._place(message.header.frame_id.lstrip("/"), "map")
+            if isinstance(origin, str):
+                self._count("odometry_frame", f"odometry is not used: its frame is not known in the map: {origin}")
+                return
+            pose = origin @ pose
         sin, cos = math.sin(pose.yaw), math.cos(pose.yaw)
         velocity = (cos * ahead - sin * left, sin * ahead + cos * left)
         time = seconds(message.header.stamp)
@@ -372,6 +375,13 @@ class LawNode:
         head = {"frame_id": "base_footprint", "stamp": stamp(time)}
         self._answer = {"header": head, "twist": fields} if self._stamped else fields
         self._send(self._answer)
+
+
+def _fits(lidar: Lidar, message: Any) -> bool:
+    """Return whether the beams of a scan are those of a lidar, each within half of their step."""
+    first, step = float(message.angle_min), float(message.angle_increment)
+    beams = np.arange(len(message.ranges))
+    return len(beams) == lidar.beams and bool(np.abs(lidar.bearings - (first + step * beams)).max() <= 0.5 * abs(step))
 
 
 def _twist(command: Command, yaw: float) -> PlanarTwist:

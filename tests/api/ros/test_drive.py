@@ -16,6 +16,24 @@ from hrsafety.ros.drive import LawNode
 from hrsafety.ros.messages import Pose, Seen
 
 
+def static(*edges: tuple[str, str, tuple[float, float, float], dict[str, float]]) -> Any:
+    """Return transforms of edges: parent, child, place, and parts of the quaternion."""
+    none = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 0.0}
+    place = [{"translation": dict(zip("xyz", at, strict=True)), "rotation": none | turn} for _, _, at, turn in edges]
+    return told(
+        {
+            "transforms": [
+                {"header": {"frame_id": parent}, "child_frame_id": child, "transform": each}
+                for (parent, child, _, _), each in zip(edges, place, strict=True)
+            ]
+        }
+    )
+
+
+AHEAD, BACKWARD, OVER = {"w": 1.0}, {"z": 1.0}, {"x": 1.0}
+IN_MAP = static(("map", "odom", (0.0, 0.0, 0.0), AHEAD))
+
+
 def sent(drive: FakeBus) -> list[tuple[float, float]]:
     twists = [each["twist"] for each in drive.sent["cmd_vel"]]
     return [(each["linear"]["x"], each["angular"]["z"]) for each in twists]
@@ -73,6 +91,7 @@ def test_holonomic_robots_are_told_in_their_own_frame() -> None:
 
 
 def told_of(drive: FakeBus, now: float, *people: Seen, x: float = 0.0, speed: float = 0.3) -> None:
+    drive.say("/tf", IN_MAP)
     drive.say("/people", told(messages.people(now, people)))
     drive.say("/odom", told(messages.odometry(now, Pose(x, 0.0, 0.0), (speed, 0.0, 0.0))))
 
@@ -80,6 +99,7 @@ def told_of(drive: FakeBus, now: float, *people: Seen, x: float = 0.0, speed: fl
 def test_it_stands_until_it_has_heard_of_people() -> None:
     bus = FakeBus()
     LawNode(hall(), bus)
+    bus.say("/tf", IN_MAP)
     for step in range(10):
         bus.say("/odom", told(messages.odometry(0.05 * step, Pose(0.0, 0.0, 0.0), (0.0, 0.0, 0.0))))
     assert sent(bus) == [(0.0, 0.0)] * 10
@@ -145,23 +165,6 @@ def test_a_person_in_the_way_is_not_driven_into() -> None:
     assert drive.last.speed < 0.05
 
 
-def static(*edges: tuple[str, str, tuple[float, float, float], dict[str, float]]) -> Any:
-    """Return transforms of edges: parent, child, place, and parts of the quaternion."""
-    none = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 0.0}
-    place = [{"translation": dict(zip("xyz", at, strict=True)), "rotation": none | turn} for _, _, at, turn in edges]
-    return told(
-        {
-            "transforms": [
-                {"header": {"frame_id": parent}, "child_frame_id": child, "transform": each}
-                for (parent, child, _, _), each in zip(edges, place, strict=True)
-            ]
-        }
-    )
-
-
-AHEAD, BACKWARD, OVER = {"w": 1.0}, {"z": 1.0}, {"x": 1.0}
-
-
 @pytest.mark.parametrize(
     ("edges", "mounting"),
     [
@@ -199,6 +202,48 @@ def test_a_lidar_is_where_its_transforms_say(edges: Any, mounting: tuple[float, 
     assert drive.last is not None
     assert drive.last.oldest > 2.0
     assert all(speed < 0.3 for speed, _ in sent(bus)[-20:])
+
+
+@pytest.mark.parametrize(
+    ("edges", "place"),
+    [
+        ([("map", "odom", (2.0, 1.0, 0.0), BACKWARD)], (1.0, 1.0)),
+        ([("map", "earth", (2.0, 0.0, 0.0), AHEAD), ("earth", "odom", (0.0, 1.0, 0.0), BACKWARD)], (1.0, 1.0)),
+        ([("map", "other/odom", (2.0, 1.0, 0.0), BACKWARD)], None),
+        ([("map", "odom", (2.0, 1.0, 0.0), OVER)], None),
+        ([("map", "odom", (math.nan, 1.0, 0.0), AHEAD)], None),
+        ([], None),
+    ],
+)
+def test_a_robot_whose_frame_is_not_known_in_the_map_does_not_drive(edges: Any, place: tuple[float, float]) -> None:
+    bus = FakeBus()
+    drive = LawNode(hall(), bus)
+    bus.say("/tf_static", static(*edges))
+    for step in range(3):
+        bus.say("/people", told(messages.people(0.05 * step, [])))
+        bus.say("/odom", told(messages.odometry(0.05 * step, Pose(1.0, 0.0, 0.0), (0.0, 0.0, 0.0))))
+    if place is None:
+        assert drive.counts["odometry_frame"] == 3
+        assert not sent(bus)
+    else:
+        assert not drive.counts
+        assert drive._poses[-1].pose[:2] == pytest.approx(place)
+
+
+@pytest.mark.parametrize("change", [{"angle_min": 0.0}, {"angle_increment": -math.tau / 360}, {"angle_min": math.nan}])
+def test_scans_with_other_beams_forget_nobody(change: dict[str, float]) -> None:
+    bus = FakeBus()
+    drive = LawNode(hall(), bus)
+    bus.say("/tf_static", static(("base_footprint", "base_scan", (0.0, 0.0, 0.2), AHEAD)))
+    lidar, body = nav.Lidar(beams=360, range_max=12.0), Seen("a", 1.6, 0.0, 0.0, 0.0, 0.25)
+    ranges = lidar.scan((0.0, 0.0), 0.0, people=[(body.x, body.y, body.radius)])
+    for step in range(60):
+        now = 0.05 * step
+        told_of(bus, now, *([body] if step < 3 else []), speed=0.0)
+        bus.say("/scan", told(messages.scan(now, lidar, ranges, 0.05) | (change if step > 2 else {})))
+    assert drive.counts["scan_refused"] == 57
+    assert drive.last is not None
+    assert drive.last.oldest > 2.0
 
 
 def test_two_people_with_one_name_are_both_there() -> None:
