@@ -120,7 +120,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 _PACKAGE = __name__.partition(".")[0]
 
 
-def telling(find: Callable[..., Iterable[ResultWarning]] | None = None) -> Callable[[F], F]:
+def telling(find: Callable[..., Iterable[ResultWarning]] | None = None, *, every: bool = False) -> Callable[[F], F]:
     """Make a function issue doubts about units as `UnitWarning`, at the line that called it.
 
     Once for each call of a user: not for calls within the package, whose own caller is told, and not in threads and
@@ -130,6 +130,8 @@ def telling(find: Callable[..., Iterable[ResultWarning]] | None = None) -> Calla
     ----------
     find : callable or None
         Returns the doubts from the arguments of the call; ``None``: those of the result.
+    every : bool
+        Whether all doubts on the unsafe side are issued, as `HrsafetyWarning`: of what runs without a result.
 
     Returns
     -------
@@ -157,8 +159,12 @@ def telling(find: Callable[..., Iterable[ResultWarning]] | None = None) -> Calla
             carried: Iterable[ResultWarning] = getattr(result, "warnings", ()) if find is None else ()
             if (carried or find) and _is_user(sys._getframe(1).f_globals.get("__name__", "")):
                 found = carried if find is None else find(*args, **kwargs)
+                found = tuple(found)
                 for message in _kinds(each for each in found if each.code == "implausible"):
                     warnings.warn(message, UnitWarning, stacklevel=2)
+                others = unsafe_doubts(each for each in found if every and each.code != "implausible")
+                for message in _kinds(others):
+                    warnings.warn(message, HrsafetyWarning, stacklevel=2)
             return result
 
         return call  # type: ignore[return-value]  # the same arguments and result
@@ -168,9 +174,9 @@ def telling(find: Callable[..., Iterable[ResultWarning]] | None = None) -> Calla
 
 def _kinds(found: Iterable[ResultWarning]) -> Iterable[str]:
     """Return the first message of each kind: the others differ by indices only, and the result carries them."""
-    kinds: dict[str, str] = {}
+    kinds: dict[tuple[str, str], str] = {}
     for each in found:
-        kinds.setdefault(re.sub(r"\d+", "", each.subject), each.message)
+        kinds.setdefault((each.code, re.sub(r"\d+", "", each.subject)), each.message)
     return dict.fromkeys(kinds.values())
 
 
@@ -183,6 +189,11 @@ def _is_user(module: object) -> bool:
 
 
 _INDEX = re.compile(r"\[\d+\]")
+
+
+def kind_of(doubt: ResultWarning) -> tuple[str, str]:
+    """Return what a doubt shares with those of its kind: its code, and what it is about without indices."""
+    return doubt.code, _INDEX.sub("", doubt.subject)
 
 
 def gathered(found: Iterable[tuple[str, Iterable[ResultWarning]]], among: str) -> tuple[ResultWarning, ...]:
@@ -212,7 +223,7 @@ def gathered(found: Iterable[tuple[str, Iterable[ResultWarning]]], among: str) -
     others: dict[tuple[str, str], int] = {}
     for name, told in found:
         for each in dict.fromkeys(told):
-            kind = (each.code, _INDEX.sub("", each.subject))
+            kind = kind_of(each)
             if kind in first:
                 others[kind] = others.get(kind, 0) + 1
                 if first[kind].safe_side and not each.safe_side:

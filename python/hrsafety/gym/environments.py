@@ -18,7 +18,7 @@ from hrsafety.gym.worlds import Task, task_of
 from hrsafety.navigation.metrics.declared import METRICS
 from hrsafety.navigation.place import Place
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot, HolonomicRobot
-from hrsafety.plausibility import warn_implausible
+from hrsafety.plausibility import ResultWarning, warn_implausible
 
 __all__ = ["Environments", "Frame"]
 
@@ -106,6 +106,11 @@ class Environments:
         self.scores = np.full((self.count, len(METRICS)), np.nan)
         self.seen = np.zeros((self.count, 2), dtype=np.int64)
         self._make_arrays()
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Doubts about the world."""
+        return self.task.world.warnings
 
     def __reduce__(self) -> NoReturn:
         """Refuse for those that hold these: episodes under way are not copied."""

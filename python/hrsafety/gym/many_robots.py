@@ -18,13 +18,13 @@ from hrsafety._bounds import MOST_SIGHTINGS
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.gym.environments import ActionKind, Frame, turn_rate_of
 from hrsafety.gym.single import RENDER_MODES, CrowdEnv
-from hrsafety.gym.worlds import Task, doubts_of, task_of
+from hrsafety.gym.worlds import Task, task_of
 from hrsafety.navigation.crowd.agents import Robot
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.metrics.between import wrapped
 from hrsafety.navigation.place import Place
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot
-from hrsafety.plausibility import telling
+from hrsafety.plausibility import ResultWarning
 
 __all__ = ["CrowdParallelEnv"]
 
@@ -128,7 +128,6 @@ class CrowdParallelEnv(ParallelEnv[str, Any, Action]):  # type: ignore[misc]  # 
         "is_parallelizable": True,
     }
 
-    @telling(doubts_of)
     def __init__(self, world: Place | Task, *, render_mode: str | None = None, **options: Any) -> None:
         """Make the environment."""
         task = task_of(world)
@@ -145,6 +144,12 @@ class CrowdParallelEnv(ParallelEnv[str, Any, Action]):  # type: ignore[misc]  # 
         self._action_spaces = {name: env.action_space for name, env in self._envs.items()}
         self._observation_spaces = {name: env.observation_space for name, env in self._envs.items()}
         self._seeded, self._shown = False, self.possible_agents[0]
+        self._doubts = task.world.warnings
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Doubts about the world."""
+        return self._doubts
 
     def _numbered(self, driven: list[int]) -> list[tuple[str, int]]:
         return list(zip(self.possible_agents, driven, strict=True))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from hrsafety.errors import MissingExtraError
 from hrsafety.gym.worlds import Task
 from hrsafety.navigation.place import Place
+from hrsafety.plausibility import telling
 
 if TYPE_CHECKING:
     from hrsafety.gym.many_robots import CrowdParallelEnv
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["parallel_env"]
 
 
+@telling(every=True)
 def parallel_env(world: Place | Task, *, render_mode: str | None = None, **options: Any) -> CrowdParallelEnv:
     """Return an environment in which a learner drives all robots of a world that have no law.
 

@@ -14,10 +14,10 @@ from hrsafety._arguments import checked_seed, numbers, word
 from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.gym.environments import OUTCOMES, RUNNING, TIMED_OUT, Environments, Frame
 from hrsafety.gym.pictures import picture
-from hrsafety.gym.worlds import Task, doubts_of
+from hrsafety.gym.worlds import Task
 from hrsafety.navigation.metrics.declared import METRICS
 from hrsafety.navigation.place import Place
-from hrsafety.plausibility import telling
+from hrsafety.plausibility import ResultWarning, kind_of, telling
 
 __all__ = ["CrowdEnv"]
 
@@ -92,7 +92,13 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
 
     metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES), "render_fps": 4}  # noqa: RUF012  # as Gymnasium has it
 
-    @telling(doubts_of)
+    def _not_told(self, *_: object, **__: object) -> tuple[ResultWarning, ...]:
+        """Return the doubts that have come since they were asked for."""
+        found = self.warnings[self._told :]
+        self._told += len(found)
+        return found
+
+    @telling(_not_told, every=True)
     def __init__(self, world: Place | Task | Draw, *, render_mode: str | None = None, **options: Any) -> None:
         """Make the environment."""
         if render_mode is not None:
@@ -102,12 +108,20 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
         self._seed: int | None = None
         self._episodes = 0
         self._actions: list[npt.NDArray[np.float64]] = []
+        self._doubts: dict[tuple[str, str], ResultWarning] = {}
+        self._told = 0
         self._all = self._environments(np.random.default_rng(0))
         self.render_mode = render_mode
         self.action_space: spaces.Space[Any] = self._all.action_space()
         self.observation_space = self._all.observation_space()
         self._seeded = False
 
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Doubts about the world; of worlds that are drawn, the first of each kind so far."""
+        return tuple(self._doubts.values())
+
+    @telling(_not_told, every=True)
     def reset(self, *, seed: int | None = None, options: Mapping[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Start an episode: the first one of a seed, else the next one.
 
@@ -140,7 +154,10 @@ class CrowdEnv(gymnasium.Env[Any, npt.NDArray[np.float32]]):
         """Return the native environment, of a world that is drawn if worlds are."""
         world, options = self._made
         drawn = world if isinstance(world, (Place, Task)) or not callable(world) else world(generator)
-        return Environments(drawn, num_envs=1, autoreset_mode="Disabled", threads=1, **options)
+        made = Environments(drawn, num_envs=1, autoreset_mode="Disabled", threads=1, **options)
+        for doubt in made.warnings:
+            self._doubts.setdefault(kind_of(doubt), doubt)
+        return made
 
     def _start(self, seed: int | None) -> None:
         """Start the next episode."""

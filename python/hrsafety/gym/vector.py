@@ -16,10 +16,10 @@ from hrsafety.errors import InvalidParameterError, ShapeError, Shown
 from hrsafety.gym.environments import OUTCOMES, RUNNING, TIMED_OUT, Environments, Frame
 from hrsafety.gym.pictures import picture
 from hrsafety.gym.single import RENDER_MODES
-from hrsafety.gym.worlds import Task, doubts_of
+from hrsafety.gym.worlds import Task
 from hrsafety.navigation.metrics.declared import METRICS
 from hrsafety.navigation.place import Place
-from hrsafety.plausibility import telling
+from hrsafety.plausibility import ResultWarning, telling
 
 __all__ = ["CrowdVectorEnv"]
 
@@ -66,7 +66,7 @@ class CrowdVectorEnv(gymnasium.vector.VectorEnv[Any, npt.NDArray[np.float32], np
     ((64, 31), (64,))
     """
 
-    @telling(doubts_of)
+    @telling(lambda env, *_, **__: env.warnings, every=True)
     def __init__(
         self,
         world: Place | Task,
@@ -95,6 +95,11 @@ class CrowdVectorEnv(gymnasium.vector.VectorEnv[Any, npt.NDArray[np.float32], np
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self._seeded = False
+
+    @property
+    def warnings(self) -> tuple[ResultWarning, ...]:
+        """Doubts about the world."""
+        return self._all.warnings
 
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from hrsafety import scenarios
@@ -14,7 +13,6 @@ from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.place import Place
 from hrsafety.navigation.robots.bodies import HolonomicRobot
 from hrsafety.navigation.scenario import Scenario
-from hrsafety.plausibility import ResultWarning
 
 __all__ = ["Task", "bottleneck", "circle_crossing", "corridor", "crossing"]
 
@@ -69,13 +67,6 @@ def task_of(given: object) -> Task:
     if not isinstance(given, Place):
         raise InvalidParameterError("world", "be a World, Scenario or Task", given)
     return Task(world=World.of(given))
-
-
-def doubts_of(_owner: object, *given: object, **named: object) -> Iterable[ResultWarning]:
-    """Return the doubts about the world that an environment is made of."""
-    made_of = given[0] if given else named.get("world")
-    world = made_of.world if isinstance(made_of, Task) else made_of
-    return world.warnings if isinstance(world, Place) else ()
 
 
 def _corner(name: str, value: object) -> Pair:

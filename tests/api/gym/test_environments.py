@@ -20,7 +20,7 @@ from api.trees import same
 from hrsafety import gym, scenarios
 from hrsafety import navigation as nav
 from hrsafety.errors import InvalidParameterError, ShapeError, SimulationError
-from hrsafety.plausibility import ImplausibleWarning
+from hrsafety.plausibility import HrsafetyWarning, ImplausibleWarning, ResultWarning, UnitWarning
 
 CIRCLE = "hrsafety/CircleCrossing-v0"
 OPTIONS: list[dict[str, Any]] = [
@@ -400,3 +400,30 @@ def test_options_that_there_are_not_and_turn_rates_in_degrees_are_told() -> None
             make(world, lidr=3)
     with pytest.warns(ImplausibleWarning, match="degrees given for radians"):
         gym.CrowdEnv(world, max_turn_rate=180.0)
+
+
+def doubtful(generator: np.random.Generator | None = None, doubt: str = "gap_in_track") -> nav.World:
+    start = (0.0, 0.0 if generator is None else float(generator.uniform(-1.0, 1.0)))
+    robot = nav.Robot(nav.HolonomicRobot(), start=start, goal=(3.0, 0.0), heading=90.0)
+    return nav.World(robots=[robot], doubts=(ResultWarning(doubt, "people", f"{doubt} of people"),))
+
+
+@pytest.mark.parametrize("make", [gym.CrowdEnv, gym.CrowdVectorEnv, gym.parallel_env])
+def test_doubts_about_a_world_are_told_and_carried(make: Any) -> None:
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        env = make(doubtful())
+    assert [each.code for each in env.warnings] == ["gap_in_track", "implausible"]
+    assert [(each.category, each.filename) for each in told] == [(UnitWarning, __file__), (HrsafetyWarning, __file__)]
+
+
+def test_doubts_about_worlds_that_are_drawn_are_told_once() -> None:
+    drawn = iter(["gap_in_track", "gap_in_track", "wall_rescues", "gap_in_track"])
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        env = gym.CrowdEnv(lambda generator: doubtful(generator, next(drawn)))
+        for _ in range(3):
+            env.reset()
+    assert [each.code for each in env.warnings] == ["gap_in_track", "implausible", "wall_rescues"]
+    assert [str(each.message).split(" ")[0] for each in told] == ["robots[0]:", "gap_in_track", "wall_rescues"]
+    assert {each.filename for each in told} == {__file__}
