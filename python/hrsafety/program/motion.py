@@ -16,6 +16,7 @@ from hrsafety._arguments import Array, count, instance, numbers, positive, seque
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.arms import Arm
+from hrsafety.arms.doubts import doubts_of_poses
 from hrsafety.arms.inputs import poses_of
 from hrsafety.arms.rolling import BASE_JOINTS, RollingBase
 from hrsafety.errors import InvalidParameterError, ShapeError, Shown
@@ -149,6 +150,7 @@ class ArmMotion:
         way = followed(recorded, limits[0], tolerance)
         found = cls._of(arm, way.curves, way.dwells, limits, (velocity, acceleration))
         doubts = tuple(doubts_of_log(recorded, arm, *limits))
+        doubts = (*found.warnings, *doubts)
         return replace(found, log=recorded, place=way.place, residual=way.residual, warnings=doubts)
 
     @classmethod
@@ -203,7 +205,7 @@ class ArmMotion:
         legs: Legs = legs_of(arm, rows, arm.moved_links[-1] if link is None else link)
         limits = _limits(arm, velocity, acceleration)
         found = cls._of(arm, legs.curves, legs.dwells, limits, (velocity, acceleration))
-        return replace(found, marks=legs.marks, warnings=legs.warnings)
+        return replace(found, marks=legs.marks, warnings=(*found.warnings, *legs.warnings))
 
     @classmethod
     def from_waypoints(
@@ -276,13 +278,18 @@ class ArmMotion:
                     raise InvalidParameterError(f"{label}.{name}", rule, Shown("nothing"), "in m/s or rad/s, and per s")
         stops = np.cumsum([len(each.coefficients) for each in curves])[:-1].tolist()
         velocity, acceleration = limits
+        curve = JointCurve.joined(curves)
+        # A base that rolls drives and turns as far as it likes.
+        own = [place for place, name in enumerate(arm.joint_names) if name not in arm.base_joints]
+        names, kinds = ([each[place] for place in own] for each in (arm.joint_names, arm.joint_kinds))
         return cls(
             arm=arm,
-            curve=JointCurve.joined(curves),
+            curve=curve,
             stops=tuple(stops),
             dwells=tuple(dwells),
             velocity=velocity,
             acceleration=acceleration,
+            warnings=doubts_of_poses(curve.at(curve.nodes)[0][:, own], names, kinds),
         )
 
     @property

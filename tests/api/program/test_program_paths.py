@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from api.program.chains import chain, example, motion_of, sines
-from hrsafety import program
+from hrsafety import arms, program
 from hrsafety.errors import HrsafetyError, InvalidParameterError
 
 POSE = {"turn": 0.0, "shoulder": 0.35, "elbow": 1.45, "wrist_1": -0.23, "wrist_2": -1.5708, "wrist_3": 0.0}
@@ -321,3 +321,20 @@ def test_joints_of_a_log_that_the_arm_holds_are_refused(
         else:
             with pytest.raises(InvalidParameterError, match=f"log.csv, column wrist_3 must {message}"):
                 program.ArmMotion.from_log(arm, tmp_path / "log.csv", acceleration=4.0, velocity=2.0)
+
+
+@pytest.mark.parametrize(("far", "codes"), [(1.2, []), (60.0, ["implausible"])])
+def test_degrees_of_joints_without_limits_are_doubted(far: float, codes: list[str]) -> None:
+    free = arms.Arm.from_urdf(re.sub(r' (lower|upper)="[^"]*"', "", example().urdf.replace("revolute", "continuous")))
+    start = dict.fromkeys(free.joint_names, 0.3)
+    moves = [program.Move(kind="joint", to=start), program.Move(kind="joint", to={"elbow": far})]
+    time = np.linspace(0.0, 4.0, 1001)
+    swing = 0.5 * far * (1.0 - np.cos(0.5 * np.pi * time))
+    found = (
+        program.ArmMotion.from_moves(free, moves, acceleration=4.0),
+        program.ArmMotion.from_waypoints(free, {"elbow": [0.0, 0.5 * far, far]}, acceleration=4.0),
+        program.ArmMotion.from_log(free, time=time, joints={"elbow": swing}, acceleration=4.0, velocity=100.0),
+    )
+    for motion in found:
+        assert [each.code for each in motion.warnings] == codes
+        assert all("elbow is at 60 rad: degrees given for radians?" in each.message for each in motion.warnings)
