@@ -12,9 +12,9 @@ from hrsafety._arguments import Array, numbers, positive, vector
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.impact.criteria.filters import channel_corner, through_class
+from hrsafety.impact.criteria.filters import channel_corner, filtered_pulse, through_class
 from hrsafety.impact.criteria.loads import whole_loads
-from hrsafety.plausibility import ResultWarning, telling
+from hrsafety.plausibility import ResultWarning, implausible, telling
 from hrsafety.records import traces
 from hrsafety.records.units import STANDARD_GRAVITY, in_unit
 from hrsafety.standards.verdicts import doubted, strictest
@@ -77,7 +77,8 @@ class AccelerationRecord:
         Parts with peaks of at least 30 % of the largest one, in their order.
     warnings : tuple of ResultWarning
         ``negative_axis``, ``offset_removed``, ``several_hits`` and ``harder_later_hit`` change nothing about loads over
-        the whole record; ``no_quiet_part``, ``saturated``, ``coarse_sampling``, ``starts_inside``, ``no_release`` may.
+        the whole record; ``no_quiet_part``, ``offset``, ``saturated``, ``coarse_sampling``, ``filtered_pulse``,
+        ``starts_inside``, ``no_release`` and ``implausible`` may.
     """
 
     time: Annotated[Array, "s"]
@@ -198,12 +199,15 @@ def acceleration(
     about = int(np.argmax(sizes))
     resting = traces.rest(axes, about, float(sizes[about]), traces.window_samples(QUIET, step))
     moved = axes - resting.offset
+    lost: tuple[ResultWarning, ...] = ()
     if filter_class is not None:
         rate, corner = 1.0 / step, channel_corner(filter_class)
         if not corner < 0.5 * rate:
             rule = f"have a corner, {corner:g} Hz, below half of the {rate:.5g} samples per second"
             raise InvalidParameterError("filter_class", rule, filter_class, "take a lower class")
-        moved = np.column_stack([through_class(axis, rate, filter_class) for axis in moved.T])
+        before, moved = moved, np.column_stack([through_class(axis, rate, filter_class) for axis in moved.T])
+        strongest = int(np.argmax(np.abs(before).max(axis=0)))
+        lost = tuple(filtered_pulse(instants, before[:, strongest], filter_class, moved[:, strongest]))
     turned = moved.shape[1] == 1 and -moved.min() > moved.max()
     signal = np.linalg.norm(moved, axis=1) if moved.shape[1] == 3 else moved[:, 0] * (-1.0 if turned else 1.0)
     place = int(np.argmax(signal))
@@ -216,10 +220,14 @@ def acceleration(
     limit = None if full_scale is None else positive("full_scale", full_scale)
     flat = [traces.full(instants, raw[:, axis], limit) for axis in range(raw.shape[1])]
     loads = whole_loads(instants, signal)
+    change = STANDARD_GRAVITY * traces.integral(instants, signal, around, level) if around else 0.0
     doubts = [
         *traces.rest_doubts(resting, peak, "g", QUIET, _likely_unit(resting.offset)),
         *_doubts(around, hits, peak, (turned, any(flat))),
         *_coarse(step, filter_class),
+        *lost,
+        *traces.shape_doubts(instants, signal, "g", QUIET),
+        *(_units(peak, change) if around else ()),
     ]
     return AccelerationRecord(
         time=instants,
@@ -231,11 +239,19 @@ def acceleration(
         clip_3ms_g=loads.clip_3ms_g,
         start=around.start if around else None,
         end=around.end if around else None,
-        velocity_change=STANDARD_GRAVITY * traces.integral(instants, signal, around, level) if around else 0.0,
+        velocity_change=change,
         offsets_g=resting.offset,
         noise_g=resting.noise,
         hits=hits,
         warnings=tuple(doubts),
+    )
+
+
+def _units(peak: float, change: float) -> tuple[ResultWarning, ...]:
+    """Return the doubts about a peak in g and the velocity in m/s that the head gains by it."""
+    named = {"peak of values": (peak, "recorded_peak_g"), "velocity_change": (change, "head_velocity_gain")}
+    return implausible(
+        {name: value for name, (value, _) in named.items()}, {name: quantity for name, (_, quantity) in named.items()}
     )
 
 

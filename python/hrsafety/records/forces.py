@@ -16,7 +16,7 @@ from hrsafety._display import displayed
 from hrsafety._keys import Keys, checked, parsed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError
-from hrsafety.plausibility import ResultWarning, telling
+from hrsafety.plausibility import ResultWarning, implausible, telling
 from hrsafety.records import traces
 from hrsafety.records.units import in_unit
 from hrsafety.standards.verdicts import doubted, strictest
@@ -30,7 +30,12 @@ TRANSIENT = 0.5
 _LONGER = 0.1
 _CONTACT = 0.3
 _SLOWEST = 1000.0
+_ENDING = 8
+"""The last one of so many parts of a quasi-static force is held against the one before."""
+_RISING = 0.005
+"""Share of the peak by which it may be higher."""
 _SPRING = 0.05
+_DEVIATIONS = 5.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -159,7 +164,8 @@ class ForceRecord:
         In their order.
     warnings : tuple of ResultWarning
         ``negative_axis``, ``offset_removed``, ``several_contacts`` and ``wrong_spring`` are accounted for;
-        ``no_quiet_part``, ``saturated``, ``coarse_sampling``, ``starts_inside`` and ``too_short`` may hide loads.
+        ``no_quiet_part``, ``offset``, ``saturated``, ``coarse_sampling``, ``starts_inside``, ``ends_inside``,
+        ``too_short`` and ``implausible`` may hide loads.
     """
 
     time: Annotated[Array, "s"]
@@ -298,6 +304,9 @@ def force(
     doubts = [
         *traces.rest_doubts(resting, peak, "N", QUIET, ""),
         *_doubts(contacts, (turned, traces.full(instants, raw, full_scale)), peak, step),
+        *traces.shape_doubts(instants, signal, "N", QUIET),
+        *(_rising(instants, signal, contacts[-1], peak, resting.noise * stiffer[0]) if contacts else ()),
+        *(implausible({"peak of values": peak}, {"peak of values": "peak_contact_force"}) if contacts else ()),
         *stiffer[1],
     ]
     lasting = [contact.quasi_static for contact in contacts]
@@ -357,6 +366,23 @@ def _doubts(
     if 1.0 / step < _SLOWEST * (1.0 - 1e-6):
         message = f"{1.0 / step:.5g} samples per second are fewer than {_SLOWEST:g}: peaks may lie between them"
         yield ResultWarning("coarse_sampling", "time", message)
+
+
+def _rising(time: Array, signal: Array, contact: MeasuredContact, peak: float, noise: float) -> Iterator[ResultWarning]:
+    """Give the doubt that the quasi-static part of the last contact still rises where the record ends."""
+    if contact.ends != "clamped":
+        return
+    static = signal[time > (float(time[0]) if contact.start is None else contact.start) + TRANSIENT]
+    if len(static) < 2 * _ENDING:
+        return  # too few samples, which is a doubt of its own
+    *_, before, last = np.array_split(static, _ENDING)
+    rise = float(last.mean() - before.mean())
+    if rise > max(_RISING * peak, _DEVIATIONS * noise / len(last) ** 0.5):
+        message = (
+            f"the force still rises where the record ends, by {rise:.3g} N in the last "
+            f"{_ENDING}th of its quasi-static part: it may become larger; record until it is steady"
+        )
+        yield ResultWarning("ends_inside", "time", message)
 
 
 def _stiffer(device: ForceDevice | None, region_spring: float | None) -> tuple[float, tuple[ResultWarning, ...]]:

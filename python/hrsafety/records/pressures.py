@@ -12,7 +12,7 @@ from hrsafety._arguments import Array, numbers, positive
 from hrsafety._display import displayed
 from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError
-from hrsafety.plausibility import ResultWarning, telling
+from hrsafety.plausibility import ResultWarning, implausible, telling
 from hrsafety.records import traces
 from hrsafety.records.units import in_unit
 from hrsafety.standards.verdicts import doubted
@@ -22,6 +22,8 @@ __all__ = ["PressureRecord", "pressure"]
 _PATCH = 0.01
 """Edge of the square over which pressures are averaged, in m."""
 _MISMATCH = 0.2
+_EQUAL_CELLS = 3
+"""So many cells with the largest value of a frame are full, or their digits too coarse to tell."""
 
 
 @displayed
@@ -40,7 +42,7 @@ class PressureRecord:
     force : float
         Largest sum of all cells in N.
     warnings : tuple of ResultWarning
-        ``saturated``, ``force_pressure_mismatch``, ``patch_leaves_foil``.
+        ``saturated``, ``force_pressure_mismatch``, ``patch_leaves_foil``, ``no_push``, ``implausible``.
     """
 
     cell: Annotated[float, "Pa"]
@@ -127,10 +129,18 @@ def pressure(
     frame = int(np.argmax(largest))
     total = float(values.sum(axis=(1, 2)).max()) * edge**2
     across = max(round(_PATCH / edge), 1)
-    doubts = list(_doubts(values, total, across, None if peak_force is None else positive("peak_force", peak_force)))
+    beside = None if peak_force is None else positive("peak_force", peak_force)
+    doubts = list(_doubts(values, edge, total, across, beside))
     limit = None if full_scale is None else positive("full_scale", full_scale)
+    equal = int((values[frame] == largest[frame]).sum())
     if limit is not None and float(np.abs(cells).max()) >= traces.FULL_SCALE * limit:
         message = "a cell measures the full scale: pressures are lower bounds"
+        doubts.append(ResultWarning("saturated", "frames", message))
+    elif limit is None and largest[frame] > 0.0 and equal >= _EQUAL_CELLS:
+        message = (
+            f"{equal} cells of frame {frame} measure the same largest pressure: they are full, and pressures are lower "
+            "bounds, or their digits are too coarse to tell; give full_scale"
+        )
         doubts.append(ResultWarning("saturated", "frames", message))
     return PressureRecord(
         cell=float(largest[frame]),
@@ -148,8 +158,13 @@ def _patch(values: Array, across: int) -> float:
     return float(windows.mean(axis=(3, 4)).max())
 
 
-def _doubts(values: Array, total: float, across: int, peak_force: float | None) -> Iterator[ResultWarning]:
+def _doubts(values: Array, edge: float, total: float, across: int, peak_force: float | None) -> Iterator[ResultWarning]:
     """Give what is doubtful about a foil."""
+    if not (most := float(values.max())) > 0.0:
+        yield ResultWarning("no_push", "frames", "no cell is pressed: nothing was measured")
+    else:
+        units = {"largest of frames": "peak_pressure", "pitch": "foil_pitch"}
+        yield from implausible({"largest of frames": most, "pitch": edge}, units)
     if across > min(values.shape[1:]):
         message = f"the foil has fewer than the {across} cells of 1 cm2 along an edge: the mean is over what there is"
         yield ResultWarning("patch_leaves_foil", "frames", message, safe_side=True)

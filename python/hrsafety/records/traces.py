@@ -10,14 +10,15 @@ import numpy as np
 
 from hrsafety._arguments import Array
 from hrsafety.errors import InvalidParameterError
-from hrsafety.impact.criteria.doubts import SignalShape
+from hrsafety.impact.criteria.doubts import SignalShape, measurement_doubts
 from hrsafety.plausibility import ResultWarning
 
-__all__ = ["Part", "Rest", "even_step", "full", "integral", "parts", "rest", "threshold"]
+__all__ = ["Part", "Rest", "even_step", "full", "integral", "parts", "rest", "shape_doubts", "threshold"]
 
 _NOTICEABLE_REST = 0.05
 """Noise, and offset, as shares of the peak, from which on they are told."""
 _THRESHOLD = 0.05
+_OF_SHAPE = ("offset", "coarse_sampling")
 _DEVIATIONS = 3.0
 FULL_SCALE = 0.995
 """Share of the full scale of a channel from which on it counts as full."""
@@ -182,6 +183,14 @@ def rest_doubts(found: Rest, peak: float, unit: str, window: float, resting: str
         shown = ", ".join(f"{value:.4g}" for value in found.offset)
         message = f"an offset of {shown} {unit} was taken off{resting}"
         yield ResultWarning("offset_removed", "record", message, safe_side=True)
+
+
+def shape_doubts(time: Array, signal: Array, unit: str, window: float) -> Iterator[ResultWarning]:
+    """Give what makes the loads of a turned signal without offset too small: a level that drifts, few true samples."""
+    shape = SignalShape.of(time, signal, (time[0], time[0]), window)
+    for doubt in measurement_doubts("values", unit, shape):
+        if doubt.code in _OF_SHAPE and not doubt.safe_side:
+            yield doubt
 
 
 def largest_of(values: Array, part: Part) -> tuple[int, float]:
