@@ -25,7 +25,7 @@ from hrsafety.navigation.obstacles.moving import Human
 from hrsafety.navigation.robot_command import Command, Sighting
 from hrsafety.navigation.robots.bodies import NUMBERS, DifferentialDriveRobot, HolonomicRobot
 from hrsafety.navigation.scenario import Scenario
-from hrsafety.navigation.sensing.lidar import Lidar
+from hrsafety.navigation.sensing.lidar import Lidar, in_meters
 from hrsafety.navigation.warnings.filters import of_filter
 from hrsafety.navigation.warnings.shields import maps_of, of_controller, of_order, shield_of
 from hrsafety.navigation.warnings.units import of_lidar
@@ -261,7 +261,7 @@ class Controller:
         ------
         InvalidParameterError
             If a value is not finite, there are more people than the controller has room for, or a measurement
-            is later than the update.
+            is later than the update, or ranges are hardly in m.
         SimulationError
             If the law answers no finite force.
         """
@@ -280,7 +280,7 @@ class Controller:
                 return self._told(now, _NOTHING, dict.fromkeys((*_OF_PEOPLE, "renamed"), ()))
             self._native = self._made(robot[0])
         told = {} if people is None else self._seen(people)
-        ranges = None if scan is None else _ranges(scan)
+        ranges = None if scan is None else _ranges(scan, self._lidar)
         names = self._left(gone, told)
         before = self._names.copy()
         try:
@@ -429,12 +429,12 @@ def _assumed(shield: Shield | None) -> tuple[str, ...]:
     return ("faster", "accelerated", *velocities, *unseen, "robot_off_plan")
 
 
-def _ranges(scan: npt.ArrayLike) -> Array:
+def _ranges(scan: npt.ArrayLike, lidar: Lidar | None) -> Array:
     """Return ranges of a lidar, checked."""
     ranges = np.ascontiguousarray(numbers("scan", scan))
     if ranges.ndim != 1:
         raise ShapeError("scan", "(beams,)", ranges.shape)
-    return ranges
+    return ranges if lidar is None else in_meters("scan", ranges, lidar)
 
 
 def _standing(obstacles: Sequence[Obstacle]) -> list[Obstacle]:

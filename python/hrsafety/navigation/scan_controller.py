@@ -15,7 +15,7 @@ from hrsafety._records import dataclass
 from hrsafety.errors import InvalidParameterError, ShapeError, SimulationError
 from hrsafety.navigation.laws.arc_rollouts import ArcRollouts
 from hrsafety.navigation.robots.bodies import DifferentialDriveRobot
-from hrsafety.navigation.sensing.lidar import Lidar
+from hrsafety.navigation.sensing.lidar import Lidar, in_meters
 from hrsafety.navigation.warnings.units import of_lidar
 from hrsafety.plausibility import ResultWarning
 
@@ -262,8 +262,8 @@ class ScanController:
         Raises
         ------
         InvalidParameterError
-            If a value is not finite, a scan is later than the update or of another length, or a range is negative.
-            Nothing of the update counts then.
+            If a value is not finite, a scan is later than the update or of another length, a range is negative or
+            hardly in m. Nothing of the update counts then.
         """
         now = number("time", time)
         if (position is None) != (heading is None):
@@ -288,7 +288,7 @@ class ScanController:
         found = np.ascontiguousarray(numbers(f"{name}.ranges", ranges))
         if found.shape != (self._lidars[lidar].beams,):
             raise ShapeError(f"{name}.ranges", f"({self._lidars[lidar].beams},)", found.shape)
-        return lidar, time, found
+        return lidar, time, in_meters(f"{name}.ranges", found, self._lidars[lidar])
 
     def restart(self, goal: npt.ArrayLike) -> None:
         """Forget everything, with a robot at rest and another goal.

@@ -15,7 +15,7 @@ from hrsafety.navigation.controller import Controller
 from hrsafety.navigation.crowd.world import World
 from hrsafety.navigation.maps.outlines import standing
 from hrsafety.navigation.robot_command import Command, Sighting
-from hrsafety.navigation.sensing.lidar import Lidar
+from hrsafety.navigation.sensing.lidar import Lidar, in_meters
 from hrsafety.ros.base import STANDING, PlanarTwist
 from hrsafety.ros.bus import EVENTS, SENSOR, Bus, Message, Quality
 from hrsafety.ros.messages import Pose, pose_in, seconds, stamp, transform_in, twist_in
@@ -185,6 +185,11 @@ class LawNode:
         if self._lidar is None or not _fits(self._lidar, message) or self._lidar.mounting != place:
             rule = "has other beams, or another place of the lidar, than those before"
             self._count("scan_refused", f"a scan {rule}: it is not used")
+            return
+        try:
+            in_meters("ranges", ranges, self._lidar)
+        except InvalidParameterError as error:
+            self._count("scan_refused", f"a scan is not used: {error}")
             return
         self._scan = (seconds(message.header.stamp), np.where(ranges >= self._lidar.range_max, np.inf, ranges))
         self._try()

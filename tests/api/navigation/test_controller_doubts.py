@@ -275,6 +275,28 @@ def test_what_was_seen_where_nothing_is_read_now_stays_and_grows_old() -> None:
     assert robots[math.inf][-1] == pytest.approx(0.6)
 
 
+def test_a_scan_in_millimeters_is_refused() -> None:
+    # All of it would be beyond the largest range: free.
+    lidar = nav.Lidar(beams=90, range_max=10.0)
+    shielded = nav.SafeNavigation(nav.VirtualForceField(), shield=nav.Shield())
+    controller = nav.Controller(shielded, nav.HolonomicRobot(), (5.0, 0.0), lidar=lidar)
+    scans = nav.ScanController(
+        nav.ArcRollouts(), nav.DifferentialDriveRobot(max_turn_acceleration=5.0), (5.0, 0.0), lidars=[lidar]
+    )
+    for far in (2500.0, 250.0):
+        ranges = np.full(90, np.inf)
+        ranges[7:9] = far, 1.01 * far
+        with pytest.raises(InvalidParameterError, match=r"^scan must be in m.*mm given for m"):
+            controller.update(0.0, (0.0, 0.0), (0.0, 0.0), people={}, scan=ranges)
+        with pytest.raises(InvalidParameterError, match=r"^scans\[0\].ranges must be in m"):
+            scans.update(0.0, (0.0, 0.0), 0.0, [ranges])
+        with pytest.raises(InvalidParameterError, match=r"^ranges must be in m"):
+            lidar.points((0.0, 0.0), 0.0, ranges)
+    ranges[:] = 655.33  # some drivers tell so that nothing was hit
+    assert controller.update(0.0, (0.0, 0.0), (0.0, 0.0), people={}, scan=ranges).status == "kept"
+    assert scans.update(0.0, (0.0, 0.0), 0.0, [ranges]).status == "kept"
+
+
 def test_a_blind_scan_forgets_nobody() -> None:
     robot = Driven(wanted=Rest(), lidar=nav.Lidar(beams=360))
     robot.told(people={"a": (3.0, 0.0, 0.0, 0.0)})

@@ -230,8 +230,16 @@ def test_a_robot_whose_frame_is_not_known_in_the_map_does_not_drive(edges: Any, 
         assert drive._poses[-1].pose[:2] == pytest.approx(place)
 
 
-@pytest.mark.parametrize("change", [{"angle_min": 0.0}, {"angle_increment": -math.tau / 360}, {"angle_min": math.nan}])
-def test_scans_with_other_beams_forget_nobody(change: dict[str, float]) -> None:
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"angle_min": 0.0},
+        {"angle_increment": -math.tau / 360},
+        {"angle_min": math.nan},
+        {"ranges": [1500.0 + beam for beam in range(360)]},
+    ],
+)
+def test_scans_of_other_beams_or_in_other_units_forget_nobody(change: dict[str, Any]) -> None:
     bus = FakeBus()
     drive = LawNode(hall(), bus)
     bus.say("/tf_static", static(("base_footprint", "base_scan", (0.0, 0.0, 0.2), AHEAD)))

@@ -17,7 +17,10 @@ from hrsafety.errors import InvalidParameterError, ShapeError
 from hrsafety.navigation.maps.static_map import StaticMap
 from hrsafety.navigation.sensing.robot_sensor import RobotSensor
 
-__all__ = ["Lidar"]
+__all__ = ["Lidar", "in_meters"]
+
+_OTHER_UNIT = 10.0
+"""Different ranges of more than so many times the largest one are no meters."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -181,14 +184,26 @@ class Lidar(RobotSensor):
         Raises
         ------
         InvalidParameterError
-            If an argument is not finite or of another shape.
+            If an argument is not finite or of another shape, or ranges are hardly in m.
         """
         scan = numbers("ranges", ranges)
         if scan.shape != (self.beams,):
             raise ShapeError("ranges", f"({self.beams},)", scan.shape)
         if (scan < 0.0).any():
             raise InvalidParameterError("ranges", "not be negative", float(scan[scan < 0.0][0]))
-        return self._lidar.points(_pose(position, heading), scan.tolist())
+        return self._lidar.points(_pose(position, heading), in_meters("ranges", scan, self).tolist())
+
+
+def in_meters(name: str, ranges: Array, lidar: Lidar) -> Array:
+    """Return the ranges of a scan; in mm everything would be farther than the lidar sees: free.
+
+    Where nothing was hit, some drivers give one and the same number far beyond the largest range.
+    """
+    beyond = ranges[(ranges > _OTHER_UNIT * lidar.range_max) & (ranges < math.inf)]
+    if beyond.size and beyond.min() < beyond.max():
+        rule = f"be in m, up to range_max of {lidar.range_max:g}, or infinite where nothing was hit"
+        raise InvalidParameterError(name, rule, float(beyond[0]), "mm given for m?")
+    return ranges
 
 
 def _pose(position: object, heading: object) -> tuple[float, float, float]:
