@@ -84,6 +84,7 @@ class LawNode:
         (robot,) = world.robots
         self._period = world.step if robot.control_period is None else robot.control_period
         self._lockstep, self._complete = lockstep, complete
+        self._logged: set[str] = set()
         self.counts: Counter[str] = Counter()
         self._goal = robot.goal
         self._poses: deque[_Known] = deque(maxlen=64)
@@ -99,8 +100,6 @@ class LawNode:
         self._controller = self._made(robot.start)
         self.last: Command | None = None
         self._answer: Message | None = None
-        for warning in self._controller.warnings:
-            bus.log("warn", str(warning))
         self._stamped = commands != "twist"
         self._send = bus.publisher(topic, STAMPED if self._stamped else TWIST, Quality(10))
         # People first: a node hands over messages in this order where several have come.
@@ -123,7 +122,7 @@ class LawNode:
         (robot,) = self._world.robots
         walls = standing(self._world.walls)
         sizes = [*(each.radius for each in self._world.people), *(each.radius for each in self._world.sources)]
-        return Controller(
+        made = Controller(
             robot.law,  # type: ignore[arg-type]  # checked at construction
             robot.body,
             self._goal,
@@ -137,6 +136,12 @@ class LawNode:
             age_limit=self._age_limit,
             seed=self._world.seed,
         )
+        # With a lidar there are others than without.
+        for text in map(str, made.warnings):
+            if text not in self._logged:
+                self._logged.add(text)
+                self._bus.log("warn", text)
+        return made
 
     # ---- what comes -----------------------------------------------------------------------------
 

@@ -264,6 +264,18 @@ def test_two_people_with_one_name_are_both_there() -> None:
     assert drive.last.speed < 0.05
 
 
+def test_doubts_about_a_lidar_are_logged_when_it_is_heard() -> None:
+    bus = FakeBus()
+    LawNode(hall(), bus)
+    bus.say("/tf_static", static(("base_footprint", "base_scan", (0.0, 0.0, 0.2), AHEAD)))
+    lidar, told_before = nav.Lidar(beams=360, range_max=12.0), len(bus.logs)
+    message = messages.scan(0.0, lidar, lidar.scan((0.0, 0.0)), 0.05) | {"range_max": 12000.0}
+    for _ in range(2):
+        bus.say("/scan", told(message))
+    told_of_lidar = [text for _, text in bus.logs[told_before:] if "lidar.range_max is 12000 m" in text]
+    assert len(told_of_lidar) == 1
+
+
 @pytest.mark.parametrize("given", [pose(math.nan, 0.0), pose(1.0, 0.0, frame="odom")])
 def test_goals_that_are_none_are_refused(given: Any) -> None:
     bus = FakeBus()
