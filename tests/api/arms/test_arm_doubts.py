@@ -109,6 +109,27 @@ def test_one_inertial_for_every_link_is_a_placeholder() -> None:
         assert {each.code for each in unsafe_doubts(arm.warnings)} == {"placeholder_inertial"}
 
 
+def test_centers_of_mass_on_every_joint_are_a_placeholder() -> None:
+    """Filled-in origins: a third of the mass of the tool was missing."""
+    for origin in ("", '<origin rpy="0 0 1"/>', '<origin xyz="0 0.0 0"/>'):
+        bare = re.sub(r"<inertial>\s*<origin [^>]*/>", f"<inertial>{origin}", EXAMPLE)
+        arm = arms.Arm.from_urdf(bare, armature=MOTORS)
+        assert "their centers of mass where their joints are" in doubt(arm, "placeholder_inertial").message
+    # One that is known, or links whose masses are links of their own, is another matter.
+    one = re.sub(r"<inertial>\s*<origin [^>]*/>", "<inertial>", EXAMPLE, count=1)
+    assert codes(arms.Arm.from_urdf(one, armature=MOTORS)) == []
+    apart = re.sub(
+        r'<link name="(\w+)">\s*<inertial>\s*(<origin [^>]*/>)(.*?)</inertial>',
+        r'<link name="\1_mass"><inertial>\3</inertial></link><joint name="\1_mass" type="fixed">'
+        r'<parent link="\1"/><child link="\1_mass"/>\2</joint><link name="\1">',
+        EXAMPLE,
+        flags=re.DOTALL,
+    )
+    arm = arms.Arm.from_urdf(apart, armature=MOTORS)
+    assert codes(arm) == []
+    assert arm.effective_mass(POSE, **PLACE).mass == pytest.approx(ARM.effective_mass(POSE, **PLACE).mass)
+
+
 def test_four_equal_wheels_are_no_placeholder_but_a_base_that_rolls() -> None:
     wheels = [joint(f"w{index}", "base", f"l{index}") for index in range(4)]
     links = [link(f"l{index}", inertial(1.5, (0.012, 0.012, 0.015))) for index in range(4)]
