@@ -194,7 +194,7 @@ class Report:
 
 def _unsigned(block: Any) -> Any:
     """Return a block of a page without the sign of zeros in its words and cells."""
-    if isinstance(block, str):
+    if type(block) is str:  # not a player, which is a page
         return unsigned_zero(block)
     if not isinstance(block, ReportTable):
         return block

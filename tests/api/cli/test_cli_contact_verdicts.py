@@ -79,7 +79,7 @@ def test_within_limits_is_green_and_code_0(judged: Judged, capsys: pytest.Captur
     assert 'class="text word good"' in page
     shown = capsys.readouterr()
     assert shown.err == ""
-    assert shown.out.splitlines()[-1] == "passed  within limits: 1 of 1 contacts"
+    assert shown.out.splitlines()[-1] == "passed  within limits: 1 of 1 contact"
 
 
 @pytest.mark.parametrize(
@@ -110,7 +110,7 @@ def test_what_exceeds_is_red_and_code_3(
     code, report, page = judged(GOOD.replace("speed = 0.1", f"speed = {speed}"))
     assert (code, report["verdict"]) == (exit_codes.FAILED_RUN, word)
     assert 'class="text word bad"' in page
-    assert capsys.readouterr().out.splitlines()[-1] == "FAILED  exceeds: 1 of 1 contacts; exit code 3"
+    assert capsys.readouterr().out.splitlines()[-1] == "FAILED  exceeds: 1 of 1 contact; exit code 3"
     code, report, _ = judged(GOOD.replace('"chest"', '"face"'))
     assert (code, report["verdict"]) == (exit_codes.FAILED_RUN, "not_permitted")
 
@@ -156,7 +156,7 @@ def test_a_doubt_on_the_unsafe_side_is_not_within_limits(
     assert 'class="text word good"' not in page
     assert re.search(rf"Doubts:</strong> .*{doubt.replace('_', ' ')}", page)
     shown = capsys.readouterr()
-    assert shown.out.splitlines()[-1].startswith("NOT CHECKED  not checked: 1 of 1 contacts (")
+    assert shown.out.splitlines()[-1].startswith("NOT CHECKED  not checked: 1 of 1 contact (")
     assert shown.err.startswith("hrsafety: warning: ")
 
 

@@ -72,7 +72,7 @@ def test_example_of_gains_writes_an_overview(tmp_path: Path, capsys: pytest.Capt
     result = sweep.open(out)
     assert result.cases == ("c1", "c2", "c3")
     best = f"{result['performance_total'].max():.5g}"
-    assert f"<td>{best}</td>" in (out / "summary.html").read_text(encoding="utf-8")
+    assert f">{best}</td>" in (out / "summary.html").read_text(encoding="utf-8")
 
 
 NOISY = """
