@@ -23,7 +23,6 @@ class Facts(Parameters):
 
     _facts: dict[str, Any]
     _doubts: tuple[ResultWarning, ...]
-    urdf: str
     armature: tuple[tuple[str, float], ...]
     payloads: tuple[Payload, ...]
     type_plate_mass: float | None
@@ -133,11 +132,7 @@ class Facts(Parameters):
         plate = None if rolling and self.mass_source == "scaled" else self.type_plate_mass
         return (
             *doubts.doubts_of_motors(self.armature, facts, driven),
-            *(
-                each
-                for each in doubts_of_links(facts, self.urdf)
-                if self.base is None or each.code != "base_assumed_fixed"
-            ),
+            *(each for each in doubts_of_links(facts) if self.base is None or each.code != "base_assumed_fixed"),
             *doubts.doubts_of_given(self.link_masses),
             *doubts.doubts_of_plate(self.total_mass - below, self.moving_mass - below, plate),
             *doubts.doubts_of_payloads(self.payloads, self.moving_mass),

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
-from xml.etree import ElementTree
 
 import numpy as np
 import numpy.typing as npt
@@ -43,15 +42,13 @@ NOTHING = 1e-4
 _NAMES = 4
 
 
-def doubts_of_links(facts: Mapping[str, Any], urdf: str) -> Iterator[ResultWarning]:
+def doubts_of_links(facts: Mapping[str, Any]) -> Iterator[ResultWarning]:
     """Return why masses and inertias of links may be no data.
 
     Parameters
     ----------
     facts : mapping
         Of the native arm.
-    urdf : str
-        What it was read from.
 
     Yields
     ------
@@ -74,7 +71,7 @@ def doubts_of_links(facts: Mapping[str, Any], urdf: str) -> Iterator[ResultWarni
             f"({100 * share:.2g} % of the moving mass)"
         )
         yield ResultWarning("suspicious_link", subject_of(names[suspicious]), message, safe_side=share < SMALL)
-    yield from _placeholders(facts, urdf, names, mass)
+    yield from _placeholders(facts, names, mass)
     yield from _densities(facts, names, mass)
     for joints, what in ((facts["wheels"], "turn without limits like wheels"), (facts["floors"], "slide over a floor")):
         if joints:
@@ -119,7 +116,7 @@ def _counted(facts: Mapping[str, Any], mass: Array) -> npt.NDArray[np.bool_]:
     return np.asarray(moved & (mass >= share * float(facts["moving_mass"])))
 
 
-def _placeholders(facts: Mapping[str, Any], urdf: str, names: Array, mass: Array) -> Iterator[ResultWarning]:
+def _placeholders(facts: Mapping[str, Any], names: Array, mass: Array) -> Iterator[ResultWarning]:
     """Return signs of inertials that were only filled in."""
     counted = np.flatnonzero(_counted(facts, mass))
     moments = np.asarray(facts["link_moments"])
@@ -130,9 +127,10 @@ def _placeholders(facts: Mapping[str, Any], urdf: str, names: Array, mass: Array
         signs.append((alike, what))
     elif len({f"{mass[index]:.9e}" for index in counted}) == 1 and _in_a_row(facts, counted.tolist()) >= SAME:
         signs.append((counted, f"one mass ({mass[counted[0]]:g} kg)"))
-    on_joints = _on_joints(urdf)
-    own = [index for index in counted.tolist() if names[index] in on_joints]
-    if _in_a_row(facts, own) >= ALIKE and all(on_joints[names[index]] for index in own):
+    # Links that a joint moves by themselves, not those that hang fixed on others.
+    segments, parents = facts["segments"], facts["parents"]
+    own = [index for index in counted.tolist() if segments[index] != segments[parents[index]]]
+    if _in_a_row(facts, own) >= ALIKE and not np.asarray(facts["link_off_centers"])[own].any():
         signs.append((own, "their centers of mass where their joints are"))
     even = [index for index in counted if _power_of_ten(moments[index])]
     if len(counted) > 1 and 2 * len(even) >= len(counted):
@@ -152,24 +150,6 @@ def _placeholders(facts: Mapping[str, Any], urdf: str, names: Array, mass: Array
         subject = subject_of(names[signs[0][0]]) if signs else "links"
         yield ResultWarning("placeholder_inertial", subject, f"{'; '.join(told)}: filled in, or in another unit?")
     yield from _wide(facts, names, mass)
-
-
-def _on_joints(urdf: str) -> dict[str, bool]:
-    """Return of links with an inertial that a joint moves whether their center of mass is where that joint is."""
-    try:
-        root = ElementTree.fromstring(urdf)
-    except ElementTree.ParseError:
-        return {}  # the core reads more
-    children = (joint.find("child") for joint in root.iter("joint") if joint.get("type") != "fixed")
-    moved = {child.get("link") for child in children if child is not None}
-    found = {}
-    for link in root.iter("link"):
-        inertial = link.find("inertial")
-        if inertial is not None and link.get("name") in moved:
-            origin = inertial.find("origin")
-            place = "0" if origin is None else origin.get("xyz", "0")
-            found[link.get("name", "")] = not any(float(each) for each in place.split())
-    return found
 
 
 def _wide(facts: Mapping[str, Any], names: Array, mass: Array) -> Iterator[ResultWarning]:

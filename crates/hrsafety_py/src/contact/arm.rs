@@ -98,6 +98,8 @@ impl Arm {
             "link_masses",
             arm.links.iter().map(|link| link.mass).collect(),
         )?;
+        let centers = arm.links.iter().map(|link| link.off_center);
+        fields.vector("link_off_centers", centers.collect())?;
         let moments = arm.links.iter().flat_map(|link| link.moments);
         fields.array("link_moments", moments.collect(), [arm.links.len(), 3])?;
         let sizes = || {

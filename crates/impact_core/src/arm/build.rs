@@ -275,6 +275,7 @@ impl<'a> Builder<'a> {
                 frame: self.places[index].1,
                 mass: bodies[index].mass,
                 moments: bodies[index].principal_moments(),
+                off_center: bodies[index].center.norm(),
                 shaped: texts[index].shaped,
                 size: texts[index].size,
             })

@@ -44,6 +44,8 @@ pub struct Link {
     pub mass: f64,
     /// Principal moments of the inertia that it is computed with, the least one first (kg m^2).
     pub moments: [f64; 3],
+    /// Distance of its center of mass from its frame (m).
+    pub off_center: f64,
     /// Whether the link has a shape.
     pub shaped: bool,
     /// Size of that shape, if it is of primitives.
