@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hrsafety import navigation as nav
-from hrsafety._arguments import Array, flag, instance, positive, sequence, word
+from hrsafety._arguments import Array, Pair, flag, instance, positive, sequence, word
 from hrsafety._records import dataclass
 from hrsafety.errors import HrsafetyError, InvalidParameterError, Shown, SimulationError
 from hrsafety.navigation.batch import check_scenarios, gain_sets
@@ -330,23 +330,22 @@ class NavigationStudy(Study):
             if self._in_worlds:
                 sets = gain_sets(part.law, part.gains)
                 table = runs_of_sets(part.scenes, part.law, sets, self.weights, threads=threads)
-                for name, values in found.items():
-                    values[part.rows] = _values(table, part.scenes, name).reshape(-1, each)[part.order]
-                continue
-            table = nav.simulate_batch(
-                part.scenes,
-                part.law,
-                part.gains,
-                weights=self.weights,
-                integrator=self.integrator,  # type: ignore[arg-type]  # one of its words, checked
-                step=self.step,
-                hold=self.hold,
-                stop_on_contact=self.stop_on_contact,
-                threads=threads,
-            )
+                regions: list[list[Pair]] = []
+            else:
+                table = nav.simulate_batch(
+                    part.scenes,
+                    part.law,
+                    part.gains,
+                    weights=self.weights,
+                    integrator=self.integrator,  # type: ignore[arg-type]  # one of its words, checked
+                    step=self.step,
+                    hold=self.hold,
+                    stop_on_contact=self.stop_on_contact,
+                    threads=threads,
+                )
+                regions = [scene._native.regions() for scene in part.scenes]
             for name, values in found.items():
-                told = _values(table, part.scenes, name)
-                values[part.rows] = told.reshape(-1, each)[part.order]
+                values[part.rows] = _values(table, regions, name).reshape(-1, each)[part.order]
         return {name: values.reshape(-1) for name, values in found.items()}
 
     def doubts(self, rows: dict[str, Array]) -> tuple[ResultWarning, ...]:
@@ -544,20 +543,15 @@ class _Batch(NamedTuple):
     order: npt.NDArray[np.int64] | slice
 
 
-def _values(table: RunTable, scenes: Sequence[Any], name: str) -> npt.NDArray[Any]:
-    """Return a column of a table of runs, the scenes fastest, by its name in a sweep."""
+def _values(table: RunTable, regions: Sequence[Sequence[Pair]], name: str) -> npt.NDArray[Any]:
+    """Return a column of a table of runs, the scenes fastest, by its name in a sweep; both radii by scene, obstacle."""
     what, _, obstacle = name.rpartition("_")
     if what in _REGIONS:
-        return np.resize(_radii(scenes, int(obstacle))[:, _REGIONS.index(what)], len(table))
+        index, radius = int(obstacle), _REGIONS.index(what)
+        own = [each[index][radius] if index < len(each) else math.nan for each in regions]
+        return np.resize(own, len(table))
     found: npt.NDArray[Any] = table.min_distance[:, int(obstacle)] if what == "min_distance" else getattr(table, name)
     return found
-
-
-def _radii(scenes: Sequence[nav.Scenario], obstacle: int) -> Array:
-    """Return both radii of the regions of an obstacle in each scene, NaN where there is no such obstacle."""
-    return np.array(
-        [[*scene._native.regions(), *[(math.nan, math.nan)] * (obstacle + 1)][obstacle] for scene in scenes]
-    )
 
 
 def _computed(column: Column) -> np.dtype[Any]:
