@@ -286,12 +286,18 @@ def test_a_scan_in_millimeters_is_refused() -> None:
     for far in (2500.0, 250.0):
         ranges = np.full(90, np.inf)
         ranges[7:9] = far, 1.01 * far
-        with pytest.raises(InvalidParameterError, match=r"^scan must be in m.*mm given for m"):
+        with pytest.raises(InvalidParameterError, match=r"^scan must be in m.*mm or cm given for m"):
             controller.update(0.0, (0.0, 0.0), (0.0, 0.0), people={}, scan=ranges)
         with pytest.raises(InvalidParameterError, match=r"^scans\[0\].ranges must be in m"):
             scans.update(0.0, (0.0, 0.0), 0.0, [ranges])
         with pytest.raises(InvalidParameterError, match=r"^ranges must be in m"):
             lidar.points((0.0, 0.0), 0.0, ranges)
+    # In cm a wall 3 m away is at 300 for a lidar that sees 30 m.
+    far_sighted = nav.Lidar(beams=90, range_max=30.0)
+    with pytest.raises(InvalidParameterError, match=r"^ranges must be in m.*mm or cm given for m"):
+        far_sighted.points((0.0, 0.0), 0.0, np.append(np.linspace(10.0, 29.0, 40), np.linspace(70.0, 300.0, 50)))
+    hall = np.append(np.linspace(10.0, 40.0, 60), np.full(30, 655.33))
+    assert len(far_sighted.points((0.0, 0.0), 0.0, hall)) == 40
     ranges[:] = 655.33  # some drivers tell so that nothing was hit
     assert controller.update(0.0, (0.0, 0.0), (0.0, 0.0), people={}, scan=ranges).status == "kept"
     assert scans.update(0.0, (0.0, 0.0), 0.0, [ranges]).status == "kept"

@@ -19,8 +19,8 @@ from hrsafety.navigation.sensing.robot_sensor import RobotSensor
 
 __all__ = ["Lidar", "in_meters"]
 
-_OTHER_UNIT = 10.0
-"""Different ranges of more than so many times the largest one are no meters."""
+_OTHER_UNIT = ((10.0, 0.0), (2.0, 0.5))
+"""More than such a share of the ranges beyond so many times the largest one is in another unit."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -195,14 +195,17 @@ class Lidar(RobotSensor):
 
 
 def in_meters(name: str, ranges: Array, lidar: Lidar) -> Array:
-    """Return the ranges of a scan; in mm everything would be farther than the lidar sees: free.
+    """Return the ranges of a scan; in mm or cm everything would be farther than the lidar sees: free.
 
-    Where nothing was hit, some drivers give one and the same number far beyond the largest range.
+    Where nothing was hit, some drivers give one and the same number beyond all others.
     """
-    beyond = ranges[(ranges > _OTHER_UNIT * lidar.range_max) & (ranges < math.inf)]
-    if beyond.size and beyond.min() < beyond.max():
-        rule = f"be in m, up to range_max of {lidar.range_max:g}, or infinite where nothing was hit"
-        raise InvalidParameterError(name, rule, float(beyond[0]), "mm given for m?")
+    measured = ranges[np.isfinite(ranges)]
+    others = measured[measured < measured.max(initial=0.0)]
+    for times, share in _OTHER_UNIT:
+        beyond = others[others > times * lidar.range_max]
+        if beyond.size > share * others.size:
+            rule = f"be in m, up to range_max of {lidar.range_max:g}, or infinite where nothing was hit"
+            raise InvalidParameterError(name, rule, float(beyond[0]), "mm or cm given for m?")
     return ranges
 
 
